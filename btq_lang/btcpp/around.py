@@ -13,6 +13,11 @@ from btq_lang.util.record import Record
 if TYPE_CHECKING:
     WrapperTag: TypeAlias = Literal["Sequence", "ReactiveSequence", "Timeout"]
 
+# The kinds that do a clause's work, by which a log shows who stopped a node.
+LIMITING: Final = "Timeout"  # halts the node after a time
+WATCHING: Final = "ReactiveSequence"  # halts the node when a condition beside it changes
+EVALUATING: Final = "ScriptCondition"  # that condition, or the one that refuses a start
+
 # From the outside in: what stands around the node of several requirements is ordered by this.
 START: Final = 0  # the beginning of the mission
 VALUES: Final = 1  # what is read when the node starts

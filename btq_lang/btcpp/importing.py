@@ -18,6 +18,7 @@ from btq_lang.btcpp.generated import may_be_generated, without_generated
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.version3 import Change, is_version_3, translated
 from btq_lang.btcpp.wording import comment, is_kept, kind, name, pair, string, string_of, type_, value
+from btq_lang.catalog.nodes import PLACEHOLDERS
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import RULES, Severity
 from btq_lang.syntax.tokens import CATEGORIES
@@ -272,14 +273,14 @@ class _Writer:
         head: list[Piece]
         is_explicit = tag in _CATEGORIES
         if not is_explicit:
-            has_code = tag not in _MAY_BE_PLACEHOLDERS or element.get("code") is not None
+            has_code = tag not in PLACEHOLDERS or element.get("code") is not None
             head = [(kind(tag, False, has_code, self.symbols), None)]
         else:
             head = [(tag, None)]
             if attributes and attributes[0].name == "ID":
                 index = 1
                 raw = attributes[0].raw
-                has_code = raw not in _MAY_BE_PLACEHOLDERS or element.get("code") is not None
+                has_code = raw not in PLACEHOLDERS or element.get("code") is not None
                 word = name(raw) if tag == "SubTree" else kind(raw, True, has_code)
                 head.append((word, attributes[0]))
         if index < len(attributes) and attributes[index].name == "name" and (index or not is_explicit):
@@ -540,5 +541,4 @@ _TEXTS_TOLD: Final = 100  # one by one: where there are more, the file is none t
 _COLUMNS: Final = 100  # the formatter's
 _DIRECTIONS: Final = {"input_port": "input", "output_port": "output", "inout_port": "inout"}
 _CATEGORIES: Final = frozenset(CATEGORIES)
-_MAY_BE_PLACEHOLDERS: Final = frozenset(("Script", "ScriptCondition", "ScriptAction"))
 _RETURN: Final = re.compile("&#(?:0*13|[xX]0*[dD]);")

@@ -155,7 +155,7 @@ def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
         )
     # Nobody resets the condition of these: when it is asked again, an action says what it said before, and `_failureIf`
     # is not looked at.  With something around it, it would be reset.
-    asks = node.parent if node.parent is not None and node.parent.tag in ("IfThenElse", "WhileDoElse") else None
+    asks = node.parent if node.parent is not None and node.parent.flow == "choice" else None
     is_asked_anew = node.category in _ASKED_ANEW and "_failureIf" not in names and "_successIf" not in names
     if asks is not None and node.index == 0 and not is_asked_anew:
         raise NotEnforced(

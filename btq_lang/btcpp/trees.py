@@ -16,7 +16,7 @@ from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.btcpp.source import Source
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.names import is_port_name, is_xml_name, legal_name, model_name_problem
-from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, NodeKind, xml_tag
+from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, NodeKind, inspects_children, is_by_children, xml_tag
 from btq_lang.catalog.versions import NO_EXPLICIT_CHILD, UNIQUE_SUBTREES
 from btq_lang.syntax.tree import Entry, Node, Tree, Verbatim, Word
 from btq_lang.workspace.comments import NO_COMMENTS
@@ -107,7 +107,7 @@ class Trees:
         if known is None:
             tag = xml_tag(kind.text, kind.quoted, len(node.children))
             known = tag, BUILTINS.get(tag)
-            if kind.raw != "Switch":
+            if not is_by_children(kind.raw):
                 self._tags[kind.raw] = known
         tag, builtin = known
         if tag in CATEGORIES:  # in quotes: the tag of an explicit form
@@ -132,7 +132,7 @@ class Trees:
             attributes[in_brackets] = Attribute("ID", escape(name))
         elif word is not None:
             attributes.insert(0, Attribute("ID", escape(name)))
-        if parent.tag != "ReactiveSequence" or source.verbatim or word is None:
+        if not inspects_children(parent.tag) or source.verbatim or word is None:
             return Element(category, attributes)
         if not is_xml_name(name) or model_name_problem(name, source.target) is not None:
             if NO_EXPLICIT_CHILD.holds(source.target):
@@ -150,7 +150,7 @@ class Trees:
         name = node.head.text
         if source.verbatim:
             source.problem(entry, node.head, f"`{name}` cannot be an XML tag: write `{category} {node.head.raw}`")
-        elif parent.tag == "ReactiveSequence" and NO_EXPLICIT_CHILD.holds(source.target):
+        elif inspects_children(parent.tag) and NO_EXPLICIT_CHILD.holds(source.target):
             self._refused_here(entry, node.head)
         else:
             source.repair(entry, node.head, f"`{name}` is written as `{category} {name}`: it cannot be an XML tag")

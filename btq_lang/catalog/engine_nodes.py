@@ -7,9 +7,12 @@ row against them); what is said of behaviour was read in the sources of 4.10.0 a
 
 from __future__ import annotations
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.kinds import RESULT, Direction, NodeKind, PortKind
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import Role
 
 _STRING: Final = "std::string"
 _MILLISECONDS: Final = "unsigned int"
@@ -17,24 +20,26 @@ _ANYTHING: Final = "BT::AnyTypeAllowed"
 _ENTRY: Final = "BT::Any"
 
 
-def _input(name: str, type_: str, doc: str, default: str | None = None, *, required: bool = False) -> PortKind:
-    return PortKind(name, "input", type_, doc, default, required)
+def _input(
+    name: str, type_: str, doc: str, default: str | None = None, *, required: bool = False, role: Role = ""
+) -> PortKind:
+    return PortKind(name, "input", type_, doc, default, required, role=role)
 
 
 def _result(name: str, doc: str, default: str) -> PortKind:
-    return PortKind(name, "input", "BT::NodeStatus", doc, default, literal=RESULT)
+    return PortKind(name, "input", "BT::NodeStatus", doc, default, role="otherwise", literal=RESULT)
 
 
 def _duration(name: str, doc: str) -> PortKind:
-    return PortKind(name, "input", _MILLISECONDS, doc, required=True, unit="ms")
+    return PortKind(name, "input", _MILLISECONDS, doc, required=True, unit="ms", role="time")
 
 
 def _script(name: str, type_: str, doc: str) -> PortKind:
     return PortKind(name, "input", type_, doc, required=True, content="script")
 
 
-def _key(name: str, direction: Direction, type_: str, doc: str) -> PortKind:
-    return PortKind(name, direction, type_, doc, required=True, content="key")
+def _key(name: str, direction: Direction, type_: str, doc: str, *, removes: bool = False) -> PortKind:
+    return PortKind(name, direction, type_, doc, required=True, content="key", removes=removes)
 
 
 # ---- control nodes ----
@@ -50,6 +55,7 @@ _CONTROL: Final = (
         "of a long action is checked once. After a failure it starts from the first child again. Skipped "
         "children count as done; if all are skipped, so is the Sequence.",
         symbols=("->", "→"),
+        flow="sequence",
     ),
     NodeKind(
         "Fallback",
@@ -60,6 +66,7 @@ _CONTROL: Final = (
         "next tick resumes that child: a condition that failed before it is not checked again and cannot "
         "interrupt it (ReactiveFallback can). It hides the failure of every child but the last.",
         symbols=("?",),
+        flow="fallback",
     ),
     NodeKind(
         "Parallel",
@@ -72,10 +79,11 @@ _CONTROL: Final = (
         "other, never at the same time. A count above the number of children throws at the first tick. With "
         "the default success_count, skipped children count as succeeded.",
         (
-            _input("success_count", "int", "How many children must succeed; -1 means all", "-1"),
-            _input("failure_count", "int", "How many failures make it fail; -1 means all", "1"),
+            _input("success_count", "int", "How many children must succeed; -1 means all", "-1", role="successes"),
+            _input("failure_count", "int", "How many failures make it fail; -1 means all", "1", role="failures"),
         ),
         symbols=("||", "⇉"),
+        flow="parallel",
     ),
     NodeKind(
         "ParallelAll",
@@ -85,8 +93,9 @@ _CONTROL: Final = (
         "Unlike Parallel it halts no child: it completes when every child has. FAILURE when max_failures or "
         "more have failed, although the name suggests more than max_failures; so 0 always fails, and -1 means "
         "all children. If all children are skipped, so is the node.",
-        (_input("max_failures", "int", "How many failures make it fail; -1 means all", "1"),),
+        (_input("max_failures", "int", "How many failures make it fail; -1 means all", "1", role="failures"),),
         symbols=("All||", "All⇉"),
+        flow="parallel-all",
     ),
     NodeKind(
         "ReactiveSequence",
@@ -98,7 +107,9 @@ _CONTROL: Final = (
         "when a child returns RUNNING, the node halts all others, so two of them restart each other forever. "
         "From 4.7 on the engine refuses a child in the explicit form (<Action ID=…>) directly inside it.",
         symbols=("R->", "R→"),
+        flow="sequence",
         reactive=True,
+        inspects_children=True,
     ),
     NodeKind(
         "ReactiveFallback",
@@ -109,6 +120,7 @@ _CONTROL: Final = (
         "it becomes true. Give it only one asynchronous child, the last one: when a child returns RUNNING, "
         "the node halts all others.",
         symbols=("R?",),
+        flow="fallback",
         reactive=True,
     ),
     NodeKind(
@@ -121,6 +133,8 @@ _CONTROL: Final = (
         "complete at once. Version 3 called it SequenceStar.",
         symbols=("M->", "M→"),
         execution="asynchronous",
+        flow="sequence",
+        keeps_place=True,
     ),
     NodeKind(
         "AsyncSequence",
@@ -131,6 +145,7 @@ _CONTROL: Final = (
         "next tick. Otherwise it is a Sequence.",
         symbols=("A->", "A→"),
         execution="asynchronous",
+        flow="sequence",
     ),
     NodeKind(
         "AsyncFallback",
@@ -141,6 +156,7 @@ _CONTROL: Final = (
         "next tick. Otherwise it is a Fallback.",
         symbols=("A?",),
         execution="asynchronous",
+        flow="fallback",
     ),
     NodeKind(
         "IfThenElse",
@@ -150,6 +166,7 @@ _CONTROL: Final = (
         "The first child is the condition: it is ticked until it completes, and not again while the chosen "
         "branch runs. Without a third child a failing condition is a FAILURE. A skipped condition throws. The "
         "node requires two or three children, which the engine checks only at the first tick.",
+        flow="choice",
         late_count=True,
     ),
     NodeKind(
@@ -160,6 +177,8 @@ _CONTROL: Final = (
         "When the condition changes, the running branch is halted and the other one ticked. Without a third "
         "child a failing condition is a FAILURE, which also halts the branch. A skipped condition throws. The "
         "node requires two or three children, which the engine checks only at the first tick.",
+        flow="choice",
+        reactive=True,
         late_count=True,
     ),
     *(
@@ -177,6 +196,7 @@ _CONTROL: Final = (
                 *(_input(f"case_{n}", _STRING, f"The value that chooses child {n}") for n in range(1, cases + 1)),
             ),
             aliases=("Switch",),
+            flow="switch",
             late_count=True,
         )
         for cases in range(2, 7)
@@ -190,6 +210,7 @@ _CONTROL: Final = (
         "never ticked. If it fails, the last child cleans up and the node returns FAILURE, whatever the last "
         "child returns.",
         (_input("catch_on_halt", "bool", "Also clean up when the node is halted within the try block", "false"),),
+        flow="try",
         since="4.9",
     ),
 )
@@ -222,6 +243,7 @@ def _loop(suffix: str, type_: str, queue_before: str, aliases: tuple[str, ...] =
         ),
         aliases=aliases,
         execution="asynchronous",
+        flow="for-each",
     )
 
 
@@ -244,6 +266,7 @@ _DECORATORS: Final = (
         (1, 1),
         "Turns success into failure and failure into success.",
         "It passes RUNNING and SKIPPED on.",
+        flow="invert",
     ),
     NodeKind(
         "ForceSuccess",
@@ -251,6 +274,7 @@ _DECORATORS: Final = (
         (1, 1),
         "Succeeds whenever its child completes.",
         "It turns a failure of the child into SUCCESS, and passes RUNNING and SKIPPED on.",
+        flow="force-success",
     ),
     NodeKind(
         "ForceFailure",
@@ -258,6 +282,7 @@ _DECORATORS: Final = (
         (1, 1),
         "Fails whenever its child completes.",
         "It turns a success of the child into FAILURE, and passes RUNNING and SKIPPED on.",
+        flow="force-failure",
     ),
     NodeKind(
         "KeepRunningUntilFailure",
@@ -267,6 +292,7 @@ _DECORATORS: Final = (
         "A success of the child becomes RUNNING, and the child restarts at the next tick. The node ends only "
         "with FAILURE or when it is halted: a Sequence never reaches the nodes after it.",
         execution="asynchronous",
+        flow="until-failure",
     ),
     NodeKind(
         "Repeat",
@@ -276,8 +302,9 @@ _DECORATORS: Final = (
         "SUCCESS after num_cycles successes, FAILURE at the first failure. -1 repeats forever: it then never "
         "succeeds. 0 cycles succeed at once (4.6: are skipped). It returns RUNNING between two cycles of a "
         "child that completes at once. A skipped child skips the Repeat, which keeps its count.",
-        (_input("num_cycles", "int", "The number of cycles; -1 means forever", required=True),),
+        (_input("num_cycles", "int", "The number of cycles; -1 means forever", required=True, role="count"),),
         execution="asynchronous",
+        flow="repeat",
     ),
     NodeKind(
         "RetryUntilSuccessful",
@@ -287,9 +314,10 @@ _DECORATORS: Final = (
         "SUCCESS at the first success, FAILURE after num_attempts failures. -1 tries forever: it then never fails. "
         "0 attempts fail at once (4.6: are skipped). It returns RUNNING between two attempts of a child that "
         "completes at once.",
-        (_input("num_attempts", "int", "The total number of attempts; -1 means endless", required=True),),
+        (_input("num_attempts", "int", "The total number of attempts; -1 means endless", required=True, role="count"),),
         aliases=("Retry",),
         execution="asynchronous",
+        flow="retry",
     ),
     NodeKind(
         "Timeout",
@@ -300,6 +328,7 @@ _DECORATORS: Final = (
         "passed on. Only a child that returns RUNNING can be halted: around a synchronous action the Timeout "
         "has no effect. 0 means no limit.",
         (_duration("msec", "The time limit; 0 means no limit"),),
+        flow="timeout",
     ),
     NodeKind(
         "Delay",
@@ -309,6 +338,7 @@ _DECORATORS: Final = (
         "RUNNING until the time has passed, then the result of the child.",
         (_duration("delay_msec", "How long to wait before the child's first tick"),),
         execution="asynchronous",
+        flow="delay",
     ),
     NodeKind(
         "RunOnce",
@@ -318,6 +348,7 @@ _DECORATORS: Final = (
         "After the child has completed for the first time it is never ticked again: the node then returns "
         "SKIPPED or, with then_skip=false, the child's result again.",
         (_input("then_skip", "bool", "Afterwards return SKIPPED; false repeats the first result", "true"),),
+        flow="once",
     ),
     NodeKind(
         "Precondition",
@@ -331,6 +362,7 @@ _DECORATORS: Final = (
             _script("if", _STRING, "The condition"),
             _result("else", "The result of a false condition: SUCCESS, FAILURE, RUNNING or SKIPPED", "FAILURE"),
         ),
+        flow="precondition",
     ),
     _loop("Int", "int", _queue("int")),
     _loop("Bool", "bool", _queue("bool")),
@@ -344,6 +376,7 @@ _DECORATORS: Final = (
         "Otherwise it returns SKIPPED, also if the entry does not exist. It keeps ticking a running child in any case.",
         (_key("entry", "input", _ENTRY, "The entry to watch, with or without braces"),),
         aliases=("EntryUpdatedDecorator",),
+        flow="skip-unless-updated",
     ),
     NodeKind(
         "WaitValueUpdate",
@@ -353,6 +386,7 @@ _DECORATORS: Final = (
         "RUNNING until the entry is written after the last check. It keeps ticking a running child in any case.",
         (_key("entry", "input", _ENTRY, "The entry to watch, with or without braces"),),
         execution="asynchronous",
+        flow="wait-until-updated",
     ),
 )
 
@@ -366,6 +400,7 @@ _LEAVES: Final = (
         "Succeeds.",
         "It does nothing else; useful as a placeholder and as a last child.",
         execution="synchronous",
+        flow="succeeds",
     ),
     NodeKind(
         "AlwaysFailure",
@@ -374,6 +409,7 @@ _LEAVES: Final = (
         "Fails.",
         "It does nothing else; useful as a placeholder and for testing failures.",
         execution="synchronous",
+        flow="fails",
     ),
     NodeKind(
         "Script",
@@ -386,6 +422,7 @@ _LEAVES: Final = (
         (_script("code", _STRING, "The script"),),
         aliases=("ScriptAction",),
         execution="synchronous",
+        flow="succeeds",
     ),
     NodeKind(
         "ScriptCondition",
@@ -396,6 +433,7 @@ _LEAVES: Final = (
         "and || does not stop at its first true side. An empty code loads and throws at the first tick.",
         (_script("code", _ANYTHING, "The condition"),),
         execution="synchronous",
+        flow="answers",
     ),
     NodeKind(
         "SetBlackboard",
@@ -410,6 +448,7 @@ _LEAVES: Final = (
             _key("output_key", "inout", _ANYTHING, "The entry to write, without braces"),
         ),
         execution="synchronous",
+        flow="succeeds",
     ),
     NodeKind(
         "UnsetBlackboard",
@@ -417,8 +456,9 @@ _LEAVES: Final = (
         (0, 0),
         "Removes a blackboard entry.",
         "Also succeeds if the entry does not exist. Scripts that read it afterwards throw.",
-        (_key("key", "input", _STRING, "The entry to remove, without braces"),),
+        (_key("key", "input", _STRING, "The entry to remove, without braces", removes=True),),
         execution="synchronous",
+        flow="succeeds",
     ),
     NodeKind(
         "Sleep",
@@ -428,6 +468,7 @@ _LEAVES: Final = (
         "RUNNING until the time has passed; a halt ends the wait.",
         (_duration("msec", "How long to wait"),),
         execution="asynchronous",
+        flow="sleeps",
     ),
     NodeKind(
         "WasEntryUpdated",
@@ -438,6 +479,7 @@ _LEAVES: Final = (
         (_key("entry", "input", _ENTRY, "The entry to watch, with or without braces"),),
         aliases=("EntryUpdatedAction",),
         execution="synchronous",
+        flow="answers",
     ),
     NodeKind(
         "SubTree",

@@ -6,7 +6,7 @@ One invariant: a record describes BehaviorTree.CPP's newest version; what older 
 
 from __future__ import annotations
 
-from typing import Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.util.record import Record
 
@@ -21,6 +21,42 @@ Direction: TypeAlias = "Literal['input', 'output', 'inout']"
 # itself, if only between two children that complete at once; a Timeout around it can halt it.  as-children: exactly
 # when a child of it does.
 Execution: TypeAlias = "Literal['synchronous', 'asynchronous', 'as-children']"
+
+if TYPE_CHECKING:
+    # What a node does with its children, or by itself if it has none; empty: unknown, it may do anything.  Nodes of one
+    # flow return the same and take the same time, given what their children do, but for what the other fields say.
+    Flow: TypeAlias = Literal[
+        "",
+        "sequence",  # one child after the other, until one fails
+        "fallback",  # one child after the other, until one succeeds
+        "parallel",  # all children, until so many have succeeded or failed that the others cannot change it
+        "parallel-all",  # all children to their ends, then it counts the failures
+        "choice",  # the first child is the condition: if it succeeds the second, else the third
+        "switch",  # the child whose port `case_1`, `case_2` … equals its port `variable`, else the last
+        "try",  # all but the last as a sequence, the last after a failure; with a port `catch_on_halt`
+        "invert",  # its child, with success and failure exchanged
+        "force-success",  # its child, whose failure becomes a success
+        "force-failure",  # its child, whose success becomes a failure
+        "repeat",  # its child again as long as it succeeds
+        "retry",  # its child again as long as it fails
+        "until-failure",  # its child at every tick, until it fails
+        "for-each",  # its child for each item of a queue, until it fails
+        "timeout",  # its child, which it halts after a time
+        "delay",  # a time, then its child
+        "once",  # its child, for the first time only; with a port `then_skip`
+        "precondition",  # its child, if a script is true
+        "skip-unless-updated",  # its child, if an entry was written
+        "wait-until-updated",  # waits until an entry is written, then its child
+        "succeeds",  # returns SUCCESS within the tick
+        "fails",  # returns FAILURE within the tick
+        "answers",  # returns SUCCESS or FAILURE within the tick
+        "sleeps",  # returns SUCCESS after a time
+    ]
+
+    # What the value of a port is to the flow of its node.  count: how often it runs its child at most; -1: without end.
+    # time: how long it waits, or lets its child run.  successes, failures: how many of its children must succeed or
+    # fail for it to do so; a negative number counts from the end.  otherwise: what it returns without its child.
+    Role: TypeAlias = Literal["", "count", "time", "successes", "failures", "otherwise"]
 
 # What the text of a port is: a value, a script, or the name of a blackboard entry, written without braces.
 Content: TypeAlias = "Literal['value', 'script', 'key']"
@@ -38,6 +74,8 @@ class PortKind(Record):
         required: the engine complains where it is absent, at load or when the node is ticked.
         unit: the unit of a number in it, where one is known.
         doc: one line.
+        role: what its value is to the flow of its node.
+        removes: the node removes the entry that it names.
         literal: the type that a literal is read as, where that is not `type`.
         type_before: a version and the type that every earlier one prints.
     """
@@ -50,6 +88,8 @@ class PortKind(Record):
     required: bool = False
     unit: str | None = None
     content: Content = "value"
+    role: Role = ""
+    removes: bool = False
     literal: str | None = None
     type_before: tuple[str, str] | None = None
 
@@ -64,8 +104,11 @@ class NodeKind(Record):
         semantics: what it does, in a paragraph.
         symbols: its spellings that are no words, the canonical one first.
         aliases: other words for it.
-        reactive: at every tick it begins with its first child again, and halts a running one that it does not reach:
-            two asynchronous children restart each other.
+        flow: what it does with its children.
+        reactive: at every tick it begins with its first child again, and halts a running one that it does not reach.
+        keeps_place: neither a failure nor a halt takes it back to its first child.
+        inspects_children: the engine looks up the tags of its children when it loads it, and refuses what
+            `versions.NO_EXPLICIT_CHILD` and `versions.ONE_ASYNC_SEQUENCE` say.
         late_count: a wrong number of children passes the engine's load and throws when the node is ticked.
         since, until: the first and the last version that has it; None: the newest does.
     """
@@ -79,7 +122,10 @@ class NodeKind(Record):
     symbols: tuple[str, ...] = ()
     aliases: tuple[str, ...] = ()
     execution: Execution = "as-children"
+    flow: Flow = ""
     reactive: bool = False
+    keeps_place: bool = False
+    inspects_children: bool = False
     late_count: bool = False
     since: str = "4.6"
     until: str | None = None
@@ -90,3 +136,15 @@ class NodeKind(Record):
             if port.name == name:
                 return port
         return None
+
+    def port_for(self, role: Role) -> PortKind | None:
+        """Its port of that role."""
+        for port in self.ports:
+            if port.role == role:
+                return port
+        return None
+
+    @property
+    def pauses(self) -> bool:
+        """Whether it runs its children one after the other and returns RUNNING between two that complete at once."""
+        return self.execution == "asynchronous" and self.flow in ("sequence", "fallback")

@@ -7,12 +7,15 @@ nor its placeholders: whether a name that is found nowhere is a custom node is d
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.engine_nodes import ENGINE_NODES
 from btq_lang.catalog.kinds import Category, Direction, Execution, NodeKind, PortKind
 from btq_lang.catalog.versions import at_least
 from btq_lang.catalog.words import KNOWN_WORDS, OLD_PORTS, PLACEHOLDERS, KnownWord
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import Flow
 
 __all__ = [
     "BUILTINS",
@@ -26,9 +29,12 @@ __all__ = [
     "NodeKind",
     "PortKind",
     "available",
+    "inspects_children",
+    "is_by_children",
     "lookup",
     "port_type",
     "spellings",
+    "tags_of",
     "xml_tag",
 ]
 
@@ -38,14 +44,20 @@ def lookup(word: str, quoted: bool = False, child_count: int | None = None) -> N
 
     Args:
         quoted: the kind stood in quotes.
-        child_count: how many children the node has; it chooses among Switch2 to Switch6, the nearest where none fits.
+        child_count: how many children the node has; it chooses among several kinds that share a word, the nearest where
+            none fits.
     """
     if quoted:
         return BUILTINS.get(word)
-    if word == "Switch":
-        cases = min(max((child_count or 0) - 1, 2), 6)
-        return BUILTINS[f"Switch{cases}"]
-    return _BY_SPELLING.get(word)
+    kinds = _BY_SPELLING.get(word)
+    if kinds is None:
+        return None
+    return kinds[0] if len(kinds) == 1 else min(kinds, key=lambda kind: abs(kind.children[0] - (child_count or 0)))
+
+
+def is_by_children(word: str) -> bool:
+    """Whether several kinds share a word, and the number of a node's children chooses among them."""
+    return len(_BY_SPELLING.get(word, ())) > 1
 
 
 def xml_tag(word: str, quoted: bool = False, child_count: int | None = None) -> str:
@@ -67,6 +79,18 @@ def available(kind: NodeKind, version: str) -> bool:
     return at_least(version, kind.since) and (kind.until is None or at_least(kind.until, version))
 
 
+def inspects_children(tag: str) -> bool:
+    """Whether the engine looks up the tags of the children of an element of this tag."""
+    kind = BUILTINS.get(tag)
+    return kind is not None and kind.inspects_children
+
+
+def tags_of(flow: Flow) -> frozenset[str]:
+    """The tags of the built-ins of a flow, and those that older engines have for them."""
+    found = {kind.tag for kind in ENGINE_NODES if kind.flow == flow}
+    return frozenset((*found, *(known.word for known in KNOWN_WORDS.values() if known.replacement in found)))
+
+
 def port_type(port: PortKind, version: str) -> str:
     """The type that a version of the engine gives a port."""
     if port.type_before is not None and not at_least(version, port.type_before[0]):
@@ -77,4 +101,7 @@ def port_type(port: PortKind, version: str) -> str:
 # By XML tag.
 BUILTINS: Final[Mapping[str, NodeKind]] = {kind.tag: kind for kind in ENGINE_NODES}
 
-_BY_SPELLING: Final = {spelling: kind for kind in ENGINE_NODES for spelling in spellings(kind)}
+_BY_SPELLING: Final[dict[str, tuple[NodeKind, ...]]] = {}
+for _kind in ENGINE_NODES:
+    for _word in spellings(_kind):
+        _BY_SPELLING[_word] = (*_BY_SPELLING.get(_word, ()), _kind)

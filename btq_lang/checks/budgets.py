@@ -47,7 +47,7 @@ def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
 def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
     """A Timeout shorter than the shortest way to its child's success."""
     for node in demanded.tree.timeouts:
-        limit = port_seconds(node, "msec") if len(node.children) == 1 else None
+        limit = port_seconds(node) if len(node.children) == 1 else None
         if not limit or node.path != demanded.view.path:
             continue
         (child,) = node.children

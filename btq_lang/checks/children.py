@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.catalog.nodes import is_by_children
 from btq_lang.checks.kinds import CHILDREN, declared_category, model_related
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
 
 _INTEGER = re.compile(r"-?[0-9]{1,18}")
-_SWITCHES = tuple(tag for tag in BUILTINS if tag.startswith("Switch"))
-_THRESHOLDS = {"Parallel": ("success_count", "failure_count"), "ParallelAll": ("max_failures",)}
 
 
 def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -31,7 +29,7 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         least, most = seen.kind.children if seen.kind is not None else CHILDREN[seen.category]
         count = len(seen.node.children)
-        if (least <= count and (most is None or count <= most)) or _is_switch_by_children(seen):
+        if (least <= count and (most is None or count <= most)) or _is_by_children(seen):
             continue
         declared = declared_category(seen)
         if seen.kind is None and seen.node.category is not None and declared not in (None, seen.node.category.raw):
@@ -61,18 +59,18 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A Switch whose cases and children do not match: a child for each case, and one more for the default."""
-    for seen in view.seen.tagged(*_SWITCHES):
+    for seen in view.seen.of_flow("switch"):
         if seen.kind is None:
             continue
         node = seen.node
         count = len(node.children)
-        by_children = _is_switch_by_children(seen)
+        by_children = _is_by_children(seen)
         if by_children and not 3 <= count <= 7:
-            message = f"`Switch` has {count or 'no'} child{'ren' if count != 1 else ''}"
+            message = f"{seen.shown} has {count or 'no'} child{'ren' if count != 1 else ''}"
             note = "the engine supports 2 to 6 cases, each with a child, and one more child for the default"
             yield Diagnostic("switch-cases", node.head.span, message, notes=(note,))
             continue
-        number = count - 1 if by_children else int(seen.kind.tag[6:])
+        number = count - 1 if by_children else seen.kind.children[0] - 1
         wanted = [f"case_{case}" for case in range(1, number + 1)]
         given = {pair.key.text: pair.key for pair in node.attributes}
         extra = [key for name, key in given.items() if is_case(seen, name) and name not in wanted]
@@ -92,27 +90,28 @@ def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def parallel_threshold(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A threshold that the children of a Parallel cannot reach: the engine throws when it is ticked."""
-    for seen in view.seen.tagged(*_THRESHOLDS):
+    for seen in view.seen.of_flow("parallel", "parallel-all"):
         count = len(seen.node.children)
         if seen.kind is None or count == 0:
             continue  # without a child, that is what is told
-        for port in _THRESHOLDS[seen.kind.tag]:
-            value = seen.node.attribute(port)
+        for port in seen.kind.ports:
+            value = seen.node.attribute(port.name) if port.role in ("successes", "failures") else None
             threshold = _integer(value)
             if value is None or threshold is None or threshold <= count:
                 continue
             yield Diagnostic(
                 "parallel-threshold",
                 value.span,
-                f"`{port}` is {threshold}, but the node has only {count} child{'ren' if count > 1 else ''}",
+                f"`{port.name}` is {threshold}, but the node has only {count} child{'ren' if count > 1 else ''}",
                 notes=("the engine throws when the node is ticked; -1 means all children",),
                 fixes=(replace_fix("Write `-1` for all children", value.span, "-1"),),
             )
 
 
-def _is_switch_by_children(seen: SeenNode) -> bool:
+def _is_by_children(seen: SeenNode) -> bool:
+    """Whether its kind is the one that fits the number of its children, as of a `Switch`."""
     kind = seen.node.kind
-    return kind is not None and kind.raw == "Switch"
+    return kind is not None and is_by_children(kind.raw)
 
 
 def _integer(word: Word | None) -> int | None:

@@ -6,13 +6,14 @@ Source: the tick functions of RepeatNode, RetryNode and TimeoutNode in 4.6.2, 4.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import QUANTITY
 
 if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import NodeKind
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.syntax.tree import Entry, Word
@@ -20,16 +21,17 @@ if TYPE_CHECKING:
 
 def count_of_nothing(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A Repeat or a Retry that never runs its child, a Timeout that never ends."""
-    for seen in view.seen.tagged(*_PORTS):
+    for seen in view.seen.of_flow("repeat", "retry", "timeout"):
         if seen.kind is None:
             continue
-        value = seen.node.attribute(_PORTS[seen.kind.tag])
+        port = seen.kind.port_for("time" if seen.flow == "timeout" else "count")
+        value = seen.node.attribute(port.name) if port is not None else None
         number = _number(value) if value is not None else None
         if value is None or number is None:
             continue
-        if seen.kind.tag == "Timeout":
+        if seen.flow == "timeout":
             if number == 0:
-                yield _timeout(value)
+                yield _timeout(seen.kind, value)
         elif number < 1 and number != -1:
             yield _loop(seen, value, number)
 
@@ -45,8 +47,8 @@ def _loop(seen: SeenNode, value: Word, number: float) -> Diagnostic:
     )
 
 
-def _timeout(value: Word) -> Diagnostic:
-    message = f"a Timeout of `{value.raw}` is disabled: it never halts its child"
+def _timeout(kind: NodeKind, value: Word) -> Diagnostic:
+    message = f"a {kind.tag} of `{value.raw}` is disabled: it never halts its child"
     return Diagnostic("count-of-nothing", value.span, message)
 
 
@@ -56,6 +58,3 @@ def _number(value: Word) -> float | None:
         return quantity[0] if quantity is not None else None
     text = value.text
     return int(text) if text.removeprefix("-").isdecimal() and len(text) < 12 else None
-
-
-_PORTS: Final = {"Repeat": "num_cycles", "RetryUntilSuccessful": "num_attempts", "Timeout": "msec"}

@@ -74,8 +74,8 @@ def dead_bound(demanded: Demanded) -> Iterator[Found]:
         success = demanded.budgets.of(above.children[0]).success if above.children else None
         if success is not None and success.low > limit:
             continue
-        message = f"`{most[1]}` is never reached: a Timeout halts {node.shown} after {seconds(limit)}"
-        related = (Related(above.place, "Timeout"),)
+        message = f"`{most[1]}` is never reached: a {above.tag} halts {node.shown} after {seconds(limit)}"
+        related = (Related(above.place, above.tag),)
         yield place, Diagnostic("dead-bound", place.span, message, related=related)
 
 
@@ -217,7 +217,7 @@ def _timeouts(node: SourceNode) -> Iterator[tuple[SourceNode, float]]:
     found = []
     above = node.parent
     while above is not None:
-        if above.tag == "Timeout" and (limit := port_seconds(above, "msec")):
+        if above.flow == "timeout" and (limit := port_seconds(above)):
             found.append((above, limit))
         above = above.parent
     yield from sorted(found, key=lambda each: each[1])
@@ -228,9 +228,8 @@ def _loops(node: SourceNode, top: SourceNode) -> list[tuple[SourceNode, int]]:
     found: list[tuple[SourceNode, int]] = []
     at: SourceNode | None = node.parent if node is not top else None
     while at is not None:
-        port = {"RetryUntilSuccessful": "num_attempts", "Repeat": "num_cycles"}.get(at.tag)
-        if port is not None:
-            count = port_count(at, port)
+        if at.flow in ("retry", "repeat"):
+            count = port_count(at, "count")
             if count is None or count < 1:
                 return []
             found.append((at, count))

@@ -182,8 +182,7 @@ def misspelt_type(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def is_case(seen: SeenNode, key: str) -> bool:
     """Whether an attribute is a case of a Switch; which ones there are depends on the number of its children."""
-    is_switch = seen.kind is not None and seen.kind.tag.startswith("Switch")
-    return is_switch and key.startswith("case_") and key[5:].isdecimal()
+    return seen.flow == "switch" and key.startswith("case_") and key[5:].isdecimal()
 
 
 class KnownPort(Record):

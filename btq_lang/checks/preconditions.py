@@ -16,10 +16,8 @@ if TYPE_CHECKING:
     from btq_lang.checks.view import View
     from btq_lang.syntax.tree import Entry
 
-_SKIPPED_IS_SUCCESS = frozenset(("Sequence", "ReactiveSequence", "AsyncSequence", "SequenceWithMemory", "TryCatch"))
-_TAKE_NO_SKIPPED = frozenset(("IfThenElse", "WhileDoElse"))
 _PASS_SKIPPED_ON = frozenset(
-    ("Inverter", "ForceSuccess", "ForceFailure", "Timeout", "Delay", "Repeat", "RetryUntilSuccessful", "RunOnce")
+    ("invert", "force-success", "force-failure", "timeout", "delay", "repeat", "retry", "once")
 )
 
 
@@ -60,7 +58,7 @@ def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if pair is None or not result(view, seen.node).ever & RUNNING:
             continue
         step = seen
-        while step.parent is not None and _passes_skipped_on(step.parent):
+        while step.parent is not None and step.parent.flow in _PASS_SKIPPED_ON:
             step = step.parent
         parent = step.parent
         if parent is None or not _takes_for_success(parent, step) or _is_choice(parent, step):
@@ -83,10 +81,10 @@ def skipped_condition(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if pair is None:
             continue
         condition = seen
-        while condition.parent is not None and _passes_skipped_on(condition.parent):
+        while condition.parent is not None and condition.parent.flow in _PASS_SKIPPED_ON:
             condition = condition.parent
         parent = condition.parent
-        if condition.index or parent is None or parent.kind is None or parent.kind.tag not in _TAKE_NO_SKIPPED:
+        if condition.index or parent is None or parent.flow != "choice":
             continue
         yield Diagnostic(
             "skipped-condition",
@@ -96,14 +94,9 @@ def skipped_condition(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def _passes_skipped_on(node: SeenNode) -> bool:
-    return node.kind is not None and node.kind.tag in _PASS_SKIPPED_ON
-
-
 def _takes_for_success(parent: SeenNode, step: SeenNode) -> bool:
-    if parent.kind is None or parent.kind.tag not in _SKIPPED_IS_SUCCESS:
-        return False
-    return parent.kind.tag != "TryCatch" or step.index + 1 < len(parent.node.children)
+    is_tried = parent.flow == "try" and step.index + 1 < len(parent.node.children)
+    return is_tried or parent.flow == "sequence"
 
 
 def _is_choice(parent: SeenNode, step: SeenNode) -> bool:

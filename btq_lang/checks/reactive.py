@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.names import is_xml_name, model_name_problem
-from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.catalog.nodes import BUILTINS, NodeKind, inspects_children, lookup
 from btq_lang.catalog.versions import NO_EXPLICIT_CHILD, ONE_ASYNC_SEQUENCE
 from btq_lang.checks.results import result
-from btq_lang.checks.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
+from btq_lang.checks.statuses import GOES_ON, RUNNING, SKIPPED
 from btq_lang.checks.view import View, called
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -22,23 +22,20 @@ from btq_lang.syntax.tree import Entry, Node, Word, quote
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
 
-_REACTIVE = tuple(tag for tag, kind in BUILTINS.items() if kind.reactive)
-_SEQUENCES = frozenset(("Sequence", "AsyncSequence", "SequenceWithMemory"))  # a reactive one asks at every tick itself
 _APART = "put it in a Sequence of its own"
-_BEGIN_WITH_A_CHILD = _SEQUENCES | {"Inverter"}
 
 
 def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A child of a reactive node that runs behind another one that runs: a warning where the other one certainly takes
     more than a tick, a hint where it does if a custom action does."""
-    for seen in view.seen.tagged(*_REACTIVE):
-        if seen.kind is None:
+    for seen in view.seen.of_flow("sequence", "fallback"):
+        if seen.kind is None or not seen.kind.reactive:
             continue
         refused = _second_async_sequence(seen, view.project.target)
         if refused is not None:
             yield refused
             continue
-        goes_on = SKIPPED | (SUCCESS if seen.kind.tag == "ReactiveSequence" else FAILURE)
+        goes_on = SKIPPED | GOES_ON[seen.flow]
         first: Node | None = None
         surely = False
         for child in seen.node.nodes:
@@ -59,11 +56,11 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """
     target = view.project.target
     nodes = view.seen
-    if "ReactiveSequence" not in nodes.by_tag or not NO_EXPLICIT_CHILD.holds(target):
+    if not any(inspects_children(tag) for tag in nodes.by_tag) or not NO_EXPLICIT_CHILD.holds(target):
         return
     for seen in nodes.all:
         parent, category, name = seen.parent, seen.node.category, seen.id
-        if parent is None or parent.kind is None or parent.kind.tag != "ReactiveSequence" or seen.is_subtree:
+        if parent is None or parent.kind is None or not parent.kind.inspects_children or seen.is_subtree:
             continue
         is_forbidden = name is not None and model_name_problem(name.text, target) is not None
         can_be_tag = name is None or (is_xml_name(name.text) and not is_forbidden)
@@ -74,19 +71,19 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
             note = (
                 f"its message `Unknown node type: {category.raw}` refers to the tag: {shown if can_be_tag else _APART}"
             )
-            message = f"the engine refuses <{category.raw}> directly below a ReactiveSequence"
+            message = f"the engine refuses <{category.raw}> directly below a {parent.kind.tag}"
             yield Diagnostic("explicit-in-reactive", category.span, message, notes=(note,))
         elif name is None or can_be_tag or seen.kind is not None or seen.is_placeholder:
             continue
         elif category is not None or not is_forbidden:  # else forbidden-name tells it
-            message = f"the engine refuses `{name.text}` directly below a ReactiveSequence"
+            message = f"the engine refuses `{name.text}` directly below a {parent.kind.tag}"
             note = f"the name is not a valid XML tag, and the engine accepts no other form here: {_APART}"
             yield Diagnostic("explicit-in-reactive", name.span, message, notes=(note,))
 
 
 def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A Fallback at the top of a mission that chooses by a condition and then stays with its choice."""
-    choices = view.seen.tagged("Fallback", "AsyncFallback")
+    choices = [seen for seen in view.seen.of_flow("fallback") if not _begins_again(seen)]
     if not choices or not view.is_main:
         return
     nodes = {id(seen.node): seen for seen in view.nodes}
@@ -102,18 +99,25 @@ def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _second_async_sequence(seen: SeenNode, version: str) -> Diagnostic | None:
-    """The engine looks for these tags alone, and for children alone."""
-    found = [child for child in seen.node.nodes if child.kind is not None and child.kind.text in _ASYNC_SEQUENCE]
-    is_reactive = seen.kind is not None and seen.kind.tag == "ReactiveSequence"
-    if not is_reactive or len(found) < 2 or not ONE_ASYNC_SEQUENCE.holds(version):
+    """The engine looks for this kind alone, and for children alone."""
+    if seen.kind is None or not seen.kind.inspects_children or not ONE_ASYNC_SEQUENCE.holds(version):
         return None
+    kinds = [(child, lookup(child.kind.text)) for child in seen.node.nodes if child.kind is not None]
+    found = [(child, kind) for child, kind in kinds if kind is not None and _is_async_sequence(kind)]
+    if len(found) < 2:
+        return None
+    (first, _), (second, kind), *_ = found
     return Diagnostic(
         "reactive-multiple-async",
-        found[1].head.span,
-        f"the engine refuses a second AsyncSequence in {seen.shown}",
-        related=(Related(Place(found[0].head.span), "first one"),),
+        second.head.span,
+        f"the engine refuses a second {kind.tag} in {seen.shown}",
+        related=(Related(Place(first.head.span), "first one"),),
         severity=Severity.ERROR,
     )
+
+
+def _is_async_sequence(kind: NodeKind) -> bool:
+    return kind.flow == "sequence" and kind.pauses and not kind.keeps_place
 
 
 def _never_gets_further(seen: SeenNode, first: Node, child: Node, surely: bool) -> Diagnostic:
@@ -137,23 +141,29 @@ def _never_gets_further(seen: SeenNode, first: Node, child: Node, surely: bool) 
 def _is_at_the_top(seen: SeenNode) -> bool:
     """Whether nothing but decorators and reactive nodes stands above: elsewhere a choice is part of a longer plan, and
     meant to be made once."""
-    for above in seen.ancestors():
-        if above.category != "Decorator" and not (above.kind is not None and above.kind.reactive):
-            return False
-    return True
+    return all(above.category == "Decorator" or _begins_again(above) for above in seen.ancestors())
+
+
+def _begins_again(seen: SeenNode) -> bool:
+    """Whether it is a sequence or a fallback that begins with its first child at every tick."""
+    return seen.kind is not None and seen.kind.reactive and seen.kind.flow in GOES_ON
 
 
 def _guard(nodes: dict[int, SeenNode], branch: SeenNode) -> SeenNode | None:
     """The condition in front of a branch `-> [condition, …]`; a condition alone is no branch: what follows it in the
     Fallback brings about what it asks for. One in `R->` watches over what runs beside it: it is asked all the while."""
-    if branch.kind is None or branch.kind.tag not in _SEQUENCES or len(branch.node.children) < 2:
+    if not _is_resuming_sequence(branch) or len(branch.node.children) < 2:
         return None
     seen: SeenNode | None = branch
     while seen is not None and seen.category != "Condition":
-        inside = seen is branch or (seen.kind is not None and seen.kind.tag in _BEGIN_WITH_A_CHILD)
+        inside = _is_resuming_sequence(seen) or seen.flow == "invert"
         first = seen.node.children[0] if inside and seen.node.children else None
         seen = nodes.get(id(first))
     return seen
+
+
+def _is_resuming_sequence(seen: SeenNode) -> bool:
+    return seen.flow == "sequence" and not _begins_again(seen)
 
 
 def _can_be_asked_again(view: View, entry: Entry, nodes: dict[int, SeenNode], seen: SeenNode) -> bool:
@@ -184,9 +194,8 @@ def _not_asked_again(seen: SeenNode, guard: SeenNode, branch: Node, *, fixable: 
 
 
 def _reactive(kind: Word) -> str:
+    """The reactive Fallback, written as the one that it replaces."""
+    fallback = next(each for each in BUILTINS.values() if each.flow == "fallback" and each.reactive)
     if kind.quoted:
-        return quote("ReactiveFallback")
-    return "ReactiveFallback" if kind.text.isalpha() else "R?"
-
-
-_ASYNC_SEQUENCE = frozenset(("AsyncSequence", "A->", "A→"))
+        return quote(fallback.tag)
+    return fallback.tag if kind.text.isalpha() else fallback.symbols[0]

@@ -27,13 +27,8 @@ if TYPE_CHECKING:
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
 
-# While a child of these runs no other one does, and what ran before has come to its end.
-_ONE_AT_A_TIME = frozenset(
-    (
-        *("Sequence", "SequenceWithMemory", "AsyncSequence", "Fallback", "AsyncFallback", "IfThenElse"),
-        *(f"Switch{cases}" for cases in range(2, 7)),
-    )
-)
+# While a child of these runs no other one does, and what ran before has come to its end, unless they are reactive.
+_ONE_AT_A_TIME = frozenset(("sequence", "fallback", "choice", "switch"))
 
 
 def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
@@ -99,10 +94,15 @@ def _is_renewed_beside(writing: frozenset[int], carrying: frozenset[int], node: 
     while at is not None:
         if id(at) in writing:
             return True
-        if at.tag not in _ONE_AT_A_TIME and any(id(each) in carrying for each in at.children if each is not below):
+        others = (each for each in at.children if each is not below)
+        if not _runs_one_at_a_time(at) and any(id(each) in carrying for each in others):
             return True
         below, at = at, at.parent
     return False
+
+
+def _runs_one_at_a_time(node: SourceNode) -> bool:
+    return node.kind is not None and node.kind.flow in _ONE_AT_A_TIME and not node.kind.reactive
 
 
 # ---- queries ----

@@ -19,6 +19,7 @@ from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store, on_circle
 
 if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import NodeKind
     from btq_lang.checks.seen import SeenNode
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.workspace import Workspace
@@ -78,7 +79,7 @@ def _of_node(view: View, seen: SeenNode, known: dict[int, Results]) -> Results:
         found = view.ask(_of_tree, seen.id.text) if seen.id is not None and seen.id.text else UNKNOWN
     elif seen.kind is not None and not seen.is_placeholder:
         children = tuple([known.get(id(child), UNKNOWN) for child in seen.node.children])
-        found = _of_builtin(seen.kind.tag, seen.node, children)
+        found = _of_builtin(seen.kind, seen.node, children)
     elif not seen.node.children:
         found = _CUSTOM.get(seen.category or "", _UNKNOWN_LEAF)
     added = 0
@@ -87,20 +88,20 @@ def _of_node(view: View, seen: SeenNode, known: dict[int, Results]) -> Results:
     return Results(found.first | added, found.usual | added, found.ever | added) if added else found
 
 
-def _of_builtin(tag: str, node: Node, children: tuple[Results, ...]) -> Results:
+def _of_builtin(kind: NodeKind, node: Node, children: tuple[Results, ...]) -> Results:
     """Most nodes have no attributes and one of few kinds of children, so the same is not asked again."""
-    key: tuple[str | int, ...] = tag, *[child.first | child.usual << 4 | child.ever << 8 for child in children]
+    key: tuple[str | int, ...] = kind.tag, *[child.first | child.usual << 4 | child.ever << 8 for child in children]
     found = _without_ports.get(key) if not node.attributes else None
     if found is not None:
         return found
-    if tag == "Timeout" and len(children) == 1 and children[0].usual == RUNNING:
+    if kind.flow == "timeout" and len(children) == 1 and children[0].usual == RUNNING:
         first = RUNNING  # who limits the time of an action knows that it takes some
     else:
-        first = of_builtin(tag, node, [child.first for child in children], starting=True)
+        first = of_builtin(kind, node, [child.first for child in children], starting=True)
     found = Results(
         first,
-        of_builtin(tag, node, [child.usual for child in children], starting=True),
-        of_builtin(tag, node, [child.ever for child in children], starting=False),
+        of_builtin(kind, node, [child.usual for child in children], starting=True),
+        of_builtin(kind, node, [child.ever for child in children], starting=False),
     )
     if not node.attributes and len(children) < _FEW:
         _without_ports[key] = found

@@ -30,7 +30,7 @@ def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
             for problem in _problems(view, pair.value.text, expects_value):
                 found = moved(problem, pair.value)
                 if problem.rule == "empty-script":
-                    yield _empty(seen, pair.value, found)
+                    yield _empty(seen, pair.key.text, pair.value, found)
                 elif problem.rule == "script-version" and not project.pinned:
                     pin = f'if you run {project.target}, set `engine = "{project.target}"` in btq.toml'
                     yield replace(found, notes=(*found.notes, pin))
@@ -52,7 +52,7 @@ def _expects_value(seen: SeenNode, pair: Pair) -> bool | None:
     port = seen.kind.port(key) if seen.kind is not None else None
     if port is None or port.content != "script" or (pair.value is not None and is_pointer(pair.value.text)):
         return None
-    return seen.kind is not None and seen.kind.tag != "Script"
+    return seen.flow != "succeeds"  # else the node succeeds whatever the script gives
 
 
 def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic, ...]:
@@ -62,8 +62,9 @@ def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic,
     return check_script(view.script(script), versions=versions, expects_value=expects_value)
 
 
-def _empty(seen: SeenNode, value: Word, found: Diagnostic) -> Diagnostic:
+def _empty(seen: SeenNode, key: str, value: Word, found: Diagnostic) -> Diagnostic:
     """The whole value is the place; the engine runs a Script without any character, and refuses all others."""
-    if seen.kind is not None and seen.kind.tag == "Script" and value.text == "":
+    is_port = seen.kind is not None and seen.kind.port(key) is not None
+    if is_port and seen.flow == "succeeds" and value.text == "":
         return replace(found, span=value.span, message="empty script", severity=Severity.WARNING)
     return replace(found, span=value.span)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.workspace.placeholders import is_placeholder
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import NodeKind
+    from btq_lang.catalog.kinds import Flow, NodeKind
     from btq_lang.syntax.tree import Model, Node, Tree, Word
 
 
@@ -76,6 +76,11 @@ class SeenNode:
         self.asked: Final = asked
 
     @property
+    def flow(self) -> Flow:
+        """What the built-in does with its children; empty for a custom node."""
+        return self.kind.flow if self.kind is not None else ""
+
+    @property
     def shown(self) -> str:
         """The node as a message names it."""
         return f"`{self.node.head.text}`"
@@ -134,9 +139,9 @@ class SeenNodes:
             if seen.kind is not None:
                 self.by_tag.setdefault(seen.kind.tag, []).append(seen)
 
-    def tagged(self, *tags: str) -> list[SeenNode]:
-        """The built-ins with one of these tags, tag by tag."""
-        return [seen for tag in tags for seen in self.by_tag.get(tag, ())]
+    def of_flow(self, *flows: Flow) -> list[SeenNode]:
+        """The built-ins of these flows, tag by tag."""
+        return [seen for same in self.by_tag.values() if same[0].flow in flows for seen in same]
 
 
 def _is_marked(node: Node) -> bool:

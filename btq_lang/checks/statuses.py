@@ -6,11 +6,14 @@ a missing or surplus child is one that can return anything.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 if TYPE_CHECKING:
-    from btq_lang.syntax.tree import Node
+    from btq_lang.catalog.kinds import Flow, NodeKind, Role
+    from btq_lang.syntax.tree import Node, Word
+
+    _Decorator: TypeAlias = Callable[[NodeKind, Node, int, bool], int]
 
 SUCCESS: Final = 1
 FAILURE: Final = 2
@@ -19,45 +22,49 @@ RUNNING: Final = 8
 ANYTHING: Final = SUCCESS | FAILURE | SKIPPED | RUNNING
 
 
-def of_builtin(tag: str, node: Node, children: Sequence[int], starting: bool) -> int:
+def of_builtin(kind: NodeKind, node: Node, children: Sequence[int], starting: bool) -> int:
     """The statuses that a built-in can return.
 
     Args:
-        tag: its tag.
         node: where its ports are.
         children: what each of its children can return.
         starting: the sets are those of the tick that starts the node; else those of any tick.
     """
-    if tag in _LEAVES:
-        return _LEAVES[tag]
-    if tag == "Sleep":
-        return RUNNING if starting and literal(node, "msec") != 0 else SUCCESS | RUNNING
-    if tag in _IN_ORDER:
-        goes_on, pauses = _IN_ORDER[tag]
-        return _in_order(children, goes_on, pauses, starting)
-    if tag in _DECORATORS:
-        return _DECORATORS[tag](node, children[0] if len(children) == 1 else ANYTHING, starting)
-    if tag.startswith("Switch") and children:
+    flow = kind.flow
+    if flow in _LEAVES:
+        return _LEAVES[flow]
+    if flow == "sleeps":
+        return RUNNING if starting and _number(kind, node, "time") != 0 else SUCCESS | RUNNING
+    if flow in GOES_ON:
+        return _in_order(children, GOES_ON[flow], kind.pauses, starting)
+    if flow in _DECORATORS:
+        return _DECORATORS[flow](kind, node, children[0] if len(children) == 1 else ANYTHING, starting)
+    if flow == "switch" and children:
         return _any_of(children if node.attribute("variable") is not None else children[-1:])
-    if tag in ("IfThenElse", "WhileDoElse") and len(children) in (2, 3):
+    if flow == "choice" and len(children) in (2, 3):
         return _if_then_else(children)
-    if tag == "TryCatch" and len(children) > 1:
+    if flow == "try" and len(children) > 1:
         tried = _in_order(children[:-1], SUCCESS, False, starting)
         return tried | (children[-1] & RUNNING if tried & FAILURE else 0)
-    if tag in ("Parallel", "ParallelAll") and children:
-        return _parallel(node, children)
+    if flow in ("parallel", "parallel-all") and children:
+        return _parallel(kind, node, children)
     return ANYTHING
 
 
-def literal(node: Node, port: str) -> int | None:
-    """The whole number that is written as the value of a port; None where another thing is, or nothing."""
-    value = node.attribute(port)
+def _number(kind: NodeKind, node: Node, role: Role) -> int | None:
+    """The whole number that is written as the value of the port; None where another thing is, or nothing."""
+    value = _written(kind, node, role)
     text = value.text if value is not None else ""
     return int(text) if text.removeprefix("-").isdecimal() and len(text) < 12 else None
 
 
+def _written(kind: NodeKind, node: Node, role: Role) -> Word | None:
+    port = kind.port_for(role)
+    return node.attribute(port.name) if port is not None else None
+
+
 def _in_order(children: Sequence[int], goes_on: int, pauses: bool, starting: bool) -> int:
-    """A Sequence (it goes on after SUCCESS) or a Fallback (after FAILURE).
+    """A sequence goes on after SUCCESS, a fallback after FAILURE.
 
     `pauses`: it returns RUNNING between two children that complete at once.
     """
@@ -95,7 +102,7 @@ def _if_then_else(children: Sequence[int]) -> int:
     return found if not condition & SKIPPED else ANYTHING
 
 
-def _parallel(node: Node, children: Sequence[int]) -> int:
+def _parallel(kind: NodeKind, node: Node, children: Sequence[int]) -> int:
     """Without thresholds all must succeed and one may fail; with some, anything that a child completes with."""
     found = _any_of(children)
     everyone = ANYTHING
@@ -103,22 +110,22 @@ def _parallel(node: Node, children: Sequence[int]) -> int:
         everyone &= child | (SUCCESS if child & SKIPPED else 0)
     if not found & (SUCCESS | FAILURE | SKIPPED):
         return found
-    if any(node.attribute(port) is not None for port in ("success_count", "failure_count", "max_failures")):
+    if any(_written(kind, node, role) is not None for role in ("successes", "failures")):
         return found | SUCCESS | FAILURE
     succeeds = SUCCESS if everyone & SUCCESS else 0
     return (found & (FAILURE | RUNNING)) | succeeds | (SKIPPED if found & SKIPPED else 0)
 
 
-def _repeat(node: Node, child: int, starting: bool) -> int:
-    return _again(child, SUCCESS, literal(node, "num_cycles"), starting)
+def _repeat(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
+    return _again(child, SUCCESS, _number(kind, node, "count"), starting)
 
 
-def _retry(node: Node, child: int, starting: bool) -> int:
-    return _again(child, FAILURE, literal(node, "num_attempts"), starting)
+def _retry(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
+    return _again(child, FAILURE, _number(kind, node, "count"), starting)
 
 
 def _again(child: int, repeats: int, count: int | None, starting: bool) -> int:
-    """Repeat (it repeats after SUCCESS) or RetryUntilSuccessful (after FAILURE); -1 is without end."""
+    """It repeats after SUCCESS or after FAILURE; a count of -1 is without end."""
     if count is not None and (count == 0 or count < -1):
         return repeats | SKIPPED
     if count == 1 or not child & repeats:
@@ -128,93 +135,77 @@ def _again(child: int, repeats: int, count: int | None, starting: bool) -> int:
     return found if count is None or (count > 0 and counted) else found & ~repeats
 
 
-def _inverter(node: Node, child: int, starting: bool) -> int:
+def _invert(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
     found = child & ~(SUCCESS | FAILURE)
     return found | (FAILURE if child & SUCCESS else 0) | (SUCCESS if child & FAILURE else 0)
 
 
-def _force_success(node: Node, child: int, starting: bool) -> int:
+def _force_success(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
     return child & ~FAILURE | (SUCCESS if child & FAILURE else 0)
 
 
-def _force_failure(node: Node, child: int, starting: bool) -> int:
+def _force_failure(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
     return child & ~SUCCESS | (FAILURE if child & SUCCESS else 0)
 
 
-def _keep_running(node: Node, child: int, starting: bool) -> int:
+def _until_failure(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
     return child & ~SUCCESS | (RUNNING if child & (SUCCESS | SKIPPED) else 0)
 
 
-def _timeout(node: Node, child: int, starting: bool) -> int:
+def _timeout(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
     return child | (FAILURE if child & RUNNING and not starting else 0)
 
 
-def _delay(node: Node, child: int, starting: bool) -> int:
-    return RUNNING if starting and literal(node, "delay_msec") != 0 else child | RUNNING
+def _delay(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
+    return RUNNING if starting and _number(kind, node, "time") != 0 else child | RUNNING
 
 
-def _run_once(node: Node, child: int, starting: bool) -> int:
+def _once(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
     """Once it has run it is skipped, or returns a result again that it had at any tick."""
     skips = node.attribute("then_skip") is None
     return child | (SKIPPED if skips else ANYTHING)
 
 
-def _precondition(node: Node, child: int, starting: bool) -> int:
-    return child | _status(node, "else", FAILURE)
+def _precondition(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
+    return child | _otherwise(kind, node)
 
 
-def _loop(node: Node, child: int, starting: bool) -> int:
-    return child | RUNNING | _status(node, "if_empty", SUCCESS)
+def _for_each(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
+    return child | RUNNING | _otherwise(kind, node)
 
 
-def _skip_unless_updated(node: Node, child: int, starting: bool) -> int:
+def _skip_unless_updated(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
     return child | SKIPPED
 
 
-def _wait_value_update(node: Node, child: int, starting: bool) -> int:
+def _wait_until_updated(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
     return child | RUNNING
 
 
-def _status(node: Node, port: str, default: int) -> int:
-    value = node.attribute(port)
-    return default if value is None else _STATUSES.get(value.text, ANYTHING)
+def _otherwise(kind: NodeKind, node: Node) -> int:
+    """What it returns without its child."""
+    port = kind.port_for("otherwise")
+    value = node.attribute(port.name) if port is not None else None
+    text = value.text if value is not None else port.default if port is not None else None
+    return _STATUSES.get(text or "", ANYTHING)
 
 
 _STATUSES: Final = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED, "RUNNING": RUNNING}
-_LEAVES: Final = {
-    "AlwaysSuccess": SUCCESS,
-    "AlwaysFailure": FAILURE,
-    "Script": SUCCESS,
-    "SetBlackboard": SUCCESS,
-    "UnsetBlackboard": SUCCESS,
-    "ScriptCondition": SUCCESS | FAILURE,
-    "WasEntryUpdated": SUCCESS | FAILURE,
-}
-# After which status it goes on to the next child, and whether it returns RUNNING in between.
-_IN_ORDER: Final = {
-    "Sequence": (SUCCESS, False),
-    "ReactiveSequence": (SUCCESS, False),
-    "AsyncSequence": (SUCCESS, True),
-    "SequenceWithMemory": (SUCCESS, True),
-    "Fallback": (FAILURE, False),
-    "ReactiveFallback": (FAILURE, False),
-    "AsyncFallback": (FAILURE, True),
-}
-_DECORATORS: Final[dict[str, Callable[[Node, int, bool], int]]] = {
-    "Inverter": _inverter,
-    "ForceSuccess": _force_success,
-    "ForceFailure": _force_failure,
-    "KeepRunningUntilFailure": _keep_running,
-    "Repeat": _repeat,
-    "RetryUntilSuccessful": _retry,
-    "Timeout": _timeout,
-    "Delay": _delay,
-    "RunOnce": _run_once,
-    "Precondition": _precondition,
-    "LoopInt": _loop,
-    "LoopBool": _loop,
-    "LoopDouble": _loop,
-    "LoopString": _loop,
-    "SkipUnlessUpdated": _skip_unless_updated,
-    "WaitValueUpdate": _wait_value_update,
+_LEAVES: Final[Mapping[Flow, int]] = {"succeeds": SUCCESS, "fails": FAILURE, "answers": SUCCESS | FAILURE}
+# After which status of a child the next one is ticked.
+GOES_ON: Final[Mapping[Flow, int]] = {"sequence": SUCCESS, "fallback": FAILURE}
+_DECORATORS: Final[Mapping[Flow, _Decorator]] = {
+    "invert": _invert,
+    "force-success": _force_success,
+    "force-failure": _force_failure,
+    "until-failure": _until_failure,
+    "repeat": _repeat,
+    "retry": _retry,
+    "timeout": _timeout,
+    "delay": _delay,
+    "once": _once,
+    "precondition": _precondition,
+    "for-each": _for_each,
+    "skip-unless-updated": _skip_unless_updated,
+    "wait-until-updated": _wait_until_updated,
 }

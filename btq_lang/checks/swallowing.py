@@ -88,17 +88,17 @@ def _in_tree(node: SourceNode) -> Swallower | None:
 
 def _swallows(parent: SourceNode, child: SourceNode) -> str | None:
     """What a node does when this child of it fails, if it does not fail, too."""
-    tag = parent.tag
+    flow = parent.flow
     last = child.index == len(parent.node.children) - 1
-    if tag in ("Fallback", "AsyncFallback", "ReactiveFallback"):
+    if flow == "fallback":
         return None if last else "continues with its next child"
-    if tag == "RetryUntilSuccessful":
-        return None if port_count(parent, "num_attempts") == 1 else "tries again"
-    if tag in ("ForceSuccess", "Inverter"):
+    if flow == "retry":
+        return None if port_count(parent, "count") == 1 else "tries again"
+    if flow in ("force-success", "invert"):
         return "succeeds"
-    if tag in ("IfThenElse", "WhileDoElse") and child.index == 0:
+    if flow == "choice" and child.index == 0:
         return "runs its third child" if len(parent.node.children) == 3 else None
-    if tag in ("Parallel", "ParallelAll") and _failures_needed(parent) > 1:
+    if flow in ("parallel", "parallel-all") and _failures_needed(parent) > 1:
         return "continues: it fails only after more than one failure"
     return None
 
@@ -106,12 +106,13 @@ def _swallows(parent: SourceNode, child: SourceNode) -> str | None:
 def _failures_needed(parallel: SourceNode) -> int:
     """How many children must fail for it to fail; 1 where that is unknown."""
     n = len(parallel.node.children)
-    if parallel.tag == "ParallelAll":
-        most = port_count(parallel, "max_failures", 1)
-        return 1 if most is None else most if most >= 0 else n + most + 1
-    wanted, failures = port_count(parallel, "success_count", -1), port_count(parallel, "failure_count", 1)
-    if wanted is None or failures is None:
+    wanted, failures = port_count(parallel, "successes"), port_count(parallel, "failures")
+    if failures is None:
+        return 1
+    failures = failures if failures >= 0 else n + failures + 1
+    if parallel.flow == "parallel-all":
+        return failures
+    if wanted is None:
         return 1
     wanted = wanted if wanted >= 0 else n + wanted + 1
-    failures = failures if failures >= 0 else n + failures + 1
     return min(failures, n - wanted + 1)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks.results import UNKNOWN, result, results
-from btq_lang.checks.statuses import FAILURE, SKIPPED, SUCCESS
+from btq_lang.checks.statuses import FAILURE, GOES_ON, SKIPPED, SUCCESS
 from btq_lang.checks.view import View, called
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, Tag
 from btq_lang.syntax.tree import Entry, Node, Verbatim
@@ -17,31 +17,20 @@ from btq_lang.util.text import Span
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
 
-_GOES_ON = {
-    "Sequence": SUCCESS,
-    "ReactiveSequence": SUCCESS,
-    "AsyncSequence": SUCCESS,
-    "SequenceWithMemory": SUCCESS,
-    "Fallback": FAILURE,
-    "ReactiveFallback": FAILURE,
-    "AsyncFallback": FAILURE,
-}
-_BY_CONDITION = frozenset(("IfThenElse", "WhileDoElse"))
-
 
 def unreachable_child(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A child that can never run; told once for all those behind one place."""
     for seen in view.nodes:
-        if len(seen.node.children) < 2 or seen.kind is None:
+        if len(seen.node.children) < 2:
             continue
-        tag = seen.kind.tag
-        if tag in _GOES_ON:
-            found = _behind(view, entry, seen, seen.node.children, _GOES_ON[tag])
-        elif tag == "TryCatch":
-            found = _in_try_catch(view, entry, seen)
-        elif tag in _BY_CONDITION:
+        flow = seen.flow
+        if flow in GOES_ON:
+            found = _behind(view, entry, seen, seen.node.children, GOES_ON[flow])
+        elif flow == "try":
+            found = _in_try(view, entry, seen)
+        elif flow == "choice":
             found = _by_condition(view, entry, seen)
-        elif tag.startswith("Switch"):
+        elif flow == "switch":
             found = _in_switch(seen)
         else:
             continue
@@ -61,7 +50,7 @@ def _behind(
     return None
 
 
-def _in_try_catch(view: View, entry: Entry, seen: SeenNode) -> Diagnostic | None:
+def _in_try(view: View, entry: Entry, seen: SeenNode) -> Diagnostic | None:
     """The last child is the one that cleans up, after a failure and perhaps after a halt."""
     *tried, last = seen.node.children
     found = _behind(view, entry, seen, tuple(tried), SUCCESS)

@@ -20,6 +20,7 @@ from btq_lang.util.record import Record
 from btq_lang.workspace import inputs
 
 if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import PortKind
     from btq_lang.requirements.model import SourceNode
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
@@ -78,14 +79,14 @@ def _entries_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts
                 pointers.setdefault(key.removeprefix("@"), []).append((node, pair, key[:1] == "@"))
             if _is_script(node, port):
                 writes += ((node, name) for name in _assigned(text))
-            elif port == "output_key" and node.tag == "SetBlackboard":
+            elif (built_in := _names_entry(node, port)) is not None and built_in.direction != "input":
                 writes.append((node, text.strip("{}")))
                 is_open = is_open or is_entry
             elif is_entry:
                 may_write = _writes(view, node, port)
                 if may_write is not False:
                     (writes if may_write else perhaps).append((node, key))
-            elif node.tag == "UnsetBlackboard" or (node.kind is None and text.isidentifier()):
+            elif built_in.removes if built_in is not None else node.kind is None and text.isidentifier():
                 mentioned.add(text.removeprefix("@"))
     every = (*writes, *perhaps)
     written = frozenset([name.removeprefix("@") for _, name in every])
@@ -146,6 +147,12 @@ def _is_script(node: SourceNode, key: str) -> bool:
     attribute = RESERVED_ATTRIBUTES.get(key)
     port = node.kind.port(key) if node.kind is not None else None
     return (attribute is not None and attribute.is_script) or (port is not None and port.content == "script")
+
+
+def _names_entry(node: SourceNode, key: str) -> PortKind | None:
+    """The port of a built-in whose value is the name of an entry."""
+    port = node.kind.port(key) if node.kind is not None else None
+    return port if port is not None and port.content == "key" else None
 
 
 def _assigned(script: str) -> Iterator[str]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.btcpp.around import LIMITING, WATCHING
 from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.evidence.history import Nearby, near
 from btq_lang.evidence.model import CLOCK_SET_BACK, ROOT
@@ -328,6 +329,6 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
 
 # The guards that stop a node for a clause; the others around it belong to other clauses.
 _STOPPED_BY: Final = {
-    "Timeout": words(enforced="limit"),
-    "ReactiveSequence": words(limits=("success",), enforced="guard"),
+    LIMITING: words(enforced="limit"),
+    WATCHING: words(limits=("success",), enforced="guard"),
 }

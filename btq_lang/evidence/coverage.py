@@ -6,6 +6,7 @@ from array import array
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.nodes import tags_of
 from btq_lang.evidence.verdicts import NodeSummary, Repeats
 
 if TYPE_CHECKING:
@@ -141,4 +142,4 @@ def _percentile(ordered: list[int], percent: int) -> float | None:
 
 
 _RECOVERY: Final = "RecoveryNode"
-_RETRYING: Final = frozenset(("RetryUntilSuccessful", "RetryUntilSuccesful", _RECOVERY))
+_RETRYING: Final = frozenset((*tags_of("retry"), _RECOVERY))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.btcpp.around import EVALUATING
 from btq_lang.catalog.verbs import words
 from btq_lang.evidence.model import ROOT
 from btq_lang.util.record import Record
@@ -68,7 +69,7 @@ class Guards:
                 above = tree.parent[above]
             self._around[uid] = tuple(around)
             for guard in self._guards:
-                if self._guards[guard].kind == "ScriptCondition" and tree.parent[guard] in around:
+                if self._guards[guard].kind == EVALUATING and tree.parent[guard] in around:
                     verb = tree.nodes[tree.parent[guard]].path.rpartition("_")[2]
                     if verb in _REFUSING:
                         self._refuse.setdefault(guard, (verb, []))[1].append(uid)

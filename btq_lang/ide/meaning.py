@@ -166,7 +166,7 @@ def _spellings(wanted: Subject) -> tuple[str, ...]:
     """All words by which a subject can be named; none where they cannot be listed."""
     if wanted.what is What.NODE and wanted.home == ENGINE:
         kind = lookup(wanted.name, quoted=True)
-        return (*spellings(kind), "Switch") if kind is not None else ()
+        return spellings(kind) if kind is not None else ()
     if wanted.what in (What.QUALITY, What.INCLUDE) or _ESCAPED.search(wanted.name):
         return ()
     return (wanted.name,)

@@ -10,7 +10,7 @@ from functools import lru_cache
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import beginning
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS, NodeKind, available, lookup
+from btq_lang.catalog.nodes import BUILTINS, NodeKind, available, is_by_children, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.qualities import find as find_quality
 from btq_lang.catalog.qualities import parts as quality_parts
@@ -300,7 +300,6 @@ def nodes(workspace: Workspace, path: str) -> Iterator[Proposal]:
         if name not in seen:
             yield Proposal(name, "node", "custom node", written(name), None, "", name)
     yield from _builtins(workspace.project.target)
-    yield Proposal("Switch", "node", BUILTINS["Switch2"].doc, "Switch", _SWITCH, "", "Switch")
     yield Proposal("SubTree", "keyword", "run another tree", "SubTree")
     for category in ("Action", "Condition", "Decorator", "Control"):
         yield Proposal(category, "keyword", "a custom node, with its category", category)
@@ -531,8 +530,10 @@ def _model(workspace: Workspace, found: Definition, item: Model, include: str) -
 
 @lru_cache(2)  # a project has one version of the engine
 def _builtins(target: str) -> tuple[Proposal, ...]:
-    kinds = [kind for kind in BUILTINS.values() if available(kind, target) and not kind.tag.startswith("Switch")]
-    return tuple([one for kind in kinds for one in _builtin(kind)])
+    kinds = [kind for kind in BUILTINS.values() if available(kind, target)]
+    shared = {word: kind for kind in reversed(kinds) for word in kind.aliases if is_by_children(word)}
+    own = (one for kind in kinds if shared.keys().isdisjoint(kind.aliases) for one in _builtin(kind))
+    return (*own, *(_by_children(word, kind) for word, kind in shared.items()))
 
 
 def _builtin(kind: NodeKind) -> Iterator[Proposal]:
@@ -547,6 +548,12 @@ def _builtin(kind: NodeKind) -> Iterator[Proposal]:
         snippet = _with_ports(word, needed) or (escaped(word) if below else None)
         named = f"{kind.tag} {word}" if word in kind.symbols else ""
         yield Proposal(word, "node", kind.doc, word, f"{snippet}{below}" if snippet else None, named, kind.tag)
+
+
+def _by_children(word: str, smallest: NodeKind) -> Proposal:
+    """A word that several kinds share, in their place."""
+    snippet = f"{word} {_CASES}" if smallest.flow == "switch" else None
+    return Proposal(word, "node", smallest.doc, word, snippet, "", word)
 
 
 def _with_ports(head: str, needed: Iterable[NodePort]) -> str | None:
@@ -580,8 +587,8 @@ _TYPES = (
     *("string", "bool", "int", "double", "float", "int64_t", "uint64_t", "std::vector<double>", "std::vector<string>"),
 )
 _COMPOUNDS = ("m/s", "m/s^2", "rad/s", "deg/s", "1/s", "%/h", "kB/s")
-_SWITCH = (
-    'Switch (variable = {${1:key}\\} case_1 = "${2:first}" case_2 = "${3:second}")\n    ${4:First}\n    ${5:Second}\n'
+_CASES = (
+    '(variable = {${1:key}\\} case_1 = "${2:first}" case_2 = "${3:second}")\n    ${4:First}\n    ${5:Second}\n'
     "    ${0:Otherwise}"
 )
 _ITEMS = (

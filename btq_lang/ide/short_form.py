@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TypeAlias
 
+from btq_lang.catalog.nodes import PLACEHOLDERS
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.ide.block import node_at
@@ -43,7 +44,7 @@ def short_form(
 
 def _placeholders(workspace: Workspace, path: str, found: Sequence[Diagnostic] | None) -> _Rewrites:
     """How the rule about classic placeholders rewrites them, by the places where they begin."""
-    if "ScriptAction" not in workspace.files[path].text and "ScriptCondition" not in workspace.files[path].text:
+    if not any(word in workspace.files[path].text for word in PLACEHOLDERS):
         return {}
     return {
         one.span.start: tuple(Edit(change.place.span, change.text) for change in one.fixes[0].changes)

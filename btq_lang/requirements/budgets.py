@@ -291,16 +291,16 @@ def _success_of(node: SourceNode, parts: list[Success]) -> Success | None:
     first = parts[0]
     together = tuple(part for each in parts for part in each.parts)
     missed = fsum([1.0 - part.probability for part in parts])
-    if node.tag in ("Sequence", "AsyncSequence", "SequenceWithMemory"):
+    if node.flow == "sequence" and not (node.kind is not None and node.kind.reactive):
         return Success(fsum([part.seconds for part in parts]), max(0.0, 1.0 - missed), together)
-    if node.tag == "Parallel" and port_count(node, "success_count", -1) in (-1, len(parts)):
+    if node.flow == "parallel" and port_count(node, "successes") in (-1, len(parts)):
         return Success(max(part.seconds for part in parts), max(0.0, 1.0 - missed), together)
-    if node.tag == "Repeat" and (count := port_count(node, "num_cycles") or 0) > 0:
+    if node.flow == "repeat" and (count := port_count(node, "count") or 0) > 0:
         each = tuple((child, count * share) for child, share in first.parts)
         return Success(first.seconds * count, max(0.0, 1.0 - count * missed), each)
-    if node.tag == "Timeout" and (limit := port_seconds(node, "msec")) is not None:
+    if node.flow == "timeout" and (limit := port_seconds(node)) is not None:
         return first if first.seconds <= limit or limit == 0 else None
-    if node.tag == "Delay" and (delay := port_seconds(node, "delay_msec")) is not None:
+    if node.flow == "delay" and (delay := port_seconds(node)) is not None:
         return replace(first, seconds=first.seconds + delay)
     return None
 

@@ -1,15 +1,15 @@
-"""How long a node takes when it is known how long its children do: a rule for each built-in.
+"""How long a node takes when it is known how long its children do: a rule for each flow.
 
 One invariant: no run of the engine takes less or more than the ranges say, if its children keep to theirs.  Two things
-are left out: the time between two ticks, and that the variable of a Switch changes while a case runs.  It knows no
+are left out: the time between two ticks, and that the variable of a switch changes while a case runs.  It knows no
 requirements: `budgets` brings them in.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import fsum, inf
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.units import to_si
 from btq_lang.requirements.durations import (
@@ -29,7 +29,11 @@ from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import Flow, Role
     from btq_lang.requirements.model import SourceNode
+    from btq_lang.syntax.tree import Word
+
+    _Rule: TypeAlias = Callable[["SourceNode", Sequence["Budget"]], "Budget | None"]
 
 
 class Budget(Record):
@@ -83,11 +87,11 @@ def compose(node: SourceNode, children: Sequence[Budget]) -> Budget:
     Args:
         children: one for each, verbatim XML too; their terms are the children themselves.
     """
-    if node.tag in _LEAVES:
-        return _LEAVES[node.tag]
-    if node.tag == "Sleep":
+    if node.flow in _LEAVES:
+        return _LEAVES[node.flow]
+    if node.flow == "sleeps":
         return _sleep(node)
-    rule = _RULES.get("Switch" if node.tag.startswith("Switch") else node.tag)
+    rule = _RULES.get(node.flow)
     if rule is None or not children or (node.category == "Decorator" and len(children) != 1):
         return unknown("is a node of unknown duration")
     found = rule(node, children)
@@ -103,9 +107,9 @@ def unknown(reason: str) -> Budget:
     return Budget(ANY, ANY, ANY, reason=reason, endless=True)
 
 
-def port_seconds(node: SourceNode, port: str) -> float | None:
-    """The milliseconds that are written as the value of a port, in seconds; None where another thing is, or nothing."""
-    word = node.node.attribute(port)
+def port_seconds(node: SourceNode) -> float | None:
+    """The milliseconds that are written as its time, in seconds; None where another thing is, or nothing."""
+    word, _ = _port(node, "time")
     if word is None:
         return None
     quantity = parse_quantity(word.text) if word.kind == QUANTITY else None
@@ -115,26 +119,35 @@ def port_seconds(node: SourceNode, port: str) -> float | None:
     return int(word.text) / 1000 if word.text.isdecimal() and len(word.text) < 12 else None
 
 
-def port_count(node: SourceNode, port: str, default: int | None = None) -> int | None:
-    """The whole number that is written as the value of a port; None where another thing is."""
-    word = node.node.attribute(port)
-    if word is None:
-        return default
-    text = word.text
+def port_count(node: SourceNode, role: Role) -> int | None:
+    """The whole number that is written as the value of the port, or is its default; None where another thing is."""
+    word, text = _port(node, role)
+    if word is not None:
+        text = word.text
     return int(text) if text.removeprefix("-").isdecimal() and len(text) < 12 else None
+
+
+def _port(node: SourceNode, role: Role) -> tuple[Word | None, str]:
+    """The value of the port, and its default."""
+    port = node.kind.port_for(role) if node.kind is not None else None
+    return (None, "") if port is None else (node.node.attribute(port.name), port.default or "")
 
 
 # ---- control nodes ----
 
 
 def _sequence(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    if node.kind is not None and node.kind.keeps_place:
+        return _with_memory(children)
     go, end, skip = _in_order([(each.success, each.failure, each.skip) for each in children])
-    return _made(children, go, end, skip)
+    found = _made(children, go, end, skip)
+    return _reactive(children, found, "failure") if node.kind is not None and node.kind.reactive else found
 
 
 def _fallback(node: SourceNode, children: Sequence[Budget]) -> Budget:
     go, end, skip = _in_order([(each.failure, each.success, each.skip) for each in children])
-    return _made(children, end, go, skip)
+    found = _made(children, end, go, skip)
+    return _reactive(children, found, "success") if node.kind is not None and node.kind.reactive else found
 
 
 def _in_order(
@@ -149,8 +162,8 @@ def _in_order(
     return passed, ended, total(skip for _, _, skip in parts)
 
 
-def _with_memory(node: SourceNode, children: Sequence[Budget]) -> Budget:
-    """As a Sequence, but after a failure or a halt it begins with the child that failed: any part of it may be done."""
+def _with_memory(children: Sequence[Budget]) -> Budget:
+    """As a sequence, but after a failure or a halt it begins with the child that failed: any part of it may be done."""
     go, end, skip = _in_order([(each.success, each.failure, each.skip) for each in children])
     last = hull(children[-1].success, children[-1].skip)
     first = min((each.failure.low for each in children if each.failure is not None), default=0.0)
@@ -162,17 +175,7 @@ def _with_memory(node: SourceNode, children: Sequence[Budget]) -> Budget:
     )
 
 
-def _reactive_sequence(node: SourceNode, children: Sequence[Budget]) -> Budget:
-    found = _sequence(node, children)
-    return _reactive(node, children, found, "failure")
-
-
-def _reactive_fallback(node: SourceNode, children: Sequence[Budget]) -> Budget:
-    found = _fallback(node, children)
-    return _reactive(node, children, found, "success")
-
-
-def _reactive(node: SourceNode, children: Sequence[Budget], found: Budget, ends: str) -> Budget:
+def _reactive(children: Sequence[Budget], found: Budget, ends: str) -> Budget:
     """A child in front of the one that runs is asked at every tick, and may end the whole."""
     waiting = [index for index, child in enumerate(children) if child.waits]
     if len(waiting) > 1:
@@ -196,11 +199,11 @@ def _reactive(node: SourceNode, children: Sequence[Budget], found: Budget, ends:
 def _parallel(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
     """Counts how many have succeeded and how many have failed, and is done when one of both is enough."""
     n = len(children)
-    wanted, failures = port_count(node, "success_count", -1), port_count(node, "failure_count", 1)
+    wanted, failures = port_count(node, "successes"), port_count(node, "failures")
     everything = [child.running for child in children]
     wanted = n + wanted + 1 if wanted is not None and wanted < 0 else wanted
     failures = n + failures + 1 if failures is not None and failures < 0 else failures
-    asks_again = port_count(node, "success_count", -1) not in range(-n, 0)
+    asks_again = port_count(node, "successes") not in range(-n, 0)
     if (with_skips := _with_skips(node, children, asks_again)) is not None:
         return with_skips
     if wanted is None or failures is None:
@@ -248,7 +251,7 @@ def _nth(children: Sequence[Budget], outcome: str, count: int) -> float:
 def _parallel_all(node: SourceNode, children: Sequence[Budget]) -> Budget:
     """Waits for all of them, then counts the failures."""
     n = len(children)
-    most = port_count(node, "max_failures", 1)
+    most = port_count(node, "failures")
     most = n + most + 1 if most is not None and most < 0 else most
     if (with_skips := _with_skips(node, children, False)) is not None:
         return with_skips
@@ -267,9 +270,14 @@ def _slowest(ranges: Sequence[Range]) -> Range:
     return replace(max(ranges, key=lambda each: each.high), low=max(each.low for each in ranges))
 
 
-def _if_then_else(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
+def _choice(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
     if len(children) not in (2, 3):
         return None
+    found = _if_then_else(children)
+    return _rechecking(children, found) if node.kind is not None and node.kind.reactive else found
+
+
+def _if_then_else(children: Sequence[Budget]) -> Budget:
     condition, then = children[0], children[1]
     otherwise = children[2] if len(children) == 3 else Budget(None, ZERO, None, False)
     return replace(
@@ -283,11 +291,8 @@ def _if_then_else(node: SourceNode, children: Sequence[Budget]) -> Budget | None
     )
 
 
-def _while_do_else(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
-    """Like IfThenElse, but the condition is asked at every tick and may change its mind."""
-    found = _if_then_else(node, children)
-    if found is None:
-        return None
+def _rechecking(children: Sequence[Budget], found: Budget) -> Budget:
+    """The condition is evaluated at every tick, and its result may change."""
     condition, *branches = children
     if condition.waits or (len(branches) == 2 and all(branch.waits for branch in branches)):
         changes = condition.success is not None and condition.failure is not None
@@ -320,7 +325,7 @@ def _switch(node: SourceNode, children: Sequence[Budget]) -> Budget:
     return replace(found, probability=min(child.probability for child in cases))
 
 
-def _try_catch(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
+def _try(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
     """The last child cleans up after a failure; whatever it says, it was one."""
     if len(children) < 2:
         return None
@@ -332,7 +337,7 @@ def _try_catch(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
 # ---- decorators ----
 
 
-def _inverter(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _invert(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     return replace(child, success=child.failure, failure=child.success)
 
@@ -349,7 +354,7 @@ def _force_failure(node: SourceNode, children: Sequence[Budget]) -> Budget:
 
 def _retry(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
-    count = port_count(node, "num_attempts")
+    count = port_count(node, "count")
     go, end, skip, reason = _again(child.failure, child.success, child.skip, count)
     return Budget(
         end, go, skip, True, _likely([child.probability], count), reason, _has_no_end(child, child.failure, count)
@@ -358,7 +363,7 @@ def _retry(node: SourceNode, children: Sequence[Budget]) -> Budget:
 
 def _repeat(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
-    count = port_count(node, "num_cycles")
+    count = port_count(node, "count")
     go, end, skip, reason = _again(child.success, child.failure, child.skip, count)
     return Budget(
         go, end, skip, True, _likely([child.probability], count), reason, _has_no_end(child, child.success, count)
@@ -399,7 +404,7 @@ def _before(go: Range | None, end: Range | None, count: float) -> Range | None:
 def _timeout(node: SourceNode, children: Sequence[Budget]) -> Budget:
     """It can interrupt only what returns RUNNING."""
     (child,) = children
-    limit = port_seconds(node, "msec")
+    limit = port_seconds(node)
     longest = child.running
     if limit == 0 or not child.waits:
         return child
@@ -417,7 +422,7 @@ def _timeout(node: SourceNode, children: Sequence[Budget]) -> Budget:
 
 def _delay(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
-    seconds = port_seconds(node, "delay_msec")
+    seconds = port_seconds(node)
     wait = ANY if seconds is None else Range(seconds, seconds)
     reason = "" if seconds is not None else "reads from the blackboard how long it waits"
     return replace(
@@ -430,7 +435,7 @@ def _delay(node: SourceNode, children: Sequence[Budget]) -> Budget:
     )
 
 
-def _keep_running(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _until_failure(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     again = child.success is not None or child.skip is not None
     failure = without_end(child.failure) if again else child.failure
@@ -439,7 +444,7 @@ def _keep_running(node: SourceNode, children: Sequence[Budget]) -> Budget:
     return Budget(None, failure, None, True, likely, reason, child.endless or again)
 
 
-def _run_once(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _once(node: SourceNode, children: Sequence[Budget]) -> Budget:
     """Later it is skipped, or says at once what it said before."""
     (child,) = children
     return replace(
@@ -453,8 +458,8 @@ def _run_once(node: SourceNode, children: Sequence[Budget]) -> Budget:
 def _precondition(node: SourceNode, children: Sequence[Budget]) -> Budget:
     """4.6 asks at every tick, later ones when the child starts."""
     (child,) = children
-    word = node.node.attribute("else")
-    status = word.text if word is not None else "FAILURE"
+    word, default = _port(node, "otherwise")
+    status = word.text if word is not None else default
     running = child.running
     if status not in ("SUCCESS", "FAILURE", "SKIPPED"):
         return Budget(running, running, running, True, child.probability, endless=child.endless)
@@ -462,7 +467,7 @@ def _precondition(node: SourceNode, children: Sequence[Budget]) -> Budget:
     return replace(child, **{key: hull(getattr(child, key), running)})
 
 
-def _loop(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _for_each(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     if child.running.high == 0.0:
         return Budget(ZERO, ZERO, ZERO, True, child.probability)
@@ -475,7 +480,7 @@ def _skip_unless_updated(node: SourceNode, children: Sequence[Budget]) -> Budget
     return replace(child, skip=hull(child.skip, ZERO))
 
 
-def _wait_value_update(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _wait_until_updated(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     return replace(
         child,
@@ -489,7 +494,7 @@ def _wait_value_update(node: SourceNode, children: Sequence[Budget]) -> Budget:
 
 
 def _sleep(node: SourceNode) -> Budget:
-    seconds = port_seconds(node, "msec")
+    seconds = port_seconds(node)
     if seconds is None:
         return Budget(ANY, None, reason="reads from the blackboard how long it waits")
     return Budget(Range(seconds, seconds), None)
@@ -510,45 +515,30 @@ def _likely(probabilities: Sequence[float], count: int | None = 1) -> float:
     return max(0.0, 1.0 - count * fsum([1.0 - probability for probability in probabilities]))
 
 
-_ANSWERS: Final = Budget(ZERO, ZERO, None, False)
-_SUCCEEDS: Final = Budget(ZERO, None, None, False)
-_LEAVES: Final = {
-    "AlwaysSuccess": _SUCCEEDS,
-    "AlwaysFailure": Budget(None, ZERO, None, False),
-    "Script": _SUCCEEDS,
-    "SetBlackboard": _SUCCEEDS,
-    "UnsetBlackboard": _SUCCEEDS,
-    "ScriptCondition": _ANSWERS,
-    "WasEntryUpdated": _ANSWERS,
+_LEAVES: Final[Mapping[Flow, Budget]] = {
+    "succeeds": Budget(ZERO, None, None, False),
+    "fails": Budget(None, ZERO, None, False),
+    "answers": Budget(ZERO, ZERO, None, False),
 }
-_RULES: Final[dict[str, Callable[[SourceNode, Sequence[Budget]], Budget | None]]] = {
-    "Sequence": _sequence,
-    "AsyncSequence": _sequence,
-    "SequenceWithMemory": _with_memory,
-    "Fallback": _fallback,
-    "AsyncFallback": _fallback,
-    "ReactiveSequence": _reactive_sequence,
-    "ReactiveFallback": _reactive_fallback,
-    "Parallel": _parallel,
-    "ParallelAll": _parallel_all,
-    "IfThenElse": _if_then_else,
-    "WhileDoElse": _while_do_else,
-    "Switch": _switch,
-    "TryCatch": _try_catch,
-    "Inverter": _inverter,
-    "ForceSuccess": _force_success,
-    "ForceFailure": _force_failure,
-    "RetryUntilSuccessful": _retry,
-    "Repeat": _repeat,
-    "Timeout": _timeout,
-    "Delay": _delay,
-    "KeepRunningUntilFailure": _keep_running,
-    "RunOnce": _run_once,
-    "Precondition": _precondition,
-    "LoopInt": _loop,
-    "LoopBool": _loop,
-    "LoopDouble": _loop,
-    "LoopString": _loop,
-    "SkipUnlessUpdated": _skip_unless_updated,
-    "WaitValueUpdate": _wait_value_update,
+_RULES: Final[Mapping[Flow, _Rule]] = {
+    "sequence": _sequence,
+    "fallback": _fallback,
+    "parallel": _parallel,
+    "parallel-all": _parallel_all,
+    "choice": _choice,
+    "switch": _switch,
+    "try": _try,
+    "invert": _invert,
+    "force-success": _force_success,
+    "force-failure": _force_failure,
+    "retry": _retry,
+    "repeat": _repeat,
+    "timeout": _timeout,
+    "delay": _delay,
+    "until-failure": _until_failure,
+    "once": _once,
+    "precondition": _precondition,
+    "for-each": _for_each,
+    "skip-unless-updated": _skip_unless_updated,
+    "wait-until-updated": _wait_until_updated,
 }

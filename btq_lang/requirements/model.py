@@ -12,7 +12,7 @@ from btq_lang.diagnostics.model import Place
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import NodeKind
+    from btq_lang.catalog.kinds import Flow, NodeKind
     from btq_lang.catalog.units import Dimension, Unit
     from btq_lang.syntax.tree import Node, Tree
     from btq_lang.workspace.item_index import Facts
@@ -93,6 +93,11 @@ class SourceNode:
     def tag(self) -> str:
         """The built-in's tag; empty for a custom node."""
         return self.kind.tag if self.kind is not None else ""
+
+    @property
+    def flow(self) -> Flow:
+        """What the built-in does with its children; empty for a custom node."""
+        return self.kind.flow if self.kind is not None else ""
 
     def __repr__(self) -> str:
         return f"<{self.shown} in {self.tree}>"

@@ -36,9 +36,15 @@ def _node(event: Event, happenings: tuple[str, ...]) -> SourceNode | None:
 def _chain(node: SourceNode, *, at_end: bool) -> list[SourceNode]:
     """A node and the Sequences above it that begin with it, or end with it."""
     chain = [node]
-    while (parent := node.parent) is not None and parent.tag == "Sequence":
+    while (parent := node.parent) is not None and _takes_no_ticks_of_its_own(parent):
         if node.index != (len(parent.node.children) - 1 if at_end else 0):
             break
         chain.append(parent)
         node = parent
     return chain
+
+
+def _takes_no_ticks_of_its_own(node: SourceNode) -> bool:
+    """Whether it is a sequence that starts with the start of its first child, and ends with the end of its last."""
+    kind = node.kind
+    return kind is not None and kind.flow == "sequence" and not (kind.reactive or kind.pauses)

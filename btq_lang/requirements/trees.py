@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, partial
-from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup
+from btq_lang.catalog.nodes import KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup
 from btq_lang.requirements.model import SourceNode
 from btq_lang.syntax.tree import Node, NodeClause, Satisfices, Tags, Tree
 from btq_lang.workspace import inputs
@@ -18,8 +17,6 @@ from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.placeholders import is_placeholder
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
-
-_TIMEOUT: Final = BUILTINS["Timeout"]
 
 
 def tree_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> TreeNodes:
@@ -87,7 +84,7 @@ class TreeNodes:
         self.all = tuple(self._read(category))
         subtrees = [(node.node.id, node) for node in self.all if node.category == "SubTree"]
         self.calls = tuple([(called.text, node) for called, node in subtrees if called is not None])
-        self.timeouts = tuple([node for node in self.all if node.kind is _TIMEOUT])
+        self.timeouts = tuple([node for node in self.all if node.flow == "timeout"])
         self.called = tuple([name for name, _ in self.calls])
         for node in self.all:
             if node.node.clauses:

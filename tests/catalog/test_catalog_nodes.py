@@ -122,7 +122,41 @@ def test_who_returns_running_by_itself() -> None:
             *("KeepRunningUntilFailure", "LoopInt", "LoopBool", "LoopDouble", "LoopString", "WaitValueUpdate", "Sleep"),
         },
     }
-    assert {kind.tag for kind in BUILTINS.values() if kind.reactive} == {"ReactiveSequence", "ReactiveFallback"}
+    reactive = {kind.tag for kind in BUILTINS.values() if kind.reactive}
+    assert reactive == {"ReactiveSequence", "ReactiveFallback", "WhileDoElse"}
+
+
+def test_nodes_that_share_a_flow() -> None:
+    flows: dict[str, list[str]] = {}
+    for kind in BUILTINS.values():
+        flows.setdefault(kind.flow, []).append(kind.tag)
+    assert {flow: tags for flow, tags in flows.items() if len(tags) > 1} == {
+        "sequence": ["Sequence", "ReactiveSequence", "SequenceWithMemory", "AsyncSequence"],
+        "fallback": ["Fallback", "ReactiveFallback", "AsyncFallback"],
+        "choice": ["IfThenElse", "WhileDoElse"],
+        "switch": [f"Switch{cases}" for cases in range(2, 7)],
+        "for-each": ["LoopInt", "LoopBool", "LoopDouble", "LoopString"],
+        "succeeds": ["AlwaysSuccess", "Script", "SetBlackboard", "UnsetBlackboard"],
+        "answers": ["ScriptCondition", "WasEntryUpdated"],
+    }
+    assert flows[""] == ["SubTree"]
+
+
+def test_roles_of_ports() -> None:
+    ports = [(f"{kind.tag}.{port.name}", port) for kind in BUILTINS.values() for port in kind.ports]
+    assert {name: port.role for name, port in ports if port.role} == {
+        "Parallel.success_count": "successes",
+        "Parallel.failure_count": "failures",
+        "ParallelAll.max_failures": "failures",
+        "Repeat.num_cycles": "count",
+        "RetryUntilSuccessful.num_attempts": "count",
+        "Timeout.msec": "time",
+        "Delay.delay_msec": "time",
+        "Sleep.msec": "time",
+        "Precondition.else": "otherwise",
+        **{f"Loop{item}.if_empty": "otherwise" for item in ("Int", "Bool", "Double", "String")},
+    }
+    assert [name for name, port in ports if port.removes] == ["UnsetBlackboard.key"]
 
 
 def test_required_ports() -> None:

@@ -10,7 +10,7 @@ from engine_simulator import Endless, Run
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from btq_lang.catalog.nodes import lookup
+from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.requirements.budgets import Budgets, Range
 from btq_lang.requirements.composition import _RULES
 from btq_lang.requirements.model import SourceNode
@@ -20,7 +20,7 @@ from btq_lang.requirements.resolved import Requirements
 
 KINDS = tuple(kind for kinds in GROUPS.values() for kind in kinds)
 # Queues and entries that somebody else writes are no part of the simulation: where they stand, no end can be said.
-NOT_SIMULATED = {"LoopInt", "LoopBool", "LoopDouble", "LoopString", "SkipUnlessUpdated", "WaitValueUpdate"}
+NOT_SIMULATED = {"for-each", "skip-unless-updated", "wait-until-updated"}
 
 
 @given(missions(), st.integers(0, 1000))
@@ -42,9 +42,14 @@ def test_no_run_of_any_kind_of_node_lies_outside_its_budget(top: str) -> None:
     assert ended - {"skip"} == ({only} if only else {"success", "failure"})
 
 
-def test_all_kinds_of_nodes_are_simulated_that_have_a_rule() -> None:
-    tags = {kind.tag if (kind := lookup(name)) is not None else name for name in KINDS}
-    assert {"Switch" if tag.startswith("Switch") else tag for tag in tags} | NOT_SIMULATED == {*_RULES, "SubTree"}
+def test_all_flows_are_simulated_that_have_a_rule() -> None:
+    found = [kind for name in KINDS if (kind := lookup(name)) is not None]
+    assert {kind.flow for kind in found if kind.children != (0, 0)} | NOT_SIMULATED == {*_RULES}
+    simulated = {kind.tag for kind in found}
+    assert {tag for tag, kind in BUILTINS.items() if kind.flow in _RULES} - simulated == {
+        *("LoopInt", "LoopBool", "LoopDouble", "LoopString", "SkipUnlessUpdated", "WaitValueUpdate"),
+        *("Switch3", "Switch4", "Switch5", "Switch6"),
+    }
 
 
 def assert_within_budgets(text: str, seed: int) -> set[str]:
