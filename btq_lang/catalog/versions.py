@@ -13,7 +13,7 @@ from btq_lang.util.record import Record
 
 # The lines of the engine that ROS distributions ship; each stands for its last release (4.6.2, 4.8.4, 4.10.0).
 VERSIONS: Final = ("4.6", "4.8", "4.10")
-DEFAULT_VERSION: Final = "4.10"
+DEFAULT_VERSION: Final = VERSIONS[-1]
 
 
 class Change(Record):
@@ -49,6 +49,12 @@ TYPED_CONSTANTS: Final = Change("4.9.1", "keeps a number that a SubTree gives to
 def at_least(version: str, since: str) -> bool:
     """Is `version` the version `since` or a later one?  Both are numbers with points; a `4.8` is older than 4.10."""
     return _numbers(version) >= _numbers(since)
+
+
+def targets() -> tuple[str, ...]:
+    """Every line of the engine from the first of these versions to the last: `4.6`, `4.7` …"""
+    (major, first), (_, last) = _numbers(VERSIONS[0]), _numbers(VERSIONS[-1])
+    return tuple([f"{major}.{minor}" for minor in range(first, last + 1)])
 
 
 def _numbers(version: str) -> tuple[int, ...]:

@@ -19,7 +19,6 @@ from btq_lang.util.version import __version__
 if TYPE_CHECKING:
     from argparse import _SubParsersAction
 
-TARGETS = ("4.6", "4.7", "4.8", "4.9", "4.10")
 SEVERITIES = ("error", "warning", "info", "hint")
 
 
@@ -126,6 +125,8 @@ def _add_format(commands: _SubParsersAction[Parser]) -> None:
 
 
 def _add_build(commands: _SubParsersAction[Parser]) -> None:
+    from btq_lang.catalog.versions import targets  # of the catalog, which not every reader of this module needs
+
     parser = _command(
         commands,
         "build",
@@ -138,7 +139,7 @@ def _add_build(commands: _SubParsersAction[Parser]) -> None:
     _add_paths(parser)
     _add_folder(parser, "FOLDER", "where to write; default: beside the missions")
     parser.add_argument("--bundle", action="store_true", help="each mission in one file with all its includes")
-    parser.add_argument("--target", choices=TARGETS, help="the engine's version; default: the project's newest")
+    parser.add_argument("--target", choices=targets(), help="the engine's version; default: the project's newest")
     parser.add_argument(
         "--no-enforce", action="store_true", help="the plain tree, without the nodes that enforce requirements"
     )

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shlex
 import sys
 from argparse import Namespace
 
+from btq_lang.catalog.versions import VERSIONS
 from btq_lang.workspace.loader import write_whole
 
-_PROJECT = """\
+_PROJECT = f"""\
 # What holds for all missions of this project
-engine = ["4.6", "4.8", "4.10"]  # the versions of BehaviorTree.CPP that must load them
+engine = {json.dumps(VERSIONS)}  # the versions of BehaviorTree.CPP that must load them
 qualities = "iso25010-2023"
 include-paths = ["."]
 
@@ -23,7 +25,7 @@ include-paths = ["."]
 # logs = ["logs/**/*.btlog"]
 #
 # [evidence.signals]
-# battery = { topic = "/battery_state", field = "percentage", scale = 100, unit = "%" }
+# battery = {{ topic = "/battery_state", field = "percentage", scale = 100, unit = "%" }}
 """
 
 _SKILLS = """\
