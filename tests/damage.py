@@ -232,7 +232,7 @@ def examine(one: Case) -> None:
     found = check(workspace, MAIN)
     assert_sound(workspace, MAIN, found, are_fewer=False)
     format_text(one.text)
-    answer_everything(one.text, one.offset, workspace)
+    answer_everything(one.text, one.offset, workspace, found)
     picture(workspace, MAIN)
     write_overview(collect([(workspace, (MAIN,))]), "json")
     compare(Workspace.of({MAIN: one.whole}), (MAIN,), workspace, (MAIN,))

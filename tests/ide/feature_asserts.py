@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from textwrap import dedent
@@ -18,6 +18,7 @@ from check_asserts import COMMENT_WITH_MARKERS, split_files, workspace_of
 
 from btq_lang.btcpp.opening import open_workspace
 from btq_lang.checks import check
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.ide.actions import Action, code_actions
 from btq_lang.ide.calls import called, callers, prepare_calls
@@ -41,7 +42,7 @@ from btq_lang.ide.signature import signature_help
 from btq_lang.ide.structure import document_links, folding_ranges, selection_range
 from btq_lang.lexer import tokens as tokens_of
 from btq_lang.parser import parse
-from btq_lang.syntax.tokens import BLANK, CLOSE, DEDENT, ERROR, INDENT, NEWLINE, OPEN
+from btq_lang.syntax.tokens import BLANK, CLOSE, DEDENT, ERROR, INDENT, NEWLINE, OPEN, Token
 from btq_lang.util.text import Edit, Encoding, LineIndex, Position, Span, apply_edits
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
@@ -517,8 +518,14 @@ def check_moved(text: str, moves: Mapping[str, str], after: str) -> None:
     assert files == split_files(after)
 
 
-def answer_everything(text: str, offset: int, workspace: Workspace | None = None) -> None:
-    """Every feature answers, and what it answers lies in the text: `main.btq` of a workspace, or of a new one."""
+def answer_everything(
+    text: str, offset: int, workspace: Workspace | None = None, problems: Sequence[Diagnostic] | None = None
+) -> None:
+    """Every feature answers, and what it answers lies in the text: `main.btq` of a workspace, or of a new one.
+
+    Args:
+        problems: what is wrong with it, if somebody knows already.
+    """
     workspace = workspace or Workspace.of({"main.btq": text})
     at = workspace, "main.btq", offset
     whole = Span(0, len(text))
@@ -558,14 +565,15 @@ def answer_everything(text: str, offset: int, workspace: Workspace | None = None
     stretches = [stretch_of(file.parsed, len(text), *group) for group in groups(file.parsed)]
     parts = [text[part.start : part.end] for part in stretches]
     assert "".join(parts) == text
-    assert [word for part in parts for word in words_of(part)] == words_of(text)
+    words = [word for part in parts for word in words_of(tokens_of(part))]
+    assert words == words_of(file.parsed.tokens)
     lines = LineIndex(text)
     tokens = list(decoded(colours(workspace, "main.btq", "utf-16").data, lines, "utf-16"))
     assert all(one.end <= other.start for (one, _), (other, _) in pairwise(tokens))
     part = list(decoded(encoded_within(workspace, "main.btq", Span(offset, offset), "utf-16"), lines, "utf-16"))
     line = lines.position(offset).line
     assert part == [one for one in tokens if lines.position(one[0].start).line == line]
-    for action in code_actions(workspace, "main.btq", Span(offset, offset)):
+    for action in code_actions(workspace, "main.btq", Span(offset, offset), found=problems):
         for changed in action.edits.values():
             apply_edits(text, changed)
     tree = prepare_calls(*at)
@@ -579,10 +587,10 @@ def answer_everything(text: str, offset: int, workspace: Workspace | None = None
     assert all(_lies_in(span, whole) for span in linked_ranges(*at))
 
 
-def words_of(text: str) -> list[tuple[str, str]]:
-    """The tokens of a text that may have a colour."""
+def words_of(tokens: Iterable[Token]) -> list[tuple[str, str]]:
+    """Those of some tokens that may have a colour."""
     silent = (BLANK, OPEN, CLOSE, ERROR, NEWLINE, INDENT, DEDENT)
-    return [(token.kind, token.text) for token in tokens_of(text) if token.kind not in silent]
+    return [(token.kind, token.text) for token in tokens if token.kind not in silent]
 
 
 def _lies_in(span: Span, whole: Span) -> bool:
