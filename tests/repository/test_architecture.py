@@ -6,6 +6,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -64,7 +65,14 @@ def imports(tree: ast.AST) -> Iterator[str]:
             yield from (f"{node.module}.{name.name}" for name in node.names)
 
 
-IMPORTS = {name: list(imports(ast.parse(path.read_text(encoding="utf-8")))) for name, path in MODULES.items()}
+@cache
+def parsed(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
+def imported_by(module: str) -> list[str]:
+    return list(imports(parsed(MODULES[module])))
 
 
 def imported_module(name: str) -> str:
@@ -80,7 +88,7 @@ def room(module: str) -> str:
 
 @pytest.mark.parametrize("module", [name for name in MODULES if name != "btq_lang"])
 def test_a_module_imports_from_rooms_above_its_own(module: str) -> None:
-    for name in IMPORTS[module]:
+    for name in imported_by(module):
         first = name.partition(".")[0]
         if first in ONLY_IN:
             assert room(module) in ONLY_IN[first], f"{module} imports {name}"
@@ -94,8 +102,8 @@ def test_a_module_imports_from_rooms_above_its_own(module: str) -> None:
 def test_no_circle_exists() -> None:
     order = TopologicalSorter(
         {
-            module: {imported_module(name) for name in found if name.startswith("btq_lang.")} - {module}
-            for module, found in IMPORTS.items()
+            module: {imported_module(name) for name in imported_by(module) if name.startswith("btq_lang.")} - {module}
+            for module in MODULES
         }
     )
     order.prepare()  # raises CycleError, which names the modules
@@ -108,8 +116,8 @@ def test_the_top_of_the_package_is_small() -> None:
 
 @pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_only_the_edges_open_files(path: Path) -> None:
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    opened = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "open"]
+    calls = [node for node in ast.walk(parsed(path)) if isinstance(node, ast.Call)]
+    opened = [call for call in calls if getattr(call.func, "id", "") == "open"]
     name = path.relative_to(PACKAGE).as_posix()
     assert not opened or name in READS_THE_DISK or name.startswith(READS_LOGS)
 
