@@ -16,13 +16,19 @@ mkdir -p "$store"
 
 main() {
     : >"$store/installed.txt"
-    attempt "Chromium and Neovim of this system" from_apt
-    attempt "Emacs with Eglot, Vim with ALE" more_from_apt
-    attempt "Node.js and VS Code" vscode
-    attempt "the extension's package" package
+    # apt, npm and PyPI at the same time: each waits for the network half of the time.
+    {
+        attempt "Chromium and Neovim of this system" from_apt
+        attempt "Emacs with Eglot, Vim with ALE" more_from_apt
+        attempt "Neovim of Debian 13" neovim trixie
+        attempt "Neovim of Debian's unstable suite" neovim sid
+    } &
+    {
+        attempt "Node.js and VS Code" vscode
+        attempt "the extension's package" package # with that Node.js
+    } &
     attempt "the browser's driver" driver
-    attempt "Neovim of Debian 13" neovim trixie
-    attempt "Neovim of Debian's unstable suite" neovim sid
+    wait
 }
 
 attempt() { # name, command …: what it prints is shown only if it fails
