@@ -15,9 +15,10 @@ import pytest
 from btq_lang.cli import main
 
 
-def run_btq(*arguments: str, cwd: Path, stdin: str = "") -> tuple[int, str, str]:
+def run_btq(*arguments: str, cwd: Path, stdin: str | bytes = "") -> tuple[int, str, str]:
     """The exit code, the output and the messages of a command that is run in a folder."""
-    given, out, err = (io.TextIOWrapper(io.BytesIO(text.encode()), encoding="utf-8") for text in (stdin, "", ""))
+    sent = stdin.encode() if isinstance(stdin, str) else stdin
+    given, out, err = (io.TextIOWrapper(io.BytesIO(data), encoding="utf-8") for data in (sent, b"", b""))
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(cwd)
         for name, stream in (("stdin", given), ("stdout", out), ("stderr", err)):

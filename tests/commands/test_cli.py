@@ -1,4 +1,4 @@
-"""The commands as a person runs them: a process, its output, its exit code, and the files it leaves."""
+"""The commands as a person runs them: the output, the exit code, and the files that are left."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ Run = Callable[..., subprocess.CompletedProcess[str]]
 
 
 @pytest.fixture
-def btq(tmp_path: Path) -> Run:
-    """Run `btq` in an empty folder."""
+def process(tmp_path: Path) -> Run:
+    """Run `btq` as a process in an empty folder."""
 
-    def run(*arguments: str, stdin: str | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+    def run(*arguments: str, stdin: str | None = None) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
             [sys.executable, "-m", "btq_lang", *arguments],
             cwd=tmp_path,
             input=stdin,
             capture_output=True,
             encoding="utf-8",
-            env={**os.environ, "NO_COLOR": "1", "PYTHONUTF8": "1", **environment},
+            env={**os.environ, "NO_COLOR": "1", "PYTHONUTF8": "1"},
             timeout=60,
         )
 
@@ -46,21 +46,25 @@ def btq(tmp_path: Path) -> Run:
 
 
 @pytest.fixture
-def called(tmp_path: Path) -> Run:
-    """The same in this process, for tests of many arguments."""
-    return lambda *arguments: subprocess.CompletedProcess(arguments, *run_btq(*arguments, cwd=tmp_path))
+def btq(tmp_path: Path) -> Run:
+    """The same in this process, without its start."""
+
+    def run(*arguments: str, stdin: str | bytes = "") -> subprocess.CompletedProcess[str]:
+        return subprocess.CompletedProcess(arguments, *run_btq(*arguments, cwd=tmp_path, stdin=stdin))
+
+    return run
 
 
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n        Timeout (msec = -5)\n            Dock\n"
 
 
-def test_version(btq: Run) -> None:
-    assert btq("--version").stdout == f"btq {__version__}\n"
-    assert btq("-V").returncode == 0
+def test_version(process: Run) -> None:
+    assert process("--version").stdout == f"btq {__version__}\n"
+    assert process("-V").returncode == 0
 
 
-def test_help_says_what_there_is(btq: Run) -> None:
-    done = btq("--help")
+def test_help_says_what_there_is(process: Run) -> None:
+    done = process("--help")
     assert done.returncode == 0
     for command in ("check", "format", "build", "import", "explain", "init", "completion"):
         assert f"  {command} " in done.stdout
@@ -78,8 +82,8 @@ def test_help_says_what_there_is(btq: Run) -> None:
         (("format", ""), "format: empty path; `.` is this folder"),
     ],
 )
-def test_usage_errors(called: Run, arguments: tuple[str, ...], message: str) -> None:
-    done = called(*arguments)
+def test_usage_errors(btq: Run, arguments: tuple[str, ...], message: str) -> None:
+    done = btq(*arguments)
     assert (done.stdout, done.stderr, done.returncode) == ("", f"btq {message}\n", 2)
 
 
@@ -107,20 +111,20 @@ def test_no_command_and_unknown_words_are_usage_errors(btq: Run) -> None:
         ("out.btq", "expected a folder; each file keeps its name there"),
     ],
 )
-def test_a_folder_is_asked_for(called: Run, command: str, output: str, message: str) -> None:
-    done = called(command, "mission.btq", "-o", output)
+def test_a_folder_is_asked_for(btq: Run, command: str, output: str, message: str) -> None:
+    done = btq(command, "mission.btq", "-o", output)
     told = done.stderr.endswith(f"error: argument -o/--output: {message}\n")
     assert (done.returncode, done.stdout, told) == (2, "", True)
 
 
-def test_check_a_clean_folder(btq: Run) -> None:
-    done = btq("check", str(EXAMPLES / "laboratory"))
+def test_check_a_clean_folder(process: Run) -> None:
+    done = process("check", str(EXAMPLES / "laboratory"))
     assert (done.returncode, done.stdout, done.stderr) == (0, "No problems found in 1 file\n", "")
 
 
-def test_check_shows_the_place(btq: Run, tmp_path: Path) -> None:
+def test_check_shows_the_place(process: Run, tmp_path: Path) -> None:
     (tmp_path / "main.btq").write_text(WRONG)
-    done = btq("check")
+    done = process("check")
     assert done.returncode == 1
     assert done.stdout.startswith(
         "warning[unknown-node]: unknown node `Sequnce`; did you mean `Sequence`?\n --> main.btq:3:9\n"
@@ -173,17 +177,17 @@ def test_hints_alone_are_clean(btq: Run) -> None:
     assert "hint[" in done.stdout
 
 
-def test_standard_input(btq: Run) -> None:
-    done = btq("check", "--output-format", "concise", "-", stdin="BehaviorTree Main\n    Sequnce\n        Dock\n")
+def test_standard_input(process: Run) -> None:
+    done = process("check", "--output-format", "concise", "-", stdin="BehaviorTree Main\n    Sequnce\n        Dock\n")
     assert done.returncode == 1
     assert done.stdout.startswith("<stdin>:2:5: warning[unknown-node]")
 
 
-def test_standard_input_with_a_name_finds_its_includes(btq: Run, tmp_path: Path) -> None:
+def test_standard_input_with_a_name_finds_its_includes(process: Run, tmp_path: Path) -> None:
     (tmp_path / "lib").mkdir()
     (tmp_path / "lib" / "skills.btq").write_text("Action Dock\n")
     text = 'include "skills.btq"\nBehaviorTree Main\n    Dock (x = 1)\n'
-    done = btq("check", "--output-format", "concise", "--stdin-filename", "lib/main.btq", "-", stdin=text)
+    done = process("check", "--output-format", "concise", "--stdin-filename", "lib/main.btq", "-", stdin=text)
     assert done.stdout.splitlines()[0] == "lib/main.btq:3:11: warning[unknown-port] `Dock` has no port `x`"
 
 
@@ -201,8 +205,8 @@ def test_fix_mends_what_is_certain_and_reports_the_rest(btq: Run, tmp_path: Path
     assert "SequenceStar" not in done.stdout
 
 
-def test_fix_of_standard_input_prints_the_new_text(btq: Run) -> None:
-    done = btq("check", "--fix", "-", stdin="BehaviorTree Main\n    SequenceStar\n        Dock\n")
+def test_fix_of_standard_input_prints_the_new_text(process: Run) -> None:
+    done = process("check", "--fix", "-", stdin="BehaviorTree Main\n    SequenceStar\n        Dock\n")
     assert done.stdout == "BehaviorTree Main\n    SequenceWithMemory\n        Dock\n"
 
 
@@ -299,8 +303,8 @@ def test_import_writes_beside_the_xml_and_says_what_changed(btq: Run, tmp_path: 
     assert (tmp_path / "old.btq").read_text() == text
 
 
-def test_import_keeps_version_3_if_asked(btq: Run) -> None:
-    done = btq("import", "--keep-v3", "-", stdin=OLD)
+def test_import_keeps_version_3_if_asked(process: Run) -> None:
+    done = process("import", "--keep-v3", "-", stdin=OLD)
     assert done.stdout == (
         '# one tube\n\nRoot Main ()\n\nBehaviorTree Main\n    SequenceStar\n        SubTree Pick (tube = "current")\n'
     )
@@ -436,17 +440,13 @@ def test_a_binary_file_is_one_error(btq: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "command", [("check",), ("check", "--fix"), ("format",), ("build",), ("trace",), ("graph",), ("import",)], ids=str
 )
-def test_standard_input_is_read_as_a_file_is(
-    command: tuple[str, ...], data: bytes, problem: str, tmp_path: Path
-) -> None:
-    done = subprocess.run(
-        [sys.executable, "-m", "btq_lang", *command, "-"], cwd=tmp_path, input=data, capture_output=True
-    )
+def test_standard_input_is_read_as_a_file_is(command: tuple[str, ...], data: bytes, problem: str, btq: Run) -> None:
+    done = btq(*command, "-", stdin=data)
     told = f"btq: <stdin>:{problem}" if problem[0].isdigit() else f"btq: <stdin>: {problem}"
     assert done.returncode == 2
-    assert told in done.stderr.decode().splitlines()
+    assert told in done.stderr.splitlines()
     if command[0] in ("format", "import") or "--fix" in command:
-        assert b"SequenceStar" not in done.stdout  # to write it back would lose something
+        assert "SequenceStar" not in done.stdout  # to write it back would lose something
 
 
 def test_what_fix_could_not_write_is_still_found(btq: Run, tmp_path: Path) -> None:
@@ -546,8 +546,8 @@ def test_format_leaves_a_file_with_syntax_errors_alone(btq: Run, tmp_path: Path)
     assert file.read_text() == "BehaviorTree Main\n  Retry (num_attempts 3)\n    Dock\n"
 
 
-def test_format_of_standard_input(btq: Run) -> None:
-    done = btq("format", "-", stdin="BehaviorTree Main\n  Dock\n")
+def test_format_of_standard_input(process: Run) -> None:
+    done = process("format", "-", stdin="BehaviorTree Main\n  Dock\n")
     assert (done.returncode, done.stdout) == (0, "BehaviorTree Main\n    Dock\n")
 
 
@@ -581,8 +581,8 @@ def test_format_of_standard_input(btq: Run) -> None:
         ("btq: ignore[unused-tree]", "# btq: ignore (sign)"),
     ],
 )
-def test_explain(called: Run, name: str, first_line: str) -> None:
-    done = called("explain", name)
+def test_explain(btq: Run, name: str, first_line: str) -> None:
+    done = btq("explain", name)
     assert (done.returncode, done.stdout.splitlines()[0]) == (0, first_line)
 
 
@@ -601,25 +601,25 @@ def test_explain_of_several_names(btq: Run) -> None:
     assert done.returncode == 2
 
 
-def test_explain_of_something_unknown(called: Run) -> None:
-    done = called("explain", "unknown-nod")
+def test_explain_of_something_unknown(btq: Run) -> None:
+    done = btq("explain", "unknown-nod")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == "btq explain: unknown name `unknown-nod`; did you mean unknown-node?\n"
     meant_by = (("kwh", "kWh"), ("_skipif", "_skipIf"), ("msecs_", "msec"), ("sek", "s"), ("skip", "_skipIf, "))
     for name, meant in meant_by:
-        assert f"did you mean {meant}" in called("explain", name).stderr
+        assert f"did you mean {meant}" in btq("explain", name).stderr
 
 
-def test_explain_of_units(called: Run) -> None:
-    assert called("explain", "30 min").stdout == "# 30 min (quantity)\n\nMeasures time. It is 1800 s.\n"
-    assert called("explain", "msec", "deg").stdout.endswith(
+def test_explain_of_units(btq: Run) -> None:
+    assert btq("explain", "30 min").stdout == "# 30 min (quantity)\n\nMeasures time. It is 1800 s.\n"
+    assert btq("explain", "msec", "deg").stdout.endswith(
         "# deg (unit)\n\nMeasures angle. 1 deg is 0.01745329252 rad.\n\ncompares with: rad, urad, mrad, rev\n"
     )
 
 
 @pytest.mark.parametrize("sign", [sign for sign, _, _ in SIGNS])
-def test_explain_knows_every_sign(called: Run, sign: str) -> None:
-    assert f"# {sign} (sign)" in called("explain", sign).stdout
+def test_explain_knows_every_sign(btq: Run, sign: str) -> None:
+    assert f"# {sign} (sign)" in btq("explain", sign).stdout
 
 
 def test_init_makes_a_project_that_checks_clean_and_is_formatted(btq: Run, tmp_path: Path) -> None:
@@ -645,14 +645,14 @@ def test_init_offers_a_table_for_logs(btq: Run, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", WORST_FIRST)
-def test_explain_knows_every_verdict(called: Run, name: str) -> None:
+def test_explain_knows_every_verdict(btq: Run, name: str) -> None:
     verdict = VERDICTS[name]
     for words in ([name], name.split()):
-        done = called("explain", *words)
+        done = btq("explain", *words)
         assert (done.returncode, done.stdout.partition("\n")[0]) == (0, f"# {name}")
     assert verdict.brief in done.stdout
     assert verdict.then in done.stdout
-    assert f"{name:<20} {verdict.brief}\n" in called("explain", "verdict").stdout
+    assert f"{name:<20} {verdict.brief}\n" in btq("explain", "verdict").stdout
     assert [*VERDICTS] == [*WORST_FIRST]
 
 
@@ -682,9 +682,9 @@ def test_format_keeps_the_line_ends_of_standard_input(tmp_path: Path) -> None:
     assert done.stdout == b"BehaviorTree Main\r\n    Dock\r\n"
 
 
-def test_a_tree_that_runs_itself_as_a_declared_one_is_a_finding(btq: Run) -> None:
+def test_a_tree_that_runs_itself_as_a_declared_one_is_a_finding(process: Run) -> None:
     text = "BehaviorTree A\n    Go\n        value = {x}\n            A\nTreeNodesModel\n    SubTree A\n"
-    done = btq("check", "--output-format", "concise", "-", stdin=text)
+    done = process("check", "--output-format", "concise", "-", stdin=text)
     assert done.stdout.splitlines() == [
         "<stdin>:3:9: error[syntax-error] attributes go in brackets: `(key = value)`",
         "<stdin>:4:13: error[recursive-tree] the tree `A` contains itself",
