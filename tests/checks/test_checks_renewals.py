@@ -51,6 +51,7 @@ TOLD = [f"3 warning «A keeps n <= 3» {MESSAGE}"]
         f"->\n    {W}\n    {W}\n    Action A",
         '->\n    Action B (any = {level} _onSuccess = "level := 1.0")\n    Action A',
         f"->\n    {W}\n    Condition I (in = {{level}})\n    Action A",
+        f"->\n    {W}\n    UnsetBlackboard (name = level key = other)\n    Action A",
     ],
 )
 def test_what_is_written_before_or_after(tree: str) -> None:

@@ -85,6 +85,7 @@ def test_places_count_from_the_file_and_not_from_the_tree() -> None:
         ('Script (code = "  ")', 'error «"  "»'),
         ('ScriptCondition (code = "")', 'error «""»'),
         ('AlwaysSuccess (_skipIf = "")', 'error «""»'),
+        ('Script (code = "x := 1" _onSuccess = "")', 'error «""»'),
     ],
 )
 def test_the_engine_runs_no_empty_script_but_that_of_a_script(node: str, expected: str) -> None:

@@ -611,6 +611,12 @@ def test_the_short_form_of_a_node() -> None:
     )
 
 
+@pytest.mark.parametrize("word", ["Script", "ScriptAction"])
+def test_the_short_form_of_a_placeholder(word: str) -> None:
+    text = f'BehaviorTree Main\n    $0{word} (name = "Move")\n'
+    check_action(text, "Write the node in the short form", "BehaviorTree Main\n    Move\n")
+
+
 def test_the_short_form_of_a_file() -> None:
     check_action(
         """
