@@ -56,7 +56,7 @@ def same(one: Parsed, other: Parsed) -> bool:
     return (one.text, one.entries, one.starts) == (other.text, other.entries, other.starts)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize(
     "text",
     [EVERY_FORM, IN_ROOT, missions.mission(60, 3, "classic"), missions.mission(60, 3, "short"), "", "Root\n"],

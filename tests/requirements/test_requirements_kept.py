@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -169,7 +170,7 @@ LINES = (
 )
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize(
     "files",
     [FILES, GUARDS, CLASSIC, SHORT, EXAMPLE],
@@ -343,13 +344,13 @@ def test_a_tree_that_contains_itself_has_no_budget_whoever_is_asked_first() -> N
 
 @pytest.mark.parametrize("is_circle", [False, True])
 def test_no_chain_of_trees_is_too_long(is_circle: bool) -> None:
-    count = 3_000
+    count = sys.getrecursionlimit() + 100  # more than a function may call itself
     chain = "".join(f"BehaviorTree T{at}\n    SubTree T{at + 1} satisfies quick\n" for at in range(count))
     last = f"BehaviorTree T{count}\n    {'SubTree T7' if is_circle else 'Sleep (msec = 2 s)'}\n"
     text = f"Root T0\nQualityReq quick takes at most 1 s\n{chain}{last}"
     workspace, kept = Workspace.of({"/a.btq": text}), Kept()
     found = kept.check(workspace, "/a.btq").diagnostics
     exceeded = [each.message for each in found if each.rule == "budget-exceeded"]
-    assert exceeded == ([] if is_circle else ["`T3000` takes at least 2 s, so it always violates `1 s`"])
+    assert exceeded == ([] if is_circle else [f"`T{count}` takes at least 2 s, so it always violates `1 s`"])
     shorter = workspace.with_file("/a.btq", text.replace("2 s", "1 s").replace("SubTree T7", "Sleep (msec = 1 s)"))
     assert "budget-exceeded" not in {each.rule for each in kept.check(shorter, "/a.btq").diagnostics}
