@@ -1,27 +1,27 @@
 """Run-time evidence: a verdict for each requirement, from logs of what robots did.
 
-One invariant: what a log does not say is unknown, with the reason; nothing is guessed, and no clause is left out.
+One invariant: what a log does not show is unknown, with the reason; nothing is guessed, and no clause is left out.
 
     readers/       a module a format: files to sessions
-    model.py       what a log says: the tree that ran, transitions, activations, samples
+    model.py       what a log holds: the tree that ran, transitions, activations, samples
     runs.py        transitions to activations and runs
     identity.py    which node of a log is which written node
-    named_runs.py  the same of a log that has no tree, run by run
-    signals.py, history.py   what signals were at a moment, and what nodes did in the run that is open
-    observed.py, conditions.py   all that may be asked of an activation or a run, and whether conditions held
-    guards.py      what the nodes did that a build has put around others
-    verbs/         a module a verb: what an activation, or a run, came to
-    limits.py, over_run.py   what they share: measures beside bounds, and when events happened
+    named_runs.py  the same for a log without a tree, run by run
+    signals.py, history.py   values of signals at a moment, and what nodes did in the open run
+    observed.py, conditions.py   what was observed during an activation or a run, and whether conditions held
+    guards.py      what the nodes that a build adds around others did
+    verbs/         a module a verb: the judgement of an activation or a run
+    limits.py, over_run.py   shared by verbs: measures compared with bounds, and when events happened
     scopes.py      which activations count
-    clause.py, evaluate.py   a clause, and all of a mission, judged while a log is read
-    tally.py, recent.py, odds.py   what was counted, all of it or lately, and how sure it makes one
+    clause.py, evaluate.py   a clause, and all clauses of a mission, judged while a log is read
+    tally.py, recent.py, odds.py   judgements counted, over all runs or the last ones, and confidence limits
     explain.py, explain_run.py   what led to a violation
-    distribution.py, timeline.py   values and a run as the page draws them
+    distribution.py, timeline.py   a histogram of values and a timeline of a run, for the page
     coverage.py, ticks.py   which nodes ran, how long they took, and how long they blocked the tree
-    verdicts.py    what comes out, as data
-    sentences.py   what a clause came to, and what to look at
-    verifying.py, notes.py, signal_sources.py   all of it in one call, and what is to be said beside
-    table.py, json_document.py, csv_rows.py, junit.py, markdown.py   the writers; the HTML page is drawn by `trace/`
+    verdicts.py    the report, as data
+    sentences.py   a clause's result, and what to look at, in a sentence
+    verifying.py, notes.py, signal_sources.py   all of it in one call, and notes beside the verdicts
+    table.py, json_document.py, csv_rows.py, junit.py, markdown.py   the writers; `trace/` draws the HTML page
 """
 
 from __future__ import annotations
@@ -49,16 +49,16 @@ def verify(
     with_timelines: bool = False,
     told: Callable[[int, int], None] = lambda files, runs: None,
 ) -> Report:
-    """The verdicts of missions by what logs say.
+    """Judge missions by logs.
 
     Args:
         logs: the files; one that cannot be read is a problem of the report, and the others are judged.
-        samples: of signals, by the signal's name or its entry.
-        shown: a path as people read it.
-        sources: where samples come from that count after those; topics are read from the bags among the logs.
-        of_files: the samples of the sources that are files.
+        samples: samples of signals, by the signal's name or its entry.
+        shown: gives a path as people read it.
+        sources: where further samples come from, with lower priority; topics are read from the bags among the logs.
+        of_files: the samples of those sources that are files.
         told: is given after each run how many logs have been read, and how many runs have been judged.
-        with_timelines: with the run of the worst violation of each clause.
+        with_timelines: include the run of the worst violation of each clause.
     """
     from btq_lang.evidence.evaluate import MissionEvaluation
     from btq_lang.evidence.identity import difference
@@ -101,12 +101,12 @@ def verify(
 
 
 def write(report: Report, form: str, *, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:
-    """The verdicts in one of FORMATS.
+    """Write the verdicts in one of FORMATS.
 
     Args:
         colour: ANSI colours, for `table`.
-        verbose: for `table`: more violations of each clause.
-        width: for `table`: the columns of a terminal; None: lines are as long as what they say.
+        verbose: for `table`: show more violations of each clause.
+        width: for `table`: the columns of the terminal; None: lines are not broken.
 
     Raises:
         ValueError: there is no such format.

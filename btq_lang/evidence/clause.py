@@ -1,4 +1,4 @@
-"""A clause at a written node: which nodes of a log it holds for, and what they did comes to.
+"""A clause at a written node: which nodes of a log it holds for, and its verdict.
 
 One invariant: a clause that cannot be judged is unknown with the reason, and never left out.
 """
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 class _Place(Record):
-    """Where a clause that is judged over a run holds: a node, or those whose events or durations it is about.
+    """Where a clause that is judged over a run holds: a node, or the nodes whose events or durations it measures.
 
     Attributes:
         uids: its nodes.
@@ -49,12 +49,12 @@ class _Place(Record):
 
 
 class JudgedClause:
-    """A clause at a written node, with what it has come to.
+    """A clause at a written node, and its judgements so far.
 
     Attributes:
-        judged: the claim, as it is judged.
-        explain: what led to a violation, by its judgement and its path.
-        explain_run: what led to one that is judged over a run, by its judgement, the run and the other nodes.
+        judged: the claim as it is judged.
+        explain: gives what led to a violation, from its judgement and path.
+        explain_run: the same for a clause judged over a run, from its judgement, the run and the other nodes.
     """
 
     def __init__(self, requirement: Requirement, claim: Claim, applied: Applied | None) -> None:
@@ -70,7 +70,7 @@ class JudgedClause:
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [each.target for part in parts for each in parts_in(part) if isinstance(each, Running)]
         self._not_judged: Final = self._why_not()
-        self._nodes: Final[list[int]] = []  # in the log that is read, as are these:
+        self._nodes: Final[list[int]] = []  # of the current log, as are these:
         self._places: Final[list[_Place]] = []
         self._signals: Signals | None = None
         self._history: History | None = None
@@ -82,10 +82,10 @@ class JudgedClause:
         self.explain_run: Callable[[Judgement, OverRun, Nearby], tuple[Link, ...]] = lambda judgement, run, others: ()
 
     def join(self, joined: Joined, signals: Signals, history: History, nearby: Callable[[int], Nearby]) -> list[int]:
-        """Read another log; the nodes of it that the clause holds for.
+        """Begin another log; returns the nodes of it that the clause holds for.
 
         Args:
-            nearby: the other nodes as a clause at one node means them.
+            nearby: resolves the other nodes that a clause names, relative to its node.
         """
         self._signals, self._history = signals, history
         self._nodes.clear()
@@ -111,8 +111,8 @@ class JudgedClause:
         """Count an activation of one of its nodes.
 
         Args:
-            guard: what stopped it.
-            observed: what there is to know of it.
+            guard: the guard that stopped it, if any.
+            observed: what was observed during it.
         """
         self._has_run = True
         self._waits = self._waits or activation.first != activation.last
@@ -125,8 +125,9 @@ class JudgedClause:
             self._judge_one(activation, observed, path)
 
     def refuse(self, refusal: Refusal, path: str) -> None:
-        """Count a start that was refused for what a requirement demands: that breaks the demand, and no node succeeds
-        that does not start for what it needs."""
+        """Count a start that a guard refused: it violates the demand that the guard enforces, and for `succeeds` it is
+        a failure.
+        """
         own = self.claim.verb == refusal.verb and self.requirement.name == refusal.requirement
         if own or (VERBS[self.claim.verb].limits == "success" and VERBS[refusal.verb].operand == "condition"):
             self._has_run = True
@@ -135,13 +136,13 @@ class JudgedClause:
             )
 
     def end_run(self, run: Run, root: Activation) -> None:
-        """The run that was open has ended.
+        """Judge the open run, which has ended.
 
         Args:
-            root: the activation of its root.
+            root: the activation of the run's root.
         """
         for activation, observed, path in self._waiting:
-            self._judge_one(activation, observed.during(activation), path, root)  # asked anew: a late sample may count
+            self._judge_one(activation, observed.during(activation), path, root)  # again: a late sample may count
         self._waiting.clear()
         if self._judge_run is not None:
             judged = [
@@ -150,7 +151,7 @@ class JudgedClause:
                 for over in (self._over(root, place),)
                 for judgement in self._judge_run(self.judged, over)
             ]
-            # Of all uses of a subtree together in the order of time, for a window may have the last ones only.
+            # In order of time, for all uses of a subtree together: a window may keep only the last ones.
             for judgement, place, over in sorted(judged, key=lambda each: each[0].at if each[0] is not None else 0):
                 found = _clocked(judgement, root)
                 if found is None or found.holds is not False:
@@ -164,7 +165,7 @@ class JudgedClause:
         """Count an activation.
 
         Args:
-            root: of the run, where what it comes to rests on the order of what happened.
+            root: of the run, if the judgement depends on the order of events.
         """
         assert self._judge is not None, "the clause is judged by its activations"
         counts = in_scope(self.requirement.scopes, self.claim.verb, observed)
@@ -172,8 +173,8 @@ class JudgedClause:
             return
         judgement = self._judge(self.judged, activation, observed)
         if activation.outcome == "O" and judgement is not None and judgement.holds:
-            # Of `needs` as well, although nothing can break it any more: with one rule for all clauses, the figures of
-            # two at one node differ by what happened, and not by where the log ends.
+            # Also for `needs`, although nothing can violate it any more: with one rule for all clauses, the counts of
+            # two clauses at one node differ by what happened, not by where the log ends.
             judgement = None
         if judgement is not None and isinstance(counts, Unknown):
             judgement = Judgement(None, judgement.at, counts.why)
@@ -195,7 +196,7 @@ class JudgedClause:
         self._tally.add(judgement, path, end, self.explain(judgement, path) if judgement.holds is False else ())
 
     def _own(self, joined: Joined) -> list[tuple[int, ...]]:
-        """The nodes of a log that it holds for: together are those that are judged as one."""
+        """The nodes of a log that it holds for, grouped: the nodes of a group are judged as one."""
         subject = self._subject
         if isinstance(subject, Span):
             firsts = self._instances(joined, _known(subject.first.subject))
@@ -211,7 +212,7 @@ class JudgedClause:
         return [(uid,) for uid in self._instances(joined, _known(subject))]
 
     def _instances(self, joined: Joined, target: Target | None) -> list[int]:
-        """A node's instances; those that are not in the log are noted."""
+        """The uids of a node's instances; notes those missing from the log."""
         found: list[int] = []
         for path, uid in joined.instances(target) if target is not None else ():
             self._paths[path] = None
@@ -222,7 +223,7 @@ class JudgedClause:
         return found
 
     def _is_own(self, guard: Guard) -> bool:
-        """Whether a guard was put around the node for this clause; none is for a span or a sum."""
+        """Whether a guard enforces this clause; spans and sums have no guards."""
         if isinstance(self._subject, Span | Total):
             return False
         return guard.requirement == self.requirement.name and self.claim.verb in _STOPPED_BY.get(guard.kind, ())
@@ -243,8 +244,8 @@ class JudgedClause:
         return ""
 
     def remark(self, tree: LoggedTree, keeping: Collection[int]) -> str | None:
-        """What is to be said of a number of starts: those of a node that completes at once and is not reset are in the
-        log only where its result is another one.
+        """A remark on a count of starts: a node that completes at once and is not reset leaves a row in the log only
+        when its result changes.
 
         Args:
             keeping: as of a `Session`.
@@ -257,19 +258,19 @@ class JudgedClause:
 
     @property
     def is_over_run(self) -> bool:
-        """Whether it is judged when a run has ended."""
+        """Whether the clause is judged at the end of a run."""
         return self._judge_run is not None
 
     def is_worst_in(self, run: Run) -> bool:
-        """Whether a run has the worst violation so far; of a window nobody knows before all is read."""
+        """Whether a run has the worst violation so far; unknown for a window until all logs are read, so False."""
         return isinstance(self._tally, Tally) and self._tally.is_worst_in(run)
 
     def verdict(self) -> ClauseVerdict:
-        """What it has come to."""
+        """The verdict on all judgements so far."""
         tally = self._tally.result()
         verdict = tally.verdict()
         if verdict == SATISFIED and not self._has_run:
-            verdict = NEVER  # it is kept by a node that did nothing
+            verdict = NEVER  # the node was never exercised
         why = ""
         if self._not_judged or (self._missing and verdict != VIOLATED):
             verdict, why = UNKNOWN, self._not_judged or self._missing
@@ -307,27 +308,27 @@ class JudgedClause:
 
 
 def _events(claim: Claim, subject: Subject | None) -> tuple[Event, ...]:
-    """The events that a clause is about."""
+    """The events that a clause names."""
     if isinstance(subject, Span):
         return subject.first, subject.last
     return (claim.event,) if claim.event is not None else ()
 
 
 def _known(subject: Subject | None) -> Target | None:
-    """The node of a subject that is one."""
+    """The node of a subject, if the subject is a node."""
     if isinstance(subject, Mission) and subject.node is not None:
         return Target(subject.node)
     return subject if isinstance(subject, Target) else None
 
 
 def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement | None:
-    """A judgement that rests on the order of what happened in a run."""
+    """The judgement, unknown if the clock was set back during the run: it depends on the order of events."""
     if judgement is None or root is None or root.timing != "broken":
         return judgement
     return Judgement(None, judgement.at, CLOCK_SET_BACK)
 
 
-# The guards that stop a node for a clause; the others around it belong to other clauses.
+# The kinds of guards that halt a node for each verb; other guards around it belong to other clauses.
 _STOPPED_BY: Final = {
     LIMITING: words(enforced="limit"),
     WATCHING: words(limits=("success",), enforced="guard"),

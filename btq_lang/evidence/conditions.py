@@ -1,4 +1,4 @@
-"""Whether conditions hold at a moment, and what bounds are, by what was observed then.
+"""Evaluates conditions and bounds at a moment, from what was observed.
 
 One invariant: an unknown part makes the whole unknown unless the other parts decide it (Kleene), and the reason of the
 first such part is kept.
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 
 class Bound(Record):
-    """What a bound that is not a value is at a moment.
+    """The value, at a moment, of a bound that is not a constant.
 
     Attributes:
         text: as typed.
@@ -54,12 +54,12 @@ class Bound(Record):
 
 
 class Reading(Record):
-    """A signal, or a summary of it, beside a bound, which is what many a condition is: `battery >= 3 %`.
+    """A signal, or an aggregate of it, compared with a bound, as in `battery >= 3 %`.
 
     Attributes:
         name: as typed: `battery`, `max(force)`.
-        excess: how far it is on the wrong side of the bound, in SI; negative on the right side.
-        holds: whether the condition does.
+        excess: how far the value is on the wrong side of the bound, in SI; negative on the right side.
+        holds: whether the condition holds.
     """
 
     name: str
@@ -100,7 +100,7 @@ def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
 
 
 def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Value | Bound | Unknown:
-    """A bound at a moment: of a table the value of the first case that holds then."""
+    """The value of a bound at a moment; for a table, that of the first case that holds then."""
     if isinstance(bounded, Table):
         for case in bounded.cases:
             holds = case.condition is None or truth(case.condition, observed, moment)
@@ -118,8 +118,9 @@ def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Value | Bo
 
 
 def reading_of(condition: Condition, observed: Observed, moment: Moment) -> Reading | None:
-    """The signal and the bound of a condition that is one comparison of these, or `not A or B` with such a B where A
-    holds; None of any other, or where unknown."""
+    """The reading of a condition that compares a signal with a bound, or is `not A or B` with such a B where A holds;
+    None for other conditions and unknown values.
+    """
     if isinstance(condition, InContext):
         return reading_of(condition.condition, observed, moment)
     if isinstance(condition, Not):
@@ -161,7 +162,7 @@ def _compared(condition: Compare, observed: Observed, moment: Moment) -> Truth:
 
 
 def _number(part: Number | Flag | Text, observed: Observed, moment: Moment) -> SampleValue | Unknown:
-    """An operand of a comparison in SI; of a text and a bool its value."""
+    """The value of an operand of a comparison, numbers in SI."""
     if isinstance(part, Value):
         return part.si
     if isinstance(part, Flag | Text):
@@ -189,7 +190,7 @@ def _number(part: Number | Flag | Text, observed: Observed, moment: Moment) -> S
 
 
 def _unit(part: Read | Aggregate) -> Unit | None:
-    """The unit to say a value in; of differences between temperatures it is no level."""
+    """The unit to print a value in; a difference of temperatures is not a temperature."""
     unit = part.signal.unit
     if isinstance(part, Read) or unit is None:
         return unit
@@ -199,14 +200,14 @@ def _unit(part: Read | Aggregate) -> Unit | None:
 
 
 def _not_judged(part: object) -> str:
-    """What of the language is not judged from logs."""
+    """Names the construct that cannot be judged from logs."""
     if isinstance(part, Script):
         return "a script of the engine is not judged"
     return f"the parameter `{part.name}` has no value" if isinstance(part, Parameter) else "it is not judged"
 
 
 _COMPARISONS: Final[dict[str, Callable[[object, object], bool]]] = {
-    "<": operator.lt,  # type: ignore[dict-item]  # what is compared is of one sort
+    "<": operator.lt,  # type: ignore[dict-item]  # both operands have one type
     "<=": operator.le,  # type: ignore[dict-item]
     ">": operator.gt,  # type: ignore[dict-item]
     ">=": operator.ge,  # type: ignore[dict-item]

@@ -1,4 +1,4 @@
-"""In how many runs each context held: a requirement about a context that never came says nothing."""
+"""In how many runs each context held: a requirement in a context that never occurred was not tested."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 
 
 class Contexts:
-    """The contexts of a mission, while logs of it are read."""
+    """Counts the runs of a mission's contexts while its logs are read."""
 
     def __init__(self, contexts: Mapping[str, Condition | None]) -> None:
         """
         Args:
-            contexts: by name; None: it could not be understood.
+            contexts: by name; None for one that could not be resolved.
         """
         self._contexts: Final = [InContext(name, each) for name, each in contexts.items() if each is not None]
         self._held: Final = dict.fromkeys(contexts, 0)
         self._unknown: Final = dict.fromkeys(contexts, 0)
 
     def join(self, joined: Joined, signals: Signals, history: History) -> None:
-        """Read another log."""
+        """Begin another log."""
         self._signals, self._nodes = signals, Nearby(ROOT, joined, history)
         for context in self._contexts:
             for part in parts_in(context):
@@ -42,10 +42,10 @@ class Contexts:
                     self._nodes.find(part.target)
 
     def end_run(self, root: Activation) -> None:
-        """The run that was open has ended.
+        """Count the open run, which has ended.
 
         Args:
-            root: the activation of its root.
+            root: the activation of the run's root.
         """
         observed = Observed(self._signals, self._nodes, root.started, root.ended, root.timing != "latest")
         for context in self._contexts:
@@ -60,5 +60,5 @@ class Contexts:
                 self._unknown[context.name] += is_unknown
 
     def summary(self) -> tuple[ContextSummary, ...]:
-        """Each context, in the order of their definitions."""
+        """The counts of each context, in the order of definition."""
         return tuple(ContextSummary(name, held, self._unknown[name]) for name, held in self._held.items())

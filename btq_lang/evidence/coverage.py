@@ -1,4 +1,4 @@
-"""Which nodes ran, in how many runs, how long they took and what they came to; retries, and where failures began."""
+"""Which nodes ran, in how many runs, how long and with which results; retries, and where failures began."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ if TYPE_CHECKING:
 
 
 class Coverage:
-    """The nodes of the logs of a mission.
+    """Statistics of the nodes in a mission's logs.
 
     Attributes:
-        retries: starts of what Retry nodes repeat, without the first of each.
-        recoveries: starts of the second children of Nav2's RecoveryNodes.
+        retries: starts of children of Retry nodes, without the first of each.
+        recoveries: starts of second children of Nav2's RecoveryNodes.
     """
 
     def __init__(self) -> None:
         self.retries: Final = _Repeated()
         self.recoveries: Final = _Repeated()
         self._nodes: Final[dict[tuple[int, str], _Node]] = {}
-        self._now: dict[int, _Node] = {}  # those of the tree whose log is read, by uid
-        self._repeated: dict[int, list[tuple[_Repeated, int]]] = {}  # what a start of them counts for
+        self._now: dict[int, _Node] = {}  # of the current log, by uid
+        self._repeated: dict[int, list[tuple[_Repeated, int]]] = {}  # the counters that a start increments
         self._runs = 1
 
     def expect(self, tree: LoggedTree, written: Mapping[int, SourceNode]) -> None:
-        """The nodes of a log may run.
+        """Begin a log whose tree has these nodes.
 
         Args:
-            written: as what they are written, by uid.
+            written: the written node of each, by uid.
         """
         self._now = {}
         for uid, node in tree.nodes.items():
@@ -50,17 +50,17 @@ class Coverage:
                     self._repeated.setdefault(second, []).append((self.recoveries, 1))
 
     def count(self, activation: Activation) -> None:
-        """One of them has ended."""
+        """Count an activation that has ended."""
         uid = activation.uid
         self._now[uid].count(activation, self._runs)
         for repeated, step in self._repeated.get(uid, ()):
             repeated.now += step
 
     def end_run(self, run: int, began: int | None) -> None:
-        """The run that was open has ended.
+        """Count the open run, which has ended.
 
         Args:
-            began: the node where its failure began, if it failed.
+            began: the node where the run's failure began, if it failed.
         """
         self._runs += 1
         if began is not None:
@@ -69,16 +69,16 @@ class Coverage:
             repeated.end_run(run)
 
     def took(self, uid: int, time: int) -> None:
-        """A tick of a leaf has taken so many µs."""
+        """Record that a tick of a leaf took this time, in µs."""
         self._now[uid].ticks.append(time)
 
     def summary(self) -> tuple[NodeSummary, ...]:
-        """The nodes in the order of their numbers."""
+        """The statistics of all nodes, in the order of their uids."""
         return tuple(node.summary() for _, node in sorted(self._nodes.items(), key=lambda each: each[0]))
 
 
 class _Node:
-    """What was counted of a node."""
+    """The counts of one node."""
 
     def __init__(self, path: str, kind: str, is_leaf: bool, written: SourceNode | None) -> None:
         self.began = 0
@@ -88,7 +88,7 @@ class _Node:
         self._is_leaf: Final = is_leaf
         self._written: Final = written
         self._outcomes: Final[dict[Outcome, int]] = {"S": 0, "F": 0, "H": 0, "O": 0}
-        self._times: Final = array("q")  # of those that succeeded or failed, in µs
+        self._times: Final = array("q")  # of activations that succeeded or failed, in µs
         self._runs = self._run = 0
 
     def count(self, activation: Activation, run: int) -> None:
@@ -120,7 +120,7 @@ class _Node:
 
 
 class _Repeated:
-    """How often something was done again: in the run that is open, in all, and in which run most often."""
+    """Counts repetitions: in the open run, in total, and in the run with the most."""
 
     def __init__(self) -> None:
         self.now = 0
@@ -137,7 +137,7 @@ class _Repeated:
 
 
 def _percentile(ordered: list[int], percent: int) -> float | None:
-    """The smallest of some times that so many percent of them do not exceed, in seconds; None without any."""
+    """The smallest of some times, in µs, that this percentage of them does not exceed, in seconds; None without any."""
     return ordered[-(-len(ordered) * percent // 100) - 1] / 1e6 if ordered else None
 
 

@@ -10,7 +10,7 @@ The columns, which later versions add to but do not change:
     low, high       limits of the probability
     more            how many more without a violation decide
     result          in words
-    look_at         what to look at, of a violated clause
+    look_at         what to look at, for a violated clause
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """How measured values are distributed, counted in equal steps.
 
-One invariant: whatever comes, few steps are kept: they double when they get too many, and the bound is the edge of one.
+One invariant: the number of steps is bounded: their width doubles when there are too many, and the bound is always an
+edge.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Distribution:
-    """The values that were measured for a clause."""
+    """The values measured for a clause."""
 
     def __init__(self) -> None:
         self._counts: dict[int, int] = {}  # by how many steps above the bound
@@ -43,7 +44,7 @@ class Distribution:
             self._step *= 2
 
     def histogram(self, goal: Value | None) -> Histogram | None:
-        """The counts beside the bound and a goal; None where nothing was measured."""
+        """The histogram with the bound and a goal; None where nothing was measured."""
         if self._last is None:
             return None
         low, high = min(self._counts), max(self._counts)

@@ -1,6 +1,6 @@
-"""Logs against requirements: every clause at every node that it holds for, judged as the log is read.
+"""Judges every clause at every node that it holds for, while logs are read.
 
-One invariant: state is kept only for what is open, the current run, and what has been counted.
+One invariant: the only state is open activations, the current run, and counts.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 class MissionEvaluation:
-    """A mission's requirements, while logs of it are read."""
+    """Judges a mission's requirements while its logs are read."""
 
     def __init__(
         self, mission: Candidate, with_timelines: bool = False, ran: Callable[[int], None] = lambda number: None
@@ -40,7 +40,7 @@ class MissionEvaluation:
         """
         Args:
             with_timelines: keep the runs that broke clauses worst.
-            ran: is given the number of each run that has been judged.
+            ran: called with the number of each run after it is judged.
         """
         self._ran: Final = ran
         self.mission: Final = mission
@@ -66,10 +66,10 @@ class MissionEvaluation:
         self._timelines: Final = Timelines() if with_timelines else None
 
     def read(self, session: Session, joined: Joined, given: Mapping[str, Series], first_run: int, source: str) -> int:
-        """Judge the runs of a session; how many there are.
+        """Judge the runs of a session; returns how many there are.
 
         Args:
-            given: samples by signal, which count before the log's own.
+            given: samples by signal, which override the log's own.
             first_run: the number of the first run.
             source: the file, as people read it.
         """
@@ -99,7 +99,7 @@ class MissionEvaluation:
             history.add(activation)
             if self._timelines is not None:
                 self._timelines.see(activation)
-            if activation.uid in guards.concerned:  # few of the nodes are
+            if activation.uid in guards.concerned:  # few nodes are
                 for refusal in guards.refused(activation):
                     for clause in at[refusal.uid]:
                         clause.refuse(refusal, tree.nodes[refusal.uid].path)
@@ -142,7 +142,7 @@ class MissionEvaluation:
         return runs
 
     def result(self) -> MissionVerdicts:
-        """What it has come to."""
+        """The verdicts so far."""
         found = self.mission.requirements
         by_requirement: dict[str, list[ClauseVerdict]] = {name: [] for name in found.all}
         for clause in self._clauses:
@@ -176,7 +176,7 @@ class MissionEvaluation:
         return replace(verdict, timeline=self._timelines.of(clause))
 
     def _add(self, source: Source) -> None:
-        """Add what was read of a session to what was read of its file."""
+        """Merge a session's counts into those of its file."""
         last = self._sources[-1] if self._sources else None
         if last is None or (last.file, last.identity) != (source.file, source.identity):
             self._sources.append(source)

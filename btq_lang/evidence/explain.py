@@ -1,7 +1,7 @@
-"""What led to a violation: where the time went, where a failure began, which sample was read and who ran then.
+"""What led to a violation: where the time went, where a failure began, which sample was read and which leaf ran then.
 
-One invariant: of what has ended only sums are kept, for each judged node those of the nodes below it, and of a run its
-last failure, so memory does not grow with a log.
+One invariant: ended activations are kept only as sums over the nodes below each judged node, and a run only as its last
+failure, so memory does not grow with a log.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Origin(Record):
     """Where a failure began: a node that failed although its last child did not, or that has no child.
 
     Attributes:
-        child: the one that ended last; 0 for none.
+        child: the child that ended last; 0 for none.
         outcome: of that child.
     """
 
@@ -43,29 +43,29 @@ class Origin(Record):
 
 
 class Explainer:
-    """What the nodes of a session do, while its log is read."""
+    """Follows the nodes of a session while its log is read."""
 
     def __init__(
         self, tree: LoggedTree, judged: Collection[int], signals: Signals, *, has_clauses_over_runs: bool
     ) -> None:
         """
         Args:
-            judged: the nodes whose violations are to be explained.
+            judged: the nodes whose violations are explained.
         """
         self._tree: Final = tree
         self._signals: Final = signals
         self._below: Final[dict[int, Sums]] = {uid: {} for uid in judged}  # since the last end of each judged node
         self._above: Final = {uid: [each for each in _above(uid, tree) if each in judged] for uid in tree.nodes}
         self._last: Final[dict[int, tuple[int, Outcome, Origin | None]]] = {}  # of open nodes: their last child
-        self._ended: Final[dict[int, tuple[Activation, Sums, Origin | None]]] = {}  # the last one of each judged node
-        self._leaves: Final[dict[int, Activation]] = {}  # the last one of each leaf
-        self._failed: Activation | None = None  # the last leaf of the run that ran for a while and failed
-        self._is_over = False  # the last run
+        self._ended: Final[dict[int, tuple[Activation, Sums, Origin | None]]] = {}  # the last of each judged node
+        self._leaves: Final[dict[int, Activation]] = {}  # the last activation of each leaf
+        self._failed: Activation | None = None  # the run's last leaf that took time and failed
+        self._is_over = False  # whether the run has ended
         self.over_run: Final = RunExplainer(tree, partial(self._samples, is_named=True))
         self._is_over_run: Final = has_clauses_over_runs
 
     def see(self, activation: Activation) -> Origin | None:
-        """An activation has ended; where its failure began, if it failed."""
+        """Record an activation that has ended; returns where its failure began, if it failed."""
         uid, outcome = activation.uid, activation.outcome
         if self._is_over:
             self._failed = None
@@ -86,7 +86,7 @@ class Explainer:
             if outcome == "F" and activation.end > activation.begin:
                 self._failed = activation
         parent = self._tree.parent[uid]
-        if parent and (outcome != "H" or parent not in self._last):  # what a node halts as it ends is not what ended it
+        if parent and (outcome != "H" or parent not in self._last):  # halting a child does not cause the end
             self._last[parent] = uid, outcome, origin
         for above in self._above[uid]:
             sums = self._below[above].setdefault(uid, [0, 0, 0])
@@ -96,7 +96,7 @@ class Explainer:
         return origin
 
     def chain(self, claim: Claim, judgement: Judgement, path: str) -> tuple[Link, ...]:
-        """What led to the violation of a clause by the activation that has just ended of the node with a path."""
+        """What led to the violation of a clause by the activation, of the node with this path, that has just ended."""
         if claim.condition is not None:
             return tuple(self._sample(claim.condition, judgement.at, path))
         for activation, sums, origin in self._ended.values():
@@ -138,7 +138,7 @@ class Explainer:
         return Link("origin", path, text, time / 1e6, number, failed)
 
     def _levels(self, signal: Signal | None, unit: Unit | None, activation: Activation) -> Link:
-        """What a signal, of which an activation used some, was at its start and at its end."""
+        """The level of a signal at the start and at the end of an activation that used some of it."""
         assert signal is not None, "the clause names what is used"
         levels = [self._signals.reading(signal, time) for time in (activation.begin, activation.end)]
         first, last = [quantity(float(each), unit) for each in levels if not isinstance(each, Unknown)]
@@ -146,7 +146,7 @@ class Explainer:
         return Link("sample", self._tree.nodes[activation.uid].path, text, activation.seconds, 1, 0)
 
     def _sample(self, condition: Condition, time: int, judged: str) -> Iterator[Link]:
-        """The samples that a condition reads, and the leaf that had failed before."""
+        """The samples that a condition read, and the leaf that had failed before."""
         yield from self._samples(condition, time)
         failed = self._failed
         path = self._tree.nodes[failed.uid].path if failed is not None else judged
@@ -154,10 +154,10 @@ class Explainer:
             yield Link("failure", path, f"{path} had failed before in this run", failed.seconds, 1, 1)
 
     def _samples(self, condition: Condition, time: int, *, is_named: bool = False) -> Iterator[Link]:
-        """The samples that a condition reads: how old they are, and which leaf ran when they were taken.
+        """The samples that a condition read: their age, and which leaf ran when they were taken.
 
         Args:
-            is_named: say which signals they are of.
+            is_named: name the signals.
         """
         for signal in dict.fromkeys(signals_in(condition)):
             sampled = self._signals.sampled(signal, time)
@@ -174,7 +174,7 @@ class Explainer:
 
 
 def _above(uid: int, tree: LoggedTree) -> Iterator[int]:
-    """The nodes that a node is below of."""
+    """The ancestors of a node."""
     while uid := tree.parent[uid]:
         yield uid
 

@@ -1,7 +1,7 @@
-"""What led to a violation that is judged over a run: which leaves ran meanwhile, how the starts ended that count, and
-when an event last happened.
+"""What led to a violation judged over a run: which leaves ran meanwhile, how the counted starts ended, and when an
+event last happened.
 
-One invariant: of each leaf only its last activations in the open run are kept, so memory does not grow with a log.
+One invariant: only the last activations of each leaf in the open run are kept, so memory does not grow with a log.
 """
 
 from __future__ import annotations
@@ -24,26 +24,26 @@ if TYPE_CHECKING:
 
 
 class RunExplainer:
-    """What the leaves of a session do in the open run."""
+    """Follows the leaves of a session in the open run."""
 
     def __init__(self, tree: LoggedTree, samples: Callable[[Condition, int], Iterator[Link]]) -> None:
         """
         Args:
-            samples: what a condition was judged by at a time, in whole sentences.
+            samples: gives the samples that a condition read at a time, in whole sentences.
         """
         self._tree: Final = tree
         self._samples: Final = samples
         self._leaves: Final[dict[int, list[Activation]]] = {}
 
     def add(self, activation: Activation) -> None:
-        """A leaf has ended."""
+        """Record an activation of a leaf."""
         kept = self._leaves.setdefault(activation.uid, [])
         kept.append(activation)
         if len(kept) >= 2 * _KEPT:
             del kept[:_KEPT]
 
     def clear(self) -> None:
-        """Another run begins."""
+        """Begin another run."""
         self._leaves.clear()
 
     def chain(self, claim: Claim, judgement: Judgement, over: OverRun, others: Nearby) -> tuple[Link, ...]:
@@ -65,7 +65,7 @@ class RunExplainer:
         return tuple(self._going_on(judgement.since, judgement.at, over.own))
 
     def _meanwhile(self, begin: int, end: int, leaves: Iterable[int]) -> Iterator[Link]:
-        """The leaves that ran for a twentieth of a time, the longest first."""
+        """The leaves that ran for at least a twentieth of a period, the longest first."""
         found: list[tuple[int, int, list[Activation]]] = []
         for uid in leaves:
             kept = self._leaves.get(uid, [])
@@ -78,7 +78,7 @@ class RunExplainer:
             yield part(self._tree.nodes[uid].path, -time, len(inside), _failed(inside))
 
     def _going_on(self, begin: int, end: int, own: Sequence[Activation]) -> Iterator[Link]:
-        """What ran below a node that did not end; of a leaf, how long it ran."""
+        """What ran below a node that did not end; for a leaf, how long it ran."""
         late = next(each for each in own if each.begin <= begin <= each.end >= end)
         if self._tree.last[late.uid] == late.uid:
             yield Link("self", self._path(late), f"it ran {duration(late.seconds)}", late.seconds, 1, _failed([late]))
@@ -95,7 +95,7 @@ class RunExplainer:
             yield part(self._tree.nodes[uid].path, times[uid], len(by_node[uid]), _failed(by_node[uid]))
 
     def _inside(self, starts: Sequence[Activation]) -> Iterator[Link]:
-        """The leaves that failed in some activations of a node, those that failed most often first."""
+        """The leaves that failed during activations of a node, the most frequent first."""
         found: list[Link] = []
         for uid in range(starts[0].uid + 1, self._tree.last[starts[0].uid] + 1):
             kept = self._leaves.get(uid, [])
@@ -107,7 +107,7 @@ class RunExplainer:
         return iter(sorted(found, key=lambda each: -each.failed))
 
     def _last(self, event: Event, time: int, others: Nearby) -> Iterator[Link]:
-        """What the node of an event did last instead."""
+        """What the node of an event last did instead."""
         if event.condition is not None:
             yield from self._samples(event.condition, time)
             return
@@ -129,7 +129,7 @@ class RunExplainer:
 
 
 def part(path: str, time: int, number: int, failed: int) -> Link:
-    """A node that took a share of a time, in µs."""
+    """A node that took a share of the time; time in µs."""
     text = f"{path} ran {duration(time / 1e6)} of it"
     if number > 1:
         text += f" in {number} starts"
@@ -140,7 +140,7 @@ def part(path: str, time: int, number: int, failed: int) -> Link:
 
 
 def _ends(path: str, starts: Sequence[Activation]) -> Link:
-    """How some activations of a node ended."""
+    """How activations of a node ended."""
     numbers = {outcome: sum(each.outcome == outcome for each in starts) for outcome in _ENDED}
     came = [f"{number} {_ENDED[outcome]}" for outcome, number in numbers.items() if number]
     time = sum(each.end - each.begin for each in starts)
@@ -152,7 +152,7 @@ def _failed(activations: Iterable[Activation]) -> int:
 
 
 def ago(time: int) -> str:
-    """How long before something was, in µs."""
+    """`… before`, for a duration in µs."""
     return f"{duration(time / 1e6)} before" if time >= _JUST_BEFORE else "just before"
 
 

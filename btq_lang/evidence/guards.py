@@ -1,7 +1,7 @@
-"""What the nodes that a build has put around others did: whom they stopped, and whose start they refused.
+"""What the guards, nodes that a build adds around others, did: which nodes they stopped, and whose start they refused.
 
-One invariant: an activation that was halted is passed on only when it is known who halted it: the nearest node above it
-that was not halted itself.
+One invariant: a halted activation is passed on only when it is known what halted it: its nearest ancestor that was not
+halted itself.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 
 class Guard(Record):
-    """A node that was put around others.
+    """A node that a build added around others.
 
     Attributes:
         kind: `Timeout`, `ReactiveSequence`, `Sequence` or `ScriptCondition`.
-        requirement: the one that asks for it.
+        requirement: the requirement that it enforces.
     """
 
     kind: str
@@ -31,7 +31,7 @@ class Guard(Record):
 
 
 class Refusal(Record):
-    """A node was not started, for that would have broken a requirement.
+    """A start that a guard refused because it would have violated a requirement.
 
     Attributes:
         verb: of the clause that refused it.
@@ -47,14 +47,14 @@ class Guards:
     """The guards around some nodes of a tree, while a log is read.
 
     Attributes:
-        concerned: those nodes, the guards and the root; no other activation changes anything here.
+        concerned: those nodes, the guards and the root; other activations need not be passed in.
     """
 
     def __init__(self, tree: LoggedTree, enforcing: Mapping[int, str], judged: Collection[int]) -> None:
         """
         Args:
-            enforcing: the nodes that were put around others, with their requirements.
-            judged: the nodes that somebody asks about.
+            enforcing: the guards, each with its requirement.
+            judged: the nodes with clauses.
         """
         self._guards: Final = {uid: Guard(tree.nodes[uid].kind, name) for uid, name in enforcing.items()}
         self._around: Final[dict[int, tuple[int, ...]]] = {}  # innermost first
@@ -85,7 +85,7 @@ class Guards:
                 self._waiting.append((halted, guards))
                 continue
             further = guards[guards.index(uid) + 1 :] if uid in guards else ()
-            is_inside = activation.started <= halted.started  # else that one has left no row, and this one came later
+            is_inside = activation.started <= halted.started  # else it left no row, and this one came later
             if is_inside and activation.outcome == "H" and further:
                 self._waiting.append((halted, further))
             else:
@@ -98,7 +98,7 @@ class Guards:
         return found
 
     def refused(self, activation: Activation) -> list[Refusal]:
-        """The starts that are refused by what has just ended."""
+        """The starts that the activation which has just ended refused."""
         if activation.outcome != "F" or activation.uid not in self._refuse:
             return []
         requirement = self._guards[activation.uid].requirement
@@ -106,4 +106,4 @@ class Guards:
         return [Refusal(uid, activation.end, requirement, verb) for uid in refused]
 
 
-_REFUSING: Final = words(enforced="refusal")  # what the names end in of the Sequences that refuse a start
+_REFUSING: Final = words(enforced="refusal")  # the end of the names of Sequences that refuse a start

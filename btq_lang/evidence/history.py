@@ -1,7 +1,7 @@
-"""What nodes did in the run that is open: kept for the nodes that somebody asks about, and for no others.
+"""What nodes did in the open run, kept only for the nodes that clauses name.
 
-One invariant: a clause at a node of a subtree that is used several times means, by the name of another node, that node
-in the same use of the subtree; outside of it, all that are in the innermost tree around both.
+One invariant: in a subtree that is used several times, a clause that names another node means that node in the same use
+of the subtree; outside of it, all its instances in the innermost tree around both.
 """
 
 from __future__ import annotations
@@ -20,29 +20,29 @@ if TYPE_CHECKING:
 
 
 class History:
-    """The activations of the open run, by node, each when it has ended."""
+    """The ended activations of the open run, by node."""
 
     def __init__(self) -> None:
         self._by_node: Final[dict[int, list[Activation]]] = {}
 
     def watch(self, uids: Iterable[int]) -> None:
-        """Keep what these nodes do."""
+        """Keep the activations of these nodes."""
         for uid in uids:
             self._by_node.setdefault(uid, [])
 
     def add(self, activation: Activation) -> None:
-        """A node has ended."""
+        """Record an activation that has ended."""
         kept = self._by_node.get(activation.uid)
         if kept is not None:
             kept.append(activation)
 
     def of(self, uids: Sequence[int]) -> list[Activation]:
-        """What nodes did, in the order of the starts."""
+        """The activations of nodes, in the order of their starts."""
         found = [activation for uid in uids for activation in self._by_node[uid]]
         return sorted(found, key=_started) if len(uids) > 1 else found
 
     def runs(self, uid: int, moment: Moment) -> bool | Unknown:
-        """Whether a node runs: from the row with which it starts to the row with which it ends."""
+        """Whether a node is active at a moment: from the row of its start to the row of its end."""
         kept = self._by_node[uid]
         index = bisect_right(kept, moment, key=_started) - 1
         if index < 0 or moment > kept[index].ended:
@@ -51,18 +51,18 @@ class History:
         return True if is_known else Unknown(UNKNOWN_END)
 
     def clear(self) -> None:
-        """The run has ended."""
+        """Forget the run, which has ended."""
         for kept in self._by_node.values():
             kept.clear()
 
 
 class Nearby:
-    """Other nodes as a clause at one node means them."""
+    """The nodes that a clause names, resolved relative to its own node."""
 
     def __init__(self, uid: int, joined: Joined, history: History) -> None:
         """
         Args:
-            uid: of the one node; the root's where there is none.
+            uid: of the clause's node; the root's if it has none.
         """
         self._uid: Final = uid
         self._joined: Final = joined
@@ -70,7 +70,7 @@ class Nearby:
         self._found: Final[dict[Target, tuple[int, ...] | Unknown]] = {}
 
     def find(self, target: Target) -> tuple[int, ...] | Unknown:
-        """The instances of a node; what they do is kept from now on."""
+        """The instances of a node, whose activations are kept from now on."""
         instances = self._joined.instances(target)
         lost = next((path for path, uid in instances if uid is None), None)
         found: tuple[int, ...] | Unknown
@@ -83,7 +83,7 @@ class Nearby:
         return found
 
     def activations(self, target: Target) -> list[Activation]:
-        """What a node did in the run, in the order of the starts."""
+        """The activations of a node in the run, in the order of their starts."""
         found = self._found[target]
         return [] if isinstance(found, Unknown) else self._history.of(found)
 
@@ -97,7 +97,7 @@ class Nearby:
 
 
 def near(uid: int, others: Sequence[int], tree: LoggedTree) -> tuple[int, ...]:
-    """Those of some nodes that are in the innermost tree around a node that has any of them."""
+    """Those of the other nodes in the innermost tree around a node that contains any of them."""
     while others:
         uid = _use_around(uid, tree)
         inside = tuple(other for other in others if not uid or uid <= other <= tree.last[uid])
@@ -107,8 +107,7 @@ def near(uid: int, others: Sequence[int], tree: LoggedTree) -> tuple[int, ...]:
 
 
 def _use_around(uid: int, tree: LoggedTree) -> int:
-    """The SubTree node that a node is inside of; 0: it is in the main tree.  The paths of all in a subtree begin with
-    that of its SubTree node."""
+    """The SubTree node that a node is inside of, by the prefix of its path; 0 in the main tree."""
     path = tree.nodes[uid].path
     above = tree.parent[uid]
     while above and not path.startswith(f"{tree.nodes[above].path}/"):

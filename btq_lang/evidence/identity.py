@@ -1,7 +1,7 @@
 """Which node of a log is which written node.
 
-One invariant: a node of a log is joined with a written one only where both have the same number and path in one build
-of the mission, or the same path that no other node has; what is not joined is not judged.
+One invariant: a node of a log is joined with a written one only if both have the same number and path in one build of
+the mission, or the same unique path; what is not joined is not judged.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 
 class Candidate:
-    """A mission that logs may be of, and the trees that `btq build` makes of it, made when they are asked for.
+    """A mission that logs may belong to, and the trees that `btq build` makes of it, built on demand.
 
     Attributes:
-        name: what people call it.
+        name: its name, for messages.
         side: the nodes that its side file lists, uid and path of each; None where there is none.
     """
 
@@ -44,7 +44,7 @@ class Candidate:
         self._unmade: Final = _builds(self)
 
     def builds(self) -> Iterator[Build]:
-        """What `btq build` makes of it: as it does without options first."""
+        """What `btq build` makes of it, without options first."""
         yield from self._builds
         for build in self._unmade:
             self._builds.append(build)
@@ -56,8 +56,8 @@ class Joined(Record):
 
     Attributes:
         tree: of the log.
-        how: how they were found.
-        uids: of the nodes that were found, by the number that they have in the build.
+        how: how they were found, in words.
+        uids: the uids of the nodes that were found, by their number in the build.
         number: how many of the log's nodes were found.
         lacking: why the others were not.
     """
@@ -71,12 +71,12 @@ class Joined(Record):
     lacking: str = "was not found in a log of another version of the mission"
 
     def instances(self, target: Target) -> list[tuple[str, int | None]]:
-        """The paths of the instances of a written node, each with its uid in the log; None where it is not there."""
+        """The paths of the instances of a written node, each with its uid in the log; None if it is not there."""
         uids = [(each, self.uids.get(_number(each))) for each in self.build.running.instances(target)]
         return [(self.tree.nodes[uid].path if uid is not None else each.path, uid) for each, uid in uids]
 
     def written(self) -> dict[int, SourceNode]:
-        """As what the nodes of the log are written, by uid."""
+        """The written nodes of the log's nodes, by uid."""
         found: dict[int, SourceNode] = {}
         for instance, node in self.build.running.all:
             uid = self.uids.get(_number(instance))
@@ -85,7 +85,7 @@ class Joined(Record):
         return found
 
     def enforcing(self) -> dict[int, str]:
-        """The nodes of the log that a build has put around others, with the requirement of each."""
+        """The guards among the log's nodes, each with its requirement."""
         found: dict[int, str] = {}
         for instance, _ in self.build.running.all:
             mark, uid = instance.element.get(MARK), self.uids.get(_number(instance))
@@ -95,13 +95,13 @@ class Joined(Record):
 
 
 class Build(Record):
-    """What a build makes of a mission; how: with which options, in words."""
+    """What a build makes of a mission; `how` names its options."""
 
     how: str
     running: RunningTree
 
     def tree(self) -> LoggedTree:
-        """As a log has it, as far as its nodes have numbers."""
+        """The tree as a log would hold it, as far as its nodes have numbers."""
         return LoggedTree(
             [
                 (each.uid, _kind(each.element), each.path, each.parent or 0)
@@ -112,10 +112,10 @@ class Build(Record):
 
 
 def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
-    """The mission that a log's tree is of, with its nodes; None where none of the missions has half of the nodes."""
+    """The mission that a log's tree belongs to, with its nodes joined; None if no mission has half of the nodes."""
     wanted = [(node.uid, node.kind, node.path) for node in tree.nodes.values()]
     nodes = [(uid, path) for uid, _, path in wanted]
-    for mission in sorted(missions, key=lambda each: each.side != nodes):  # to build a mission takes time
+    for mission in sorted(missions, key=lambda each: each.side != nodes):  # building a mission takes time
         for build in mission.builds():
             if (same := _same(mission, build, tree, wanted)) is not None:
                 return same
@@ -124,7 +124,7 @@ def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
 
 
 def difference(missions: Sequence[Candidate], tree: LoggedTree) -> str:
-    """What the mission that is nearest to a log's tree lacks of it; empty where no mission can be built."""
+    """What the mission nearest to a log's tree lacks; empty if no mission can be built."""
     best = _nearest(missions, tree)
     if best is None or not any(node.kind for node in tree.nodes.values()):  # the log has no tree
         return ""
@@ -142,12 +142,12 @@ def _nearest(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
 
 
 def join_build(mission: Candidate, build: Build, tree: LoggedTree) -> Joined | None:
-    """All nodes, where a log's tree is just the one that a build makes."""
+    """All nodes, if the trees of a log and of a build are equal; else None."""
     return _same(mission, build, tree, [(node.uid, node.kind, node.path) for node in tree.nodes.values()])
 
 
 def _same(mission: Candidate, build: Build, tree: LoggedTree, wanted: list[tuple[int, str, str]]) -> Joined | None:
-    """All nodes, where the tree is just the one that a build makes."""
+    """All nodes, if these are the ones of a build; else None."""
     made = [(_number(each), _kind(each.element), each.path) for each, _ in build.running.all]
     if made != wanted:
         return None
@@ -157,7 +157,7 @@ def _same(mission: Candidate, build: Build, tree: LoggedTree, wanted: list[tuple
 
 
 def _by_path(mission: Candidate, build: Build, tree: LoggedTree) -> Joined:
-    """The nodes whose path is the same, and no other node's on either side."""
+    """The nodes whose paths are equal and unique on both sides."""
     logged = _unique([((node.kind, _without_number(node.path)), node.uid) for node in tree.nodes.values()])
     made = _unique(
         [((_kind(each.element), _without_number(each.path)), _number(each)) for each, _ in build.running.all]
@@ -167,7 +167,7 @@ def _by_path(mission: Candidate, build: Build, tree: LoggedTree) -> Joined:
 
 
 def _builds(mission: Candidate) -> Iterator[Build]:
-    """The trees that builds with different options make, without those that cannot be made."""
+    """The trees of builds with different options, without those that fail."""
     workspace = mission.workspace
     targets = [workspace.project.target, *(each for each in VERSIONS if each != workspace.project.target)]
     for target in targets:
@@ -180,7 +180,7 @@ def _builds(mission: Candidate) -> Iterator[Build]:
 
 
 def _running(mission: Candidate, workspace: Workspace, is_enforced: bool) -> RunningTree | None:
-    """The tree that runs, as `btq build` writes it; None where the mission cannot be built."""
+    """The tree that `btq build` writes; None if the mission cannot be built."""
     path = mission.path
     exports = [
         as_xml(workspace, each, enforce=is_enforced and is_mission(workspace, each)).export
@@ -206,7 +206,7 @@ def _kind(element: Element) -> str:
 
 
 def _without_number(path: str) -> str:
-    """A path without the numbers of nodes without names, which change wherever a node before them comes or goes."""
+    """A path without the numbers of unnamed nodes, which change when a node before them is added or removed."""
     parts = [(name, *name.rpartition("::")) for name in path.split("/")]
     return "/".join(own if own and number.isdecimal() else name for name, own, _, number in parts)
 

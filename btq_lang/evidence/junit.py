@@ -1,8 +1,8 @@
 """JUnit XML: a suite for each mission, a case for each requirement.
 
-One invariant: a case has one property of a name.  `verifies` is the requirement's ID, in the shape that
-sphinx-test-reports makes links of (`tr_property_link_types`) and StrictDoc a field of its test results; both read one
-property with several IDs, separated by commas, and StrictDoc refuses a name that comes twice, and `<error>`.
+One invariant: the names of a case's properties are unique. `verifies` is the requirement's ID, which
+sphinx-test-reports turns into links (`tr_property_link_types`) and StrictDoc into a field of its test results; both
+read one property with several IDs, separated by commas. StrictDoc refuses a repeated name, and `<error>`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def junit(report: Report) -> str:
-    """The document: violated is a failure, what is neither violated nor satisfied is skipped."""
+    """The document: a violated requirement is a failure, one neither violated nor satisfied is skipped."""
     return "".join(f"{line}\n" for line in _lines(report))
 
 

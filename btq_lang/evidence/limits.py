@@ -1,4 +1,4 @@
-"""A measure beside its bound: which side of it is closer to being broken, and whether that is so already."""
+"""Compares a measure with its bound: which side is closer to being violated, and whether it is already."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 class Compared(Record):
-    """A measure and the side of its bound that it is closer to breaking.
+    """A measure and the side of its bound that it is closer to violating.
 
     Attributes:
-        is_upper: of a measure that must not be larger.
+        is_upper: the side is an upper bound.
         is_lone: the bound has no other side.
     """
 
@@ -29,10 +29,10 @@ class Compared(Record):
     is_lone: bool
 
     def kept(self, is_complete: bool) -> bool | None:
-        """Whether the bound is kept; None: that is not decided while the measure may grow.
+        """Whether the bound is kept; None: undecided while the measure may grow.
 
         Args:
-            is_complete: it does not grow any more.
+            is_complete: the measure does not grow any more.
         """
         if self.measure.excess > 0:
             return False if self.is_upper or is_complete else None
@@ -40,10 +40,10 @@ class Compared(Record):
 
 
 def compared(limit: Limit, si: float, observed: Observed, moment: Moment) -> Compared | Unknown:
-    """A measure beside its bound, which is read at a moment.
+    """Compare a measure with its bound, which is evaluated at a moment.
 
     Args:
-        si: what was measured.
+        si: the measured value.
     """
     first = _beside(limit, limit.relation in ("<=", "<"), si, bound_at(limit.value, observed, moment))
     if limit.upper is None or isinstance(first, Unknown):
@@ -55,7 +55,7 @@ def compared(limit: Limit, si: float, observed: Observed, moment: Moment) -> Com
 
 
 def _beside(limit: Limit, is_upper: bool, si: float, bound: Value | Bound | Unknown) -> Compared | Unknown:
-    """A measure beside one side of its bound."""
+    """Compare a measure with one side of its bound."""
     if isinstance(bound, Unknown):
         return bound
     excess = si - bound.si if is_upper else bound.si - si
@@ -65,4 +65,4 @@ def _beside(limit: Limit, is_upper: bool, si: float, bound: Value | Bound | Unkn
     return Compared(measure, is_upper, limit.upper is None)
 
 
-_JUST: Final = 1e-9  # what is as large as a bound that it must not reach breaks it
+_JUST: Final = 1e-9  # a measure equal to a strict bound violates it

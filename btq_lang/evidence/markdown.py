@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def markdown(report: Report) -> str:
-    """For each mission the verdicts, and what to look at."""
+    """The verdicts of each mission, and what to look at."""
     return "\n\n".join("\n".join(_lines(mission)) for mission in report.missions) + "\n"
 
 

@@ -1,7 +1,7 @@
-"""What a log says: the tree that ran, and what its nodes did.
+"""The contents of a log: the tree that ran, and what its nodes did.
 
-One invariant: times are whole microseconds since the epoch, and values are as they were logged, in whatever unit.
-Nothing in here knows a file format, a requirement or a verdict.
+One invariant: times are whole microseconds since the epoch, and values are as they were logged, in whatever unit. File
+formats, requirements and verdicts are unknown here.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     SampleValue: TypeAlias = float | bool | str
     Outcome: TypeAlias = Literal["S", "F", "H", "O"]
     Timing: TypeAlias = Literal["exact", "latest", "broken"]
-    Moment: TypeAlias = tuple[int, int]  # time, and the row of the log: rows of one time have an order
+    Moment: TypeAlias = tuple[int, int]  # time, and row of the log, which orders rows of one time
 
 IDLE: Final = 0
 RUNNING: Final = 1
@@ -49,7 +49,7 @@ class LoggedNode(Record):
 
     @property
     def name(self) -> str:
-        """As the engine calls it: its own name, or else its kind."""
+        """The engine's name of it: its own name, or else its kind."""
         own = self.path.rpartition("/")[2]
         return self.kind if own == f"{self.kind}::{self.uid}" else own
 
@@ -58,7 +58,7 @@ class LoggedTree:
     """The tree in a log, with its nodes by uid."""
 
     def __init__(self, nodes: Sequence[tuple[int, str, str, int]]) -> None:
-        """Make it of uid, kind, path and parent of each node, in the order of the uids."""
+        """Build it from uid, kind, path and parent of each node, in the order of the uids."""
         self.parent: Final = {uid: parent for uid, _, _, parent in nodes}
         self.last: Final = {uid: uid for uid, *_ in nodes}
         for uid, _, _, parent in reversed(nodes):
@@ -70,7 +70,7 @@ class LoggedTree:
 
 
 class Activation:
-    """A node from its start to its end.
+    """One activation of a node, from its start to its end.
 
     Attributes:
         outcome: succeeded, failed, halted, or still open when the log ends.
@@ -100,17 +100,17 @@ class Activation:
 
     @property
     def started(self) -> Moment:
-        """When it began."""
+        """The moment when it began."""
         return self.begin, self.first
 
     @property
     def ended(self) -> Moment:
-        """When it ended."""
+        """The moment when it ended."""
         return self.end, self.last
 
     @property
     def seconds(self) -> float:
-        """How long it lasted."""
+        """Its duration."""
         return (self.end - self.begin) / 1e6
 
     def __repr__(self) -> str:
@@ -130,8 +130,7 @@ class Series:
         self.values: Final[list[SampleValue | None]] = []
 
     def add(self, time: int, value: SampleValue | None) -> None:
-        """Add a sample, mostly the latest one; of several at one time only the last counts.  None: it has no value
-        then."""
+        """Add a sample, usually the latest; of several at one time the last counts. None: no value from then on."""
         at = len(self.times)
         if at and time <= self.times[-1]:
             at = bisect_left(self.times, time)
@@ -142,7 +141,7 @@ class Series:
         self.values.insert(at, value)
 
     def at(self, time: int) -> tuple[int, SampleValue | None] | None:
-        """The last sample with a time up to this one, with its time; None before the first."""
+        """The time and value of the last sample at or before a time; None before the first."""
         index = bisect_right(self.times, time) - 1
         return (self.times[index], self.values[index]) if index >= 0 else None
 
@@ -151,26 +150,26 @@ class Series:
         return self.times[bisect_right(self.times, begin) : bisect_right(self.times, end)]
 
     def forget_before(self, time: int) -> None:
-        """Drop the samples that no question about this time or a later one needs."""
+        """Drop the samples that are not needed to answer for this time or later ones."""
         index = bisect_left(self.times, time) - 1
         if index > 0:
             del self.times[:index], self.values[:index]
 
 
 def is_sample(value: object) -> bool:
-    """Whether something that a file says is a value: a text, a bool, or a number that stays finite in any unit."""
+    """Whether a value from a file can be a sample: a text, a bool, or a number that stays finite in any unit."""
     return isinstance(value, str | bool) or (isinstance(value, float | int) and -_LARGEST <= value <= _LARGEST)
 
 
 class Session:
-    """What one logger object wrote: a tree and its transitions, to be read once.
+    """What one logger object wrote: a tree and its transitions, which can be read once.
 
     Attributes:
         transitions: in the order of the file.
-        samples: of the log's own entries, by entry; they grow while the transitions are read.
-        signals: those of signals that the project file says are in the log, by signal.
+        samples: of the log's own blackboard entries, by entry; they grow while the transitions are read.
+        signals: samples of signals that the project file finds in the log, by signal.
         keeping: the nodes that start a child again without resetting it; complete when the transitions have been read.
-        remarks: what is to be said of the file, complete when the transitions have been read.
+        remarks: notes about the file, complete when the transitions have been read.
     """
 
     def __init__(
@@ -190,15 +189,15 @@ class Session:
 
 
 class NamedLog(Record):
-    """A log that says which nodes changed and not what tree they are of, and that may mix runs of several trees.
+    """A log that names the nodes that changed but not their tree, and may mix runs of several trees.
 
     Attributes:
-        topic: where it was published; empty where the file has no other one.
+        topic: where it was published; empty if the file has only one.
         nodes: uid and name of each node; the uid is 0 where the log has none.
         times, changed, statuses: of each status change its time, the index of its node, and its new status.
-        trees: those that the file has beside the changes, in their order.
-        signals: samples of signals that the project file says are in the log, by signal.
-        remarks: what is to be said of the file.
+        trees: the trees that the file holds beside the changes, in their order.
+        signals: samples of signals that the project file finds in the log, by signal.
+        remarks: notes about the file.
     """
 
     topic: str

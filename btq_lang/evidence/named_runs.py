@@ -1,11 +1,11 @@
-"""Which mission each run is of in a log that names nodes and has no tree of its own.
+"""Finds the mission of each run in a log that names nodes and has no tree of its own.
 
-One invariant: a run is judged only where every node that it names is in one tree and in no tree of another mission; a
-run that fits none, or several, is counted and left alone.
+One invariant: a run is judged only if every node that it names is in one tree and in no tree of another mission; a run
+that fits no mission, or several, is counted and not judged.
 
-Nav2's two navigators number the nodes of their trees from 1 each and log to one topic, and a goal may bring a tree of
-its own.  So the log is cut before the first change after the root has ended, and each piece is joined by itself;
-neighbours of one mission are put together again.
+Nav2's two navigators number the nodes of their trees from 1 each and log to one topic, and a goal may use a tree of its
+own. So the log is cut before the first change after the root has ended, and each piece is joined by itself; adjacent
+pieces of one mission are merged again.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ SEVERAL: Final = "of one of several missions"
 def joined_sessions(
     read: Iterable[Session | NamedLog], missions: Sequence[Candidate], source: str
 ) -> Iterator[tuple[str, Session, Joined | str]]:
-    """What a log holds, each session with the mission that it is of, or with words for what it is of instead.
+    """The sessions of a log, each with its joined mission, or with a description of what it belongs to instead.
 
     Args:
-        source: the file, as people read it; it comes with each session, with the topic where there are several.
+        source: the file, as people read it; returned with each session, with the topic if there are several.
     """
     for each in read:
         if isinstance(each, Session):
@@ -66,11 +66,12 @@ def _sessions(log: NamedLog, missions: Sequence[Candidate]) -> Iterator[tuple[Se
 
 
 def _pieces(log: NamedLog, roots: Set[int]) -> Iterator[tuple[int, int]]:
-    """The stretches of a log that may be of different trees: each ends before the first change to another status than
-    IDLE after a root has ended."""
+    """The ranges of a log that may belong to different trees: each ends before the first change to a status other than
+    IDLE after a root has ended.
+    """
     begin = 0
-    is_open = True  # what is before the first row of a root belongs to its run
-    idle_at: int | None = None  # when the root was halted, if that is the row before
+    is_open = True  # rows before the root's first row belong to its run
+    idle_at: int | None = None  # when the root was halted, if the previous row did that
     for index, (time, node, status) in enumerate(zip(log.times, log.changed, log.statuses, strict=True)):
         is_root = node in roots
         completes = is_root and status in (SUCCESS, FAILURE)
@@ -94,7 +95,7 @@ def _transitions(log: NamedLog, begin: int, end: int, uids: dict[int, int]) -> I
 
 
 class _Trees:
-    """The trees that the runs of a log may be of: those in its file, else what builds make of the missions."""
+    """The trees that the runs of a log may belong to: those in its file, else builds of the missions."""
 
     def __init__(self, log: NamedLog, missions: Sequence[Candidate]) -> None:
         self._log: Final = log
@@ -115,7 +116,7 @@ class _Trees:
         return {index for index, (_, name) in enumerate(nodes) if name in names}
 
     def joined(self, runs: Set[frozenset[int]]) -> dict[frozenset[int], Joined | str]:
-        """The mission of each run, of which the nodes are given, or what it is of instead."""
+        """The mission of each run, given by its nodes, or a description of what it belongs to instead."""
         named = {run: {self._log.nodes[each] for each in run} for run in runs}
         found: dict[frozenset[int], Joined | str] = {}
         for run, nodes in named.items():
@@ -136,7 +137,7 @@ class _Trees:
                 fitting[run] += [joined for runs, joined in builds if run in runs][:1]
         others = [run for run, each in fitting.items() if not each]
         for run, each in fitting.items():
-            # One that names only nodes that a run of another mission names may be of that mission too.
+            # A run whose nodes all occur in a run of another mission may belong to that mission too.
             is_sure = len(each) == 1 and not any(run <= other for other in others)
             found[run] = each[0] if is_sure else SEVERAL if each else OTHER
         return found
@@ -164,7 +165,7 @@ class _Trees:
 
 
 def _by_name(joined: Joined, names: _Names) -> Joined:
-    """Only the nodes whose name no other node of the tree has."""
+    """The join, restricted to nodes with unique names."""
     uids = {uid: uid for uid in joined.uids if names.is_unique(uid)}
     return replace(
         joined,
@@ -179,7 +180,7 @@ class _Names:
     """The names of a tree's nodes.
 
     Attributes:
-        root: of the root.
+        root: the name of the root.
     """
 
     def __init__(self, tree: LoggedTree) -> None:
@@ -190,7 +191,7 @@ class _Names:
         self.root: Final = self._names.get(ROOT, "")
 
     def has(self, nodes: Set[tuple[int, str]]) -> bool:
-        """Whether all of some nodes are in the tree."""
+        """Whether the tree has all these nodes."""
         return all(self._names.get(uid) == name if uid else name in self._named for uid, name in nodes)
 
     def is_unique(self, uid: int) -> bool:
@@ -198,7 +199,7 @@ class _Names:
         return len(self._named.get(self._names.get(uid, ""), ())) == 1
 
     def uid(self, uid: int, name: str) -> int | None:
-        """The uid of a node, which may lack one; None where it is not known."""
+        """The uid of a node, by its name if the log gives none; None if it is unknown."""
         if uid:
             return uid if self._names.get(uid) == name else None
         named = self._named.get(name, ())

@@ -1,4 +1,4 @@
-"""What is to be said of a report beside its verdicts."""
+"""Notes printed beside the verdicts of a report."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def ignored_columns(path: str, samples: Iterable[str], missions: Sequence[Candidate]) -> Iterator[str]:
-    """The columns that no mission reads, each with the names that may be meant."""
+    """Reports columns that no mission reads, each with likely intended names."""
     scopes = [mission.workspace.scope(mission.path) for mission in missions]
     found = [each for scope in scopes for name in scope.names(Kind.SIGNAL) for each in scope.all(Kind.SIGNAL, name)]
     signals = [each.symbol.target for each in found if isinstance(each.symbol.target, Signal)]
@@ -34,9 +34,10 @@ def ignored_columns(path: str, samples: Iterable[str], missions: Sequence[Candid
 
 
 def other_times(read_from: Iterable[tuple[str, Series]], report: Report) -> Iterator[str]:
-    """The files with samples long before or after all runs, as where their times are no seconds since the epoch.
+    """Reports files whose samples are long before or after all runs, as when their times are not seconds since the
+    epoch.
 
-    A single sample may be of something that does not change.
+    A single sample is exempt: it may be a constant.
     """
     times: dict[str, set[int]] = {}
     for file, series in read_from:
@@ -55,7 +56,7 @@ def other_times(read_from: Iterable[tuple[str, Series]], report: Report) -> Iter
 
 
 def missions_with_errors(report: Report, missions: Sequence[Candidate]) -> Iterator[str]:
-    """The missions of the report in which something is wrong, so that a clause may not have been understood."""
+    """Reports missions with errors, of which clauses may be missing."""
     judged = {mission.file for mission in report.missions}
     for mission in missions:
         if mission.path in judged:
@@ -67,7 +68,7 @@ def missions_with_errors(report: Report, missions: Sequence[Candidate]) -> Itera
 
 
 def missing_verdicts(report: Report, asked: Sequence[str]) -> Iterator[str]:
-    """Why there are no verdicts at all; asked: the missions that were named."""
+    """Explains why there are no verdicts at all; `asked`: the missions on the command line."""
     if not report.missions and not report.problems:
         differences = dict.fromkeys(each.difference for each in report.foreign if asked and each.difference)
         if differences:
@@ -79,12 +80,12 @@ def missing_verdicts(report: Report, asked: Sequence[str]) -> Iterator[str]:
 
 
 def no_logs(asked: Iterable[str]) -> str:
-    """What to say where no log was found in what was asked for."""
+    """The message if no log was found."""
     return f"no {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} below {', '.join(asked)}"
 
 
 def foreign_runs(report: Report) -> Iterator[str]:
-    """The runs of other missions."""
+    """Reports runs that belong to other missions."""
     for each in report.foreign:
         runs = f"{each.runs} run{'' if each.runs == 1 else 's'}"
         yield f"{each.file}: {runs} {each.of}, not judged"

@@ -1,4 +1,4 @@
-"""What can be asked about the moments of an activation, or of a run: what signals were, and which nodes ran.
+"""What was observed during an activation or a run: the values of signals, and which nodes ran.
 
 One invariant: an answer is a value in SI, or the reason why it is unknown.
 """
@@ -35,11 +35,11 @@ if TYPE_CHECKING:
 
 
 class Observed:
-    """What there is to know from one moment to another.
+    """The observations from one moment to another.
 
     Attributes:
         begin, end: of the activation, or of the run.
-        is_end_known: otherwise it had ended by `end`.
+        is_end_known: otherwise the activation ended at `end` or before.
     """
 
     __slots__ = ("_contexts", "_nodes", "_readings", "_signals", "begin", "end", "is_end_known")
@@ -58,23 +58,23 @@ class Observed:
         self.is_end_known: Final = is_end_known
 
     def during(self, activation: Activation) -> Observed:
-        """The same from the start of an activation to its end."""
+        """The observations during an activation."""
         is_end_known = activation.timing != "latest"
         return Observed(self._signals, self._nodes, activation.started, activation.ended, is_end_known)
 
     def between(self, begin: Moment, end: Moment) -> Observed:
-        """The same from one moment to another."""
+        """The observations from one moment to another, within these."""
         return Observed(self._signals, self._nodes, begin, end)
 
     def reading(self, signal: Signal, moment: Moment) -> SampleValue | Unknown:
-        """The value of a signal, which is looked up once: several clauses may be about one."""
+        """The value of a signal at a moment, cached: several clauses may read the same one."""
         key = signal.name, moment[0]
         if key not in self._readings:
             self._readings[key] = self._signals.reading(signal, moment[0])
         return self._readings[key]
 
     def summary(self, function: str, signal: Signal) -> float | Unknown:
-        """A function of the samples from beginning to end; the value that the signal begins with is one of them."""
+        """An aggregate of the samples from beginning to end, including the value at the beginning."""
         begin, end = self.begin[0], self.end[0]
         if not self.is_end_known and self._signals.changes(signal, begin, end):
             return Unknown(UNKNOWN_END)
@@ -84,7 +84,7 @@ class Observed:
         return values if isinstance(values, Unknown) else _FUNCTIONS[function](values)
 
     def holds(self, context: InContext, moment: Moment, truth: Callable[[], bool | Unknown]) -> bool | Unknown:
-        """Whether a context holds, which is asked once: contexts that name others twice would double it each time."""
+        """Whether a context holds, cached: else contexts that name others twice would take exponential time."""
         if self._contexts is None:
             self._contexts = {}
         key = context.name, moment
@@ -93,11 +93,11 @@ class Observed:
         return self._contexts[key]
 
     def runs(self, target: Target, moment: Moment) -> bool | Unknown:
-        """Whether a node runs."""
+        """Whether a node is active at a moment."""
         return self._nodes.runs(target, moment)
 
     def activations(self, target: Target) -> list[Activation]:
-        """What a node did in the whole run, in the order of the starts."""
+        """The activations of a node in the whole run, in the order of their starts."""
         return self._nodes.activations(target)
 
     def moments(self, *parts: object) -> list[Moment]:
@@ -111,7 +111,7 @@ class Observed:
                 elif isinstance(each, Running):
                     for activation in self._nodes.activations(each.target):
                         stopped = activation.end, activation.last + 1
-                        since = activation.begin, activation.first + 1  # if its end is not known, it is unknown
+                        since = activation.begin, activation.first + 1  # unknown from here on if the end is unknown
                         found.update([at for at in (activation.started, since, stopped) if begin < at <= end])
         return sorted(found)
 
@@ -122,7 +122,7 @@ def signals_in(part: object) -> Iterator[Signal]:
 
 
 def parts_in(part: object) -> Iterator[Read | Aggregate | Running]:
-    """What a condition, a bound or an event reads; what a context does is said once."""
+    """What a condition, a bound or an event reads, each context once."""
     contexts: set[str] = set()
     waiting = [part]
     while waiting:
@@ -159,12 +159,12 @@ def _mean(values: Sequence[float]) -> float:
 
 
 def _p95(values: Sequence[float]) -> float:
-    """The smallest that 95 of 100 do not exceed."""
+    """The 95th percentile: the smallest value that 95 % of them do not exceed."""
     return sorted(values)[-(-len(values) * 95 // 100) - 1]
 
 
 def _stddev(values: Sequence[float]) -> float:
-    """Of the values themselves, not an estimate for more of their kind."""
+    """The standard deviation of the values themselves (population, not sample)."""
     middle = _mean(values)
     return sqrt(_mean([(value - middle) ** 2 for value in values]))
 

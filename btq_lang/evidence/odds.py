@@ -1,7 +1,7 @@
-"""How sure k of n makes one: exact binomial limits, and how many more runs would decide.
+"""Exact binomial confidence limits for k of n, and how many more runs would decide.
 
-One invariant: the limits are Clopper and Pearson's, one-sided, so each holds with the confidence asked for, and for one
-look at the data.  SciPy has the same in `scipy.stats.beta`, but takes a second to import.
+One invariant: the limits are Clopper and Pearson's, one-sided, so each holds with the requested confidence, for a
+single look at the data. SciPy has the same in `scipy.stats.beta`, but takes a second to import.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from typing import Final
 
 
 def lower_limit(k: int, n: int, confidence: float) -> float:
-    """The largest probability that k or more of n exclude from above: with this confidence it is larger.
+    """The lower limit of the probability: with this confidence it is larger.
 
     Args:
-        k: of the n that were counted, those that hold.
+        k: how many of the n counted hold.
         confidence: of the one side, a fraction of one.
     """
     if k <= 0:
@@ -24,12 +24,12 @@ def lower_limit(k: int, n: int, confidence: float) -> float:
 
 
 def upper_limit(k: int, n: int, confidence: float) -> float:
-    """The smallest probability that k or fewer of n exclude from below: with this confidence it is smaller."""
+    """The upper limit of the probability: with this confidence it is smaller."""
     return 1.0 - lower_limit(n - k, n, confidence)
 
 
 def runs_to_decide(k: int, n: int, confidence: float, probability: float) -> int | None:
-    """How many more, all of them holding, lift the lower limit to a probability; None: none do."""
+    """How many more, all of which hold, raise the lower limit to a probability; None: no number does."""
     if probability >= 1.0:
         return None
 
@@ -73,7 +73,7 @@ def beta_cdf(x: float, a: float, b: float) -> float:
 
 
 def _root(function: Callable[[float], float]) -> float:
-    """Where a function that grows from below 0 to above it, on [0, 1], is 0."""
+    """The root of an increasing function on [0, 1]."""
     low, high = 0.0, 1.0
     while (middle := (low + high) / 2) not in (low, high):
         low, high = (middle, high) if function(middle) < 0 else (low, middle)

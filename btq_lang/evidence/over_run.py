@@ -1,4 +1,4 @@
-"""What a clause that is judged over a run may ask: what its nodes did in it, and when events happened."""
+"""What a clause judged over a run reads: what its nodes did in the run, and when events happened."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 
 class Happening(Record):
-    """An event, when it happened.
+    """An occurrence of an event.
 
     Attributes:
-        until: the same moment; a later one where the log says only that it happened by then.
-        why: why it is unknown when; empty where it is not.
-        is_certain: it did happen.
+        until: equal to `at`; later if the log shows only that it happened by then.
+        why: why the moment is unknown; empty if it is known.
+        is_certain: it did happen, rather than may have.
     """
 
     at: Moment
@@ -34,10 +34,10 @@ class Happening(Record):
 
 
 class Stretch(Record):
-    """A part of a run, with a condition all along.
+    """A part of a run throughout which a condition holds.
 
     Attributes:
-        why: why it is unknown whether the condition held; empty where it did.
+        why: why it is unknown whether the condition held; empty if it did.
     """
 
     begin: Moment
@@ -49,8 +49,8 @@ class OverRun:
     """A run that has ended.
 
     Attributes:
-        root: the activation of its root, which is as long as the run.
-        own: what the nodes of the clause did, in the order of the starts.
+        root: the activation of its root, which spans the run.
+        own: the activations of the clause's nodes, in the order of their starts.
         observed: of the whole run.
     """
 
@@ -69,27 +69,27 @@ class OverRun:
         return self.root.outcome == "O"
 
     def counts(self, begin: Moment, end: Moment) -> bool | Unknown:
-        """Whether what lasts from one moment to another counts."""
+        """Whether the scopes include a period."""
         return not self._scopes or in_scope(self._scopes, self._verb, self.observed.between(begin, end))
 
     def counts_one(self, activation: Activation) -> bool | Unknown:
-        """Whether an activation counts."""
+        """Whether the scopes include an activation."""
         return not self._scopes or in_scope(self._scopes, self._verb, self.observed.during(activation))
 
     def starts(self) -> list[tuple[Activation, bool | Unknown]]:
-        """What the nodes of the clause did that counts, or may count."""
+        """The activations of the clause's nodes that count or may count."""
         found = [(each, self.counts_one(each)) for each in self.own]
         return [(each, counts) for each, counts in found if counts is not False]
 
     def stretches(self) -> list[Stretch]:
-        """The parts of the run in which time counts, and those in which it may."""
+        """The parts of the run whose time counts or may count."""
         conditions = [scope.condition for scope in self._scopes if scope.word == "while"]
         if not conditions:
             return [Stretch(self.observed.begin, self.observed.end)]
         return self.with_all_along(All(tuple(conditions)))
 
     def with_all_along(self, condition: Condition) -> list[Stretch]:
-        """The longest parts of the run with a condition, and those in which it is unknown."""
+        """The maximal parts of the run in which a condition holds or is unknown."""
         found: list[Stretch] = []
         begin = self.observed.begin
         before: bool | Unknown = False
@@ -104,14 +104,14 @@ class OverRun:
         return found
 
     def happenings(self, event: Event, of: Sequence[Activation] | None = None) -> list[Happening]:
-        """When an event happened, and when it may have, in this order.
+        """The certain and possible occurrences of an event, in order of time.
 
         Args:
-            of: what its node did; None: as the clause's nodes mean it.
+            of: the activations of its node; None: those of the node that the clause names.
         """
         found: list[Happening] = []
         if event.condition is not None:
-            ended: Moment | None = None  # of a part in which it is unknown
+            ended: Moment | None = None  # of the last part in which it is unknown
             for part in self.with_all_along(event.condition):
                 if part.why or part.begin != ended:
                     found.append(Happening(part.begin, part.end if part.why else part.begin, part.why, not part.why))
@@ -129,7 +129,7 @@ class OverRun:
 
 
 def target_of(event: Event) -> Target:
-    """The node that an event happens to."""
+    """The node of an event."""
     subject = event.subject
     if isinstance(subject, Mission):
         assert subject.node is not None, "an event of an unknown mission is not judged"

@@ -1,6 +1,6 @@
-"""`over last N runs`, `over last 8 h`: what a clause has come to lately.
+"""`over last N runs`, `over last 8 h`: the counts of a clause in a sliding window.
 
-One invariant: only the judgements in the window are kept, the latest ones, in whatever order the logs are read.
+One invariant: only the judgements in the window, the latest ones, are kept, whatever the order in which logs are read.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 
 class Recent:
-    """What is counted of the last activations, of the last runs in which anything was judged, or of the last time.
+    """Counts the last activations, the last runs with a judgement, or a last period.
 
     Attributes:
-        cut_off: as of a `ClauseVerdict`; of all logs.
+        cut_off: as in `ClauseVerdict`, for all logs.
     """
 
     def __init__(self, window: Window, odds: Odds | None, confidence: float | None) -> None:
@@ -31,20 +31,20 @@ class Recent:
         self._window: Final = window
         self._odds: Final = odds
         self._confidence: Final = confidence
-        self._now: Final[list[_Entry]] = []  # of the run that is open
+        self._now: Final[list[_Entry]] = []  # of the open run
         self._kept: Final[list[tuple[Run, list[_Entry]]]] = []  # the earliest run first
         self._end = 0  # of the last run
 
     def add(self, judgement: Judgement, path: str, end: int, chain: tuple[Link, ...]) -> None:
-        """Count what an activation of the run that is open, or the run, came to.
+        """Count the judgement of an activation in the open run, or of the run.
 
         Args:
-            end, chain: as of `Tally.add`.
+            end, chain: as in `Tally.add`.
         """
         self._now.append((judgement, path, end, chain))
 
     def end_run(self, run: Run) -> None:
-        """The run that was open has ended."""
+        """Close the open run."""
         self._end = max(self._end, run.end)
         if self._now:
             found = sorted(self._now, key=_end)
@@ -53,7 +53,7 @@ class Recent:
         self._leave_out()
 
     def result(self) -> Tally:
-        """All that is in the window, counted."""
+        """The tally of the judgements in the window."""
         is_of_odds = self._odds is None or self._odds.experiments == self._window.experiments
         tally = Tally(self._odds, self._confidence, self._window.count if is_of_odds else None)
         tally.cut_off = self.cut_off
@@ -64,7 +64,7 @@ class Recent:
         return tally
 
     def _leave_out(self) -> None:
-        """What is not in the window any more."""
+        """Drop what is no longer in the window."""
         kept, count = self._kept, self._window.count
         if count is None:
             assert self._window.seconds is not None, "a window is a number or a time"

@@ -1,11 +1,11 @@
-"""Status changes to activations and runs, as the engine and Nav2's control nodes write them.
+"""Turns status changes, as the engine and Nav2's control nodes log them, into activations and runs.
 
-One invariant: an activation comes out when it has ended, after those below it, so the activation of the root ends its
-run; whatever the log says, none is merged with the next one of its node.
+One invariant: activations are yielded when they end, children first, so the root's activation ends its run; whatever
+the log holds, two activations of a node are never merged.
 
-What real logs do beside the plain sequence RUNNING, result, IDLE:
+How real logs deviate from the plain sequence RUNNING, result, IDLE:
 
-* A node writes IDLE and then its own result (Nav2's RecoveryNode): one row is held back to see.
+* A node writes IDLE and then its own result (Nav2's RecoveryNode): one row is held back to detect it.
 * A node writes its first row after rows of its children (Nav2's PipelineSequence): it began with the first of those.
 * Nothing is written when a node is halted (logs without rows to IDLE): it had ended by the time a node above it ended,
   or by its next start.
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def activations(session: Session) -> Iterator[Activation]:
-    """The activations of a session, each when it has ended; those of the root are the runs."""
+    """The activations of a session, each as it ends; those of the root are the runs."""
     tree = session.tree
     nodes = _OpenNodes(tree)
     parent = tree.parent
@@ -74,7 +74,7 @@ def activations(session: Session) -> Iterator[Activation]:
             is_reset_written = True
             if uid in running:
                 idle = uid, time, row
-            elif uid == ROOT and uid in begun:  # a run without a row of the root: how it ended is not known
+            elif uid == ROOT and uid in begun:  # no row of the root: how the run ended is unknown
                 yield from nodes.end(ROOT, time, row, "O", below="O")
             elif uid in begun:
                 nodes.forget(uid)
@@ -94,11 +94,11 @@ def count_runs(session: Session) -> int:
 
 
 class _OpenNodes:
-    """The nodes that have begun and not ended.
+    """The nodes that are active.
 
     Attributes:
-        begun: when each of them began: with its own first row, or the first one below it.
-        running: those of them that have written RUNNING.
+        begun: when each began: at its own first row, or the first one below it.
+        running: those that have written RUNNING.
     """
 
     def __init__(self, tree: LoggedTree) -> None:
@@ -108,7 +108,7 @@ class _OpenNodes:
         self._distrusted: Final[set[int]] = set()
 
     def begin(self, uid: int, time: int, row: int) -> None:
-        """A node is active, and so are those above it, whether they have written so or not."""
+        """Mark a node and its ancestors as active, whether these have logged it or not."""
         while uid and uid not in self.begun:
             self.begun[uid] = time, row
             uid = self._tree.parent[uid]
@@ -116,26 +116,26 @@ class _OpenNodes:
     def end(
         self, uid: int, time: int, row: int, outcome: Outcome, timing: Timing = "exact", below: Outcome = "H"
     ) -> list[Activation]:
-        """What ends with a node: what was active below it, innermost first, and the node itself."""
+        """End a node; returns the activations that end with it, innermost first, its own last."""
         found: list[Activation] = []
         last = self._tree.last[uid]
         if last > uid and len(self.begun) > 1:
             for each in sorted([each for each in self.begun if uid < each <= last], reverse=True):
                 if each in self.running:
                     found.append(self._made(each, time, row, below, "latest" if below == "H" else "exact"))
-                else:  # only something below it has written a row
+                else:  # only its descendants have written rows
                     self.forget(each)
         found.append(self._made(uid, time, row, outcome, timing))
         return found
 
     def forget(self, uid: int) -> None:
-        """A node is not active any more."""
+        """Mark a node as inactive."""
         del self.begun[uid]
         self.running.discard(uid)
         self._distrusted.discard(uid)
 
     def distrust(self) -> None:
-        """The clock was set back: the durations of all active nodes are unknown."""
+        """Mark the durations of all active nodes as unknown: the clock was set back."""
         self._distrusted.update(self.begun)
 
     def _made(self, uid: int, end: int, row: int, outcome: Outcome, timing: Timing) -> Activation:
@@ -148,7 +148,7 @@ class _OpenNodes:
 
 
 class _Oddities:
-    """What is unusual in a log: counted, and reported once with the time of the first."""
+    """Counts what is unusual in a log; each kind is reported once, with the time of the first."""
 
     def __init__(self, session: Session) -> None:
         self._session: Final = session

@@ -1,6 +1,6 @@
-"""`while C` and `when C`: which activations count, and of `keeps` and `never` which of their time.
+"""`while C` and `when C`: which activations count, and for `keeps` and `never` which part of their time.
 
-One invariant: with an unknown scope an activation is unknown, whatever it came to.
+One invariant: an activation in an unknown scope is unknown, whatever its judgement.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def within(claim: Claim, scopes: Sequence[Scope]) -> Claim:
-    """A claim about all of an activation, which with `while C` is about the time with C alone."""
+    """The claim with `while C` folded into its condition, which is then about a whole activation."""
     for scope in scopes:
         condition = claim.condition
         if scope.word == "while" and condition is not None and claim.verb == "keeps":
@@ -32,15 +32,15 @@ def within(claim: Claim, scopes: Sequence[Scope]) -> Claim:
 
 
 def in_scope(scopes: Sequence[Scope], verb: str, observed: Observed) -> bool | Unknown:
-    """Whether what was observed counts: an activation, or the time between two events."""
+    """Whether an observed activation, or time between two events, is in scope."""
     result: bool | Unknown = True
     for scope in scopes:
-        if scope.word == "while" and VERBS[verb].operand == "rate":  # time counts, whatever runs in it
+        if scope.word == "while" and VERBS[verb].operand == "rate":  # it is time that counts, not activations
             continue
         moments = [observed.begin] if scope.word == "when" else observed.moments(scope.condition)
         found = [truth(scope.condition, observed, moment) for moment in moments]
-        is_some_enough = scope.word == "while" and VERBS[verb].judged == "while it runs"  # some of its time counts
-        if not observed.is_end_known:  # at any moment but its start it may have been halted already
+        is_some_enough = scope.word == "while" and VERBS[verb].judged == "while it runs"  # a part of its time is enough
+        if not observed.is_end_known:  # except at its start, it may have been halted already
             found[1:] = [Unknown(UNKNOWN_END) if each is is_some_enough else each for each in found[1:]]
         unknown = next((each for each in found if isinstance(each, Unknown)), None)
         if is_some_enough:

@@ -1,4 +1,4 @@
-"""What a clause came to in a sentence, and the one that says what to look at."""
+"""Sentences about a clause: its result, and what to look at."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def result(clause: ClauseVerdict) -> str:
-    """What was counted, and how far from its bound the worst is."""
+    """The counts, and how far the worst measure is from its bound."""
     said = [_counted(clause)]
     if clause.worst is not None and clause.interval is None and clause.verdict != UNKNOWN:
         said.append(f"worst {clause.worst.text} in run {clause.worst.run}")
@@ -25,9 +25,9 @@ def result(clause: ClauseVerdict) -> str:
 
 
 def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
-    """What to look at for a clause that is violated: the node, what happened, why, in which run and when.
+    """What to look at for a violated clause: the node, what happened, why, in which run and when.
 
-    With odds, all violations are summed up.
+    With odds, it sums up all violations.
 
     Args:
         medians: how long nodes take, in seconds by path.
@@ -51,20 +51,20 @@ def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
 
 
 def explained(clause: ClauseVerdict, violation: Violation, medians: Mapping[str, float]) -> str:
-    """Of one violation of a clause: what was measured, the first link of each kind that led to it, and where it is."""
+    """Explains one violation: what was measured, the first link of each kind that led to it, and where it is."""
     bound = f", bound {violation.bound}" if violation.bound else ""
     parts = [f"{clause.of or violation.path}: {violation.why}{bound}"]
     kinds = {link.kind: link for link in reversed(violation.chain)}
     if "origin" in kinds:
         kinds.pop("part", None)
-    if "self" in kinds and violation.path in medians:  # how long it ran has been said
+    if "self" in kinds and violation.path in medians:  # its duration is already in the sentence
         parts.append(f"its median is {duration(medians[violation.path])}")
     parts += [link.text for link in violation.chain if kinds.get(link.kind) is link and link.kind != "self"]
     return f"{'; '.join(parts)} ({_where(violation)})"
 
 
 def worst_violation(clause: ClauseVerdict) -> Violation:
-    """The one that went furthest beyond the bound; the first one where nothing is measured."""
+    """The violation furthest beyond the bound; the first if nothing is measured."""
     worst = clause.worst
     found = (each for each in clause.violations if worst and (each.run, each.measured) == (worst.run, worst.text))
     return next(found, clause.violations[0])
@@ -105,4 +105,4 @@ def _where(violation: Violation) -> str:
     return f"run {violation.run} of {violation.source}, {duration(violation.at)} after its start{begun}"
 
 
-_RUNS: Final = 4  # named beside the first one
+_RUNS: Final = 4  # named in addition to the first

@@ -1,4 +1,4 @@
-"""Where a project says that the samples of signals come from, held against the signals of missions."""
+"""The sources of samples that a project declares, checked against the signals of missions."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def signal_sources(
 
     Args:
         file: of the project, as people read it.
-        problems: what is wrong is added to them.
+        problems: errors are appended.
     """
     if project.evidence is None:
         return (), {}
@@ -43,7 +43,7 @@ def signal_sources(
 
 
 def _wrong(source: SignalSource, missions: Sequence[Candidate]) -> Iterator[str]:
-    """What is wrong with a source, seen from the signals."""
+    """The errors of a source, given the missions' signals."""
     name = source.signal
     signals = [mission.requirements.signals for mission in missions]
     for each in signals:

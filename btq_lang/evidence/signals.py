@@ -1,7 +1,7 @@
-"""What signals were at a moment, from samples: of `--signals`, of `[evidence.signals]`, or the log's own entries.
+"""Values of signals at a moment, from the samples of `--signals`, `[evidence.signals]` or the log's own entries.
 
-One invariant: an answer is a value in SI, or the reason why it is unknown; a value holds until the next sample, at most
-for `fresh within`.
+One invariant: an answer is a value in SI, or the reason why it is unknown; a value holds until the next sample, or
+until `fresh within` is over.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 
 
 class Unknown(Record):
-    """An answer that the samples do not give, and why."""
+    """A value that cannot be determined, and why."""
 
     why: str
 
 
 class Signals:
-    """The samples that a session is judged with: those given by signal, else the log's own.
+    """The samples of a session: those given for a signal, else the log's own.
 
     Attributes:
-        logged: of the session's own entries, by entry.
+        logged: samples of the session's own entries, by entry.
     """
 
     def __init__(self, given: Mapping[str, Series], logged: Mapping[str, Series]) -> None:
@@ -51,13 +51,13 @@ class Signals:
         return _as_declared(signal, value, series.unit if series is not None else None)
 
     def sampled(self, signal: Signal, time: int) -> int | None:
-        """When the sample was taken that a signal has at a time."""
+        """The time of the sample that gives a signal its value at a time."""
         series = self._series(signal)
         found = series.at(time) if series is not None else None
         return found[0] if found is not None else None
 
     def changes(self, signal: Signal, begin: int, end: int) -> list[int]:
-        """The times after `begin`, up to `end`, at which a signal may change: samples, and where one grows too old."""
+        """The times after `begin`, up to `end`, at which a signal may change: a sample comes or expires."""
         series = self._series(signal)
         if series is None:
             return []
@@ -70,8 +70,9 @@ class Signals:
         return times
 
     def values(self, signal: Signal, begin: int, end: int) -> list[float] | Unknown:
-        """A signal's values from `begin`, where it is known then, to `end`: unknown where there are none, where one of
-        them is no number, and where it was not fresh between two of them."""
+        """A signal's values from `begin`, if known then, to `end`; unknown if there are none, one is not a number, or
+        one expired before the next.
+        """
         series = self._series(signal)
         times = list(series.between(begin, end)) if series is not None else []
         if not isinstance(self.reading(signal, begin), Unknown):
@@ -96,7 +97,7 @@ class Signals:
         return float(len(series.between(begin - 1, end)))
 
     def forget_before(self, time: int) -> None:
-        """Drop the samples of the log's entries that no question about this time or a later one needs."""
+        """Drop the samples of the log's entries that are not needed for this time or later ones."""
         for series in self.logged.values():
             series.forget_before(time)
 
@@ -118,7 +119,7 @@ def _none_of(signal: Signal) -> str:
 
 
 def _as_declared(signal: Signal, value: SampleValue, unit: Unit | None) -> SampleValue | Unknown:
-    """A sample as what its signal is declared as; unit: that it is in, None for the signal's."""
+    """Convert a sample to its signal's declared type and SI; unit: of the sample, None for the signal's own."""
     if signal.sort == "text":
         return value if isinstance(value, str) else f"{value:g}"
     if signal.sort == "bool":

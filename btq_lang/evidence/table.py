@@ -1,4 +1,4 @@
-"""Verdicts for people at a terminal, whose lines are no longer than it is wide; elsewhere each is one line."""
+"""Verdicts for people at a terminal, with lines broken at its width; other output is not broken."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 
 def table(report: Report, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:
-    """The verdicts of all missions, the ones to look at first.
+    """The verdicts of all missions, the worst first.
 
     Args:
-        verbose: with all that led to the worst violation of a clause, and further violations.
-        width: of the terminal, of at least 60 columns; None: lines are as long as what they say.
+        verbose: show all that led to the worst violation of a clause, and further violations.
+        width: of the terminal, at least 60 columns; None: lines are not broken.
     """
     paint = painter(colour)
     room = max(width, _LEAST) if width is not None else sys.maxsize
@@ -38,7 +38,7 @@ def table(report: Report, colour: bool = False, verbose: bool = False, width: in
 
 
 def _heading(mission: MissionVerdicts) -> Iterator[str]:
-    """What was read."""
+    """The mission and the logs that were read."""
     for source in mission.sources:
         found = f"{source.joined} of {source.nodes} nodes"
         identity = f"{source.identity}, {found}"
@@ -65,7 +65,7 @@ def _rows(mission: MissionVerdicts, paint: Paint, verbose: bool, room: int) -> I
                 [*_explanation(clause, mission.medians, verbose)] if clause.verdict == VIOLATED else []
             )
             rows.append((clause.verdict, [printable(text) for text in texts], below))
-            name = title = ""  # once is enough
+            name = title = ""  # shown once
     left = len(NEVER) + 4
     widths = [max(cells_of(row[column]) for _, row, _ in rows) if rows else 0 for column in range(4)]
     fitting = narrowed(widths, room - left - 2 * (sum(map(bool, widths)) - 1))
@@ -86,7 +86,7 @@ def _rows(mission: MissionVerdicts, paint: Paint, verbose: bool, room: int) -> I
 
 
 def _clause(clause: ClauseVerdict, requirement: RequirementVerdict) -> str:
-    """The clause, with its node where the requirement has the same at another one."""
+    """The clause, with its node if the requirement has the same clause at another one."""
     is_lone = sum(each.text == clause.text for each in requirement.clauses) == 1
     return clause.text if is_lone or not clause.path else f"{clause.text} at {clause.path}"
 
@@ -137,7 +137,7 @@ def _broken(lines: Iterable[str], room: int) -> Iterator[str]:
 
 
 _LEAST: Final = 60
-_FURTHER: Final = 4  # violations that are explained beside the worst
+_FURTHER: Final = 4  # violations explained in addition to the worst
 _NAMED: Final = 3  # nodes where failures began
 _LONG_TICK: Final = 0.01  # s, the period in which Nav2 ticks its trees
 _ORDER: Final = (VIOLATED, SATISFIED, UNDECIDED, UNKNOWN, NEVER)

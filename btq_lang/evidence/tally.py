@@ -1,6 +1,6 @@
-"""The judgements of a clause at a written node, counted to a verdict.
+"""Counts the judgements of a clause at a written node, and derives the verdict.
 
-One invariant: what was counted is enough for the verdict, so no judgement is kept but the violations that are shown.
+One invariant: counts are enough for the verdict, so the only judgements kept are the violations that are shown.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ class Run(Record):
 
 
 class Tally:
-    """What has been counted so far.
+    """The counts so far.
 
     Attributes:
-        counted, violated, unknown, cut_off, why, violations, worst: as of a `ClauseVerdict`.
-        distribution: of what was measured.
+        counted, violated, unknown, cut_off, why, violations, worst: as in `ClauseVerdict`.
+        distribution: of the measures.
     """
 
     def __init__(self, odds: Odds | None, confidence: float | None, most: int | None = None) -> None:
         """
         Args:
-            most: how many count at most; None: all.
+            most: the maximum that count; None: all.
         """
         self.counted = 0
         self.violated = 0
@@ -54,12 +54,12 @@ class Tally:
         self._confidence: Final = confidence
         self._most: Final = most
         self._worst_excess = float("-inf")
-        self._broken: Final[list[tuple[Judgement, str, tuple[Link, ...]]]] = []  # of the run that is open
+        self._broken: Final[list[tuple[Judgement, str, tuple[Link, ...]]]] = []  # of the open run
         self._kept = self._unclear = 0  # likewise
-        self._worst_now: Measure | None = None  # where it is the worst of all runs
+        self._worst_now: Measure | None = None  # if it is the worst of all runs
 
     def add(self, judgement: Judgement, path: str, end: int, chain: tuple[Link, ...]) -> None:
-        """Count what an activation of the run that is open, or the run, came to.
+        """Count the judgement of an activation in the open run, or of the run.
 
         Args:
             end: of the activation, or of the run.
@@ -81,12 +81,12 @@ class Tally:
                 self._worst_now = measure
 
     def end_run(self, run: Run) -> None:
-        """The run that was open has ended."""
+        """Close the open run."""
         broken, kept, unclear = len(self._broken), self._kept, self._unclear
         if not (broken or kept or unclear):
             return
         shown = self._broken
-        if self.counts_runs:  # a run holds where something in it was judged and all of it holds
+        if self.counts_runs:  # a run holds if it has judgements and all of them hold
             broken, kept, unclear = int(broken > 0), int(kept > 0), int(unclear > 0)
             shown = self._broken[:1]
             unclear = int(unclear and not broken)
@@ -105,19 +105,21 @@ class Tally:
             self._worst_now = None
 
     def is_worst_in(self, run: Run) -> bool:
-        """Whether a run that has been counted has what is shown as the worst violation: the one furthest beyond the
-        bound, else the first."""
+        """Whether the worst violation, the one furthest beyond the bound or else the first, is in a run already
+        counted.
+        """
         if not self.violations or self.violations[-1].run != run.number:
             return False
         return self.violations[0].run == run.number or (self.worst is not None and self.worst.run == run.number)
 
     def result(self) -> Tally:
-        """All that was counted."""
+        """The tally itself; `Recent` computes one."""
         return self
 
     def verdict(self) -> Verdict:
-        """Without odds one violation decides; with odds the unknown ones are judged as false and as true, and only a
-        verdict that both give stands."""
+        """Without odds one violation decides; with odds the unknown ones are taken as false and as true, and a verdict
+        needs both to agree.
+        """
         n, k, unknown = self.counted, self.counted - self.violated, self.unknown
         if n + unknown == 0:
             return NEVER
@@ -127,7 +129,7 @@ class Tally:
         return low if low == high else UNKNOWN
 
     def interval(self) -> tuple[float, float] | None:
-        """The limits of the probability; None without odds, or where nothing was judged."""
+        """The limits of the probability; None without odds or judgements."""
         if self._odds is None or not self.counted + self.unknown:
             return None
         confidence = self._confidence if self._confidence is not None else USUAL_CONFIDENCE
@@ -135,14 +137,14 @@ class Tally:
         return lower_limit(k, n, confidence), upper_limit(k, n, confidence)
 
     def more(self) -> int | None:
-        """How many more that hold decide an undecided verdict."""
+        """How many more that hold would decide an undecided verdict."""
         if self._odds is None or self._confidence is None or self.verdict() != UNDECIDED:
             return None
         n, most, wanted = self.counted + self.unknown, self._most, self._odds.probability
         found = runs_to_decide(self.counted - self.violated, n, self._confidence, wanted)
         if most is None or (found is not None and n + found <= most):
             return found
-        return most if lower_limit(most, most, self._confidence) >= wanted else None  # they replace what is counted now
+        return most if lower_limit(most, most, self._confidence) >= wanted else None  # they push out all others
 
     def _by_odds(self, k: int, n: int) -> Verdict:
         assert self._odds is not None, "there are odds"
@@ -164,5 +166,5 @@ def _violation(judgement: Judgement, path: str, chain: tuple[Link, ...], run: Ru
     return Violation(run.number, run.source, path, run.begin, at, value, bound, why, chain)
 
 
-USUAL_CONFIDENCE: Final = 0.95  # of the limits that are shown where the requirement asks for none
+USUAL_CONFIDENCE: Final = 0.95  # of the limits shown, if the requirement names none
 _MOST_VIOLATIONS: Final = 1000

@@ -1,4 +1,4 @@
-"""How long the `tick()` of a leaf takes, which blocks the whole tree.
+"""Measures how long the `tick()` of a leaf takes, which blocks the whole tree.
 
 One invariant: only rows of one tick are compared.  When a leaf writes its first row right after its parent has begun,
 or after a sibling before it has completed, nothing else ran in between.
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 def timed(session: Session, took: Callable[[int, int], None]) -> Session:
-    """The same session, whose transitions report ticks of leaves as they are read.
+    """The session, with transitions that report ticks of leaves as they are read.
 
     Args:
-        took: is given the uid and the µs of each.
+        took: called with the uid and duration in µs of each.
     """
     return Session(session.tree, _timed(session, took), session.samples, session.remarks)
 

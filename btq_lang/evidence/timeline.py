@@ -1,6 +1,6 @@
-"""What the nodes did in one run, for the run that broke a clause worst.
+"""Timelines of the runs with the worst violation of each clause.
 
-One invariant: the activations of the open run alone are kept, at most a thousand of them, and one run for each clause.
+One invariant: it keeps the activations of the open run, at most a thousand, and one run for each clause.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Timelines:
-    """The runs that broke clauses worst."""
+    """Records the runs with the worst violations."""
 
     def __init__(self) -> None:
         self._kept: Final[dict[JudgedClause, Timeline]] = {}
@@ -24,17 +24,17 @@ class Timelines:
         self._left_out = 0
 
     def see(self, activation: Activation) -> None:
-        """An activation of the run that is open has ended."""
+        """Record an activation that has ended."""
         if len(self._now) < _MOST_BARS:
             self._now.append(activation)
         else:
             self._left_out += 1
 
     def end_run(self, run: Run, tree: LoggedTree, broken: list[JudgedClause]) -> None:
-        """The run that was open has ended.
+        """Close the open run.
 
         Args:
-            broken: the clauses that it broke worse than all runs before.
+            broken: the clauses whose worst violation so far is in this run.
         """
         if broken:
             self._kept.update(dict.fromkeys(broken, self._timeline(run, tree)))
@@ -42,7 +42,7 @@ class Timelines:
         self._left_out = 0
 
     def of(self, clause: JudgedClause) -> Timeline | None:
-        """The run that broke a clause worst; None where none did."""
+        """The run with the worst violation of a clause; None without any."""
         return self._kept.get(clause)
 
     def _timeline(self, run: Run, tree: LoggedTree) -> Timeline:

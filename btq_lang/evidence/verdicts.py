@@ -1,6 +1,6 @@
-"""What comes out: a verdict for each requirement, with what it rests on, as data.
+"""The result as data: a verdict for each requirement, with its evidence.
 
-One invariant: nothing in here has to be worked out again, so a table, JSON and a page say the same.
+One invariant: writers compute nothing from it, so a table, JSON and a page agree.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ class Link(Record):
 
     Attributes:
         kind: `part`: a node that took a share of the time; `self`: the node, which took all of it; `origin`: where a
-            failure began; `sample`: what a condition was judged by; `failure`: a leaf that had failed before in the
-            run, or below the node; `starts`: how the activations that are counted ended; `event`: what the node of an
-            event did last instead.
-        path: of the node; of a sample the leaf that ran when it was taken, empty where none did.
+            failure began; `sample`: a sample that a condition read; `failure`: a leaf that had failed before in the
+            run, or below the node; `starts`: how the counted activations ended; `event`: what the node of an event last
+            did instead.
+        path: of the node; for a sample, of the leaf that ran when it was taken, empty if none did.
         text: in words.
-        seconds: how long the node ran; of a sample its age.
-        activations, failed: of the node meanwhile.
+        seconds: how long the node ran; for a sample, its age.
+        activations, failed: counts of the node meanwhile.
     """
 
     kind: Literal["part", "self", "origin", "sample", "failure", "starts", "event"]
@@ -56,9 +56,9 @@ class Violation(Record):
         path: of the node, as the engine names it.
         start: when the run began, in µs since the epoch.
         at: how far into the run the clause was broken, in seconds.
-        measured, bound: in the bound's unit; empty where there is no number to compare.
+        measured, bound: in the bound's unit; empty if there is no number to compare.
         why: what happened, in words.
-        chain: what led to it, what matters most first.
+        chain: what led to it, the most important first.
     """
 
     run: int
@@ -73,7 +73,7 @@ class Violation(Record):
 
 
 class Worst(Record):
-    """What came closest to the bound, or went furthest beyond it."""
+    """The measure closest to the bound, or furthest beyond it."""
 
     si: float
     text: str
@@ -81,13 +81,13 @@ class Worst(Record):
 
 
 class Histogram(Record):
-    """How the values that were measured are distributed, in SI.
+    """The distribution of the measured values, in SI.
 
     Attributes:
         low, step: where the first step begins, and how large each is.
-        counts: how many values are in each.
-        bound, goal: beside which they are seen; goal: None for none.
-        unit: of the bound, to say values in.
+        counts: how many values are in each step.
+        bound, goal: to compare them with; goal: None without one.
+        unit: of the bound, to print values in.
     """
 
     low: float
@@ -120,8 +120,8 @@ class Timeline(Record):
 
     Attributes:
         start: in µs since the epoch.
-        bars: in the order of the nodes.
-        left_out: how many activations are not among them.
+        bars: in the order of the nodes' uids.
+        left_out: how many activations are omitted.
     """
 
     run: int
@@ -136,19 +136,18 @@ class ClauseVerdict(Record):
 
     Attributes:
         text: as typed, with its scopes and odds.
-        path: of the node, as the engine names it; of a subtree that is used several times all of them.
-        of: what it measures where that is more than a node: `from … to …`, `sum of …`; else empty.
-        counted: how many activations, or of odds of runs, sums and tries in a run how many runs, were judged true or
-            false.
-        violated, unknown: how many of them, and of those beside them.
-        cut_off: activations that were left out, for the log ends while they are open.
+        path: of the node, as the engine names it; all paths for a subtree that is used several times.
+        of: what it measures if that is more than a node: `from … to …`, `sum of …`; else empty.
+        counted: how many activations (or runs, for odds of runs, sums, and tries in a run) were judged true or false.
+        violated, unknown: how many of these are violations, and how many more are unknown.
+        cut_off: activations left out because the log ends while they are open.
         unit: what is counted: `activations` or `runs`.
         interval: the lower and the upper limit of the probability that it holds; None without odds.
-        confidence: that the requirement asks for; None where it asks for none, and each limit has 95 %.
-        more: how many more runs (or activations) without a violation decide; None: no number is known to.
+        confidence: that the requirement names; None if it names none, and each limit has 95 %.
+        more: how many more runs (or activations) without a violation would decide; None: no known number would.
         violations: the first thousand of them.
-        why: why the verdict is unknown or never exercised; of an undecided one why some are unknown; else empty.
-        histogram: of what was measured; None where nothing was.
+        why: why the verdict is unknown or never exercised, or why parts of an undecided one are unknown; else empty.
+        histogram: of the measures; None without any.
         timeline: the run of the worst violation; None without any.
     """
 
@@ -181,14 +180,14 @@ class RequirementVerdict(Record):
 
 
 class Source(Record):
-    """What was read of a file.
+    """What was read from a file.
 
     Attributes:
         runs, first_run: how many runs of the mission are in it, and the number of the first.
-        begin, end: of the first and the last of them, in µs since the epoch; None where there are none.
+        begin, end: of the first and the last of them, in µs since the epoch; None without any.
         identity: how the nodes were found in the mission.
-        joined, nodes: how many of the log's nodes were found, of how many.
-        remarks: what is to be known of the file.
+        joined, nodes: how many of the log's nodes were found, and how many there are.
+        remarks: notes about the file.
     """
 
     file: str
@@ -206,13 +205,13 @@ class NodeSummary(Record):
     """A node of the logs.
 
     Attributes:
-        path, kind: as the engine names it, and the ID it is registered under.
-        runs: in how many it ran.
+        path, kind: the engine's path of it, and the ID it is registered under.
+        runs: in how many runs it was active.
         succeeded, failed, halted, interrupted: how many of its activations.
         failures_began: in how many failed runs the failure began at it.
-        p50, p95: what half, and 95 of 100, of its activations to a result do not exceed, in seconds; None without any.
-        tick_p95, tick_worst: how long its `tick()` takes, likewise, where the log shows it.
-        written: as what; None of a node that the mission does not have.
+        p50, p95: percentiles of the durations of its activations with a result, in seconds; None without any.
+        tick_p95, tick_worst: durations of its `tick()`, in seconds, if the log shows them; else None.
+        written: the written node; None if the mission does not have it.
     """
 
     path: str
@@ -232,7 +231,7 @@ class NodeSummary(Record):
 
 
 class Repeats(Record):
-    """How often something was done again: in all runs, at most in one, and in which; None where it never was."""
+    """How often something was repeated: in total, in the run with the most, and that run; None if it never was."""
 
     total: int
     most: int
@@ -240,7 +239,7 @@ class Repeats(Record):
 
 
 class ContextSummary(Record):
-    """In how many runs a context held, and in how many others it is not known whether it did."""
+    """In how many runs a context held, and in how many others that is unknown."""
 
     name: str
     runs: int
@@ -248,16 +247,16 @@ class ContextSummary(Record):
 
 
 class MissionVerdicts(Record):
-    """A mission with the files that it was judged by.
+    """A mission with the logs by which it was judged.
 
     Attributes:
         file: of the mission.
-        outcomes: how many runs ended how.
-        nodes: of the logs, in the order of their numbers.
-        contexts: of the mission, in the order of their definitions.
-        retries: of what Retry nodes and Nav2's RecoveryNodes repeat.
-        recoveries: of what RecoveryNodes do between two tries.
-        by_people: the requirements that are verified by review, test or analysis, and not judged here.
+        outcomes: how many runs had each outcome.
+        nodes: of the logs, in the order of their uids.
+        contexts: of the mission, in the order of definition.
+        retries: by Retry nodes and Nav2's RecoveryNodes.
+        recoveries: by RecoveryNodes between two tries.
+        by_people: the requirements verified by review, test or analysis, which are not judged.
     """
 
     name: str
@@ -278,7 +277,7 @@ class MissionVerdicts(Record):
 
     @property
     def medians(self) -> dict[str, float]:
-        """How long nodes take to a result, in seconds by path."""
+        """The median durations of nodes, in seconds by path."""
         return {each.path: each.p50 for each in self.nodes if each.p50 is not None}
 
 
@@ -286,8 +285,8 @@ class Foreign(Record):
     """Runs that are not judged.
 
     Attributes:
-        of: what they are of: another mission, or one of several.
-        difference: what the nearest mission and the tree of the log differ in; empty where one of them is unknown.
+        of: what they belong to: another mission, or one of several.
+        difference: how the nearest mission and the tree of the log differ; empty if one of them is unknown.
     """
 
     file: str
@@ -300,9 +299,9 @@ class Report(Record):
     """All that `btq verify` found.
 
     Attributes:
-        missions: those that some log is of.
+        missions: those that have logs.
         problems: the files that could not be read, each with the reason.
-        remarks: what is to be known of the samples.
+        remarks: notes about the samples.
     """
 
     missions: tuple[MissionVerdicts, ...]
@@ -312,10 +311,10 @@ class Report(Record):
 
     @property
     def verdicts(self) -> frozenset[Verdict]:
-        """Those that occur."""
+        """The verdicts that occur."""
         return frozenset(each.verdict for mission in self.missions for each in mission.requirements)
 
 
 def worst_of(verdicts: Iterable[Verdict]) -> Verdict:
-    """The verdict of several together: `never exercised` only where all of them are."""
+    """The worst of several verdicts; `never exercised` only if all of them are."""
     return min(verdicts, key=WORST_FIRST.index, default=NEVER)

@@ -1,4 +1,4 @@
-"""Logs judged in one call, with what else is to be said of them."""
+"""Judges logs in one call, with notes on what limits the verdicts."""
 
 from __future__ import annotations
 
@@ -34,23 +34,23 @@ if TYPE_CHECKING:
 
 
 class Verification(Record):
-    """What logs say of missions.
+    """The verdicts of missions, from logs.
 
     Attributes:
-        report: the verdicts, with what is to be known of the samples and the runs of other missions.
-        problems: what keeps them from being complete: logs that cannot be read, missions with errors.
+        report: the verdicts, with notes about samples, and the runs of other missions.
+        problems: why they may be incomplete: logs that cannot be read, missions with errors.
     """
 
     report: Report
     problems: tuple[str, ...]
 
     def write(self, form: str = "table", *, colour: bool = False, verbose: bool = False) -> str:
-        """The verdicts as a text.
+        """Write the verdicts as text.
 
         Args:
             form: `table`, `json`, `csv`, `junit` or `markdown`.
             colour: ANSI colours, for `table`.
-            verbose: for `table`: more violations of each clause.
+            verbose: for `table`: show more violations of each clause.
 
         Raises:
             ValueError: there is no such format.
@@ -61,7 +61,7 @@ class Verification(Record):
 def verify_logs(
     workspace: Workspace, path: str, logs: str | Sequence[str], *, signals: str | None = None
 ) -> Verification:
-    """A verdict for each requirement of a mission, by what logs say that robots did.
+    """Judge each requirement of a mission by logs of what robots did.
 
         >>> from btq_lang import Workspace, verify_logs
         >>> workspace = Workspace.of({"main.btq": "BehaviorTree Main\\n    Dock\\n"})
@@ -113,11 +113,11 @@ def judged(
     with_timelines: bool = False,
     told: Callable[[int, int], None] = lambda files, runs: None,
 ) -> Verification:
-    """The verdicts of missions, and what else is to be said.
+    """Judge missions, and add notes on what limits the verdicts.
 
     Args:
         samples: the file that they are from, and the samples by signal or entry.
-        asked: the missions as they were asked for; none: all that are known.
+        asked: the missions as the command line names them; none: all that are known.
         sources, of_files, with_timelines, told: as of `verify`.
     """
     file, series = samples

@@ -1,4 +1,4 @@
-"""Measures and times as people read them."""
+"""Formats measures and times for people."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def quantity(si: float, unit: Unit | None, bound: float | None = None) -> str:
-    """A value in a unit, with three digits, and more where these would put it on the other side of its bound."""
+    """A value in a unit, with three digits, or more if rounding would put it on the other side of its bound."""
     value = from_si(si, unit) if unit is not None else si
     limit = None if bound is None else from_si(bound, unit) if unit is not None else bound
     shown = value
@@ -25,15 +25,14 @@ def quantity(si: float, unit: Unit | None, bound: float | None = None) -> str:
 
 
 def measured(si: float, unit: Unit | None, bound: float) -> str:
-    """A value beside its bound, in the unit of that; a time that is less than one of it in the unit that `duration`
-    takes."""
+    """A value in the unit of its bound; a time below one such unit, in the unit that `duration` chooses."""
     if unit is not None and unit.dimension == _SECOND.dimension and from_si(si, unit) < 1:
         unit = _readable(si)
     return quantity(si, unit, bound)
 
 
 def duration(seconds: float) -> str:
-    """A duration in ms, s, min or h, whichever is read easily."""
+    """A duration in ms, s, min or h, whichever is easiest to read."""
     return quantity(seconds, _readable(seconds))
 
 
@@ -50,14 +49,14 @@ def _unit(symbol: str) -> Unit:
 
 
 def share(probability: float) -> str:
-    """A fraction of one as a percentage, with three digits, and more where these would make it certain."""
+    """A fraction of one as a percentage, with three digits, or more if rounding would give 0 or 100 %."""
     percent = probability * 100
     shown = (float(f"{percent:.{digits}g}") for digits in range(3, 16))
     return f"{next((each for each in shown if each < 100 or percent >= 100), percent):.15g} %"
 
 
 def moment(time: int) -> datetime | None:
-    """A time in µs since the epoch, in UTC; None where no calendar has it."""
+    """A time in µs since the epoch, in UTC; None outside the calendar."""
     try:
         return _EPOCH + timedelta(microseconds=time)
     except OverflowError:
@@ -75,7 +74,7 @@ def period(begin: int, end: int) -> str:
 
 
 def timestamp(time: int) -> str:
-    """A time as ISO 8601 has it; the bare number where no calendar has it."""
+    """A time in ISO 8601; the bare number outside the calendar."""
     found = moment(time)
     return found.isoformat(timespec="microseconds").replace("+00:00", "Z") if found is not None else f"{time} us"
 

@@ -1,7 +1,7 @@
-"""Readers of logs: a module a format, found by what a file begins with, whatever its name.
+"""Readers of logs: a module a format, chosen by the first bytes of a file, whatever its name.
 
-One invariant: a log is read as it is judged, never all at once, and what is wrong with a file is one NotALog or OSError
-that says what was expected.
+One invariant: a log is read while it is judged, never all at once, and a bad file gives one NotALog or OSError whose
+message names what was expected.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     from btq_lang.evidence.model import NamedLog, Session
     from btq_lang.workspace.project_evidence import SignalSource
 
-SUFFIXES: Final = (".btlog", ".db3", ".btdb", ".mcap")  # of what is read below a folder
+SUFFIXES: Final = (".btlog", ".db3", ".btdb", ".mcap")  # of the files read below a folder
 
 
 def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[Session | NamedLog]:
-    """The sessions of a log, each to be read before the next one is asked for.
+    """The sessions of a log, each of which must be read before the next is requested.
 
     Args:
         path: of a file, or of the folder of a ROS 2 bag.
         sources: where samples of signals come from; those that are topics are read from bags.
 
     Raises:
-        NotALog: no format fits, or the file is damaged where nothing of it can be used.
+        NotALog: no format fits, or the file is damaged beyond use.
         OSError: it cannot be read.
     """
     reader = _reader(path)
@@ -41,9 +41,9 @@ def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[Session | 
 def samples_of_bags(
     paths: Iterable[str], sources: Sequence[SignalSource]
 ) -> tuple[dict[str, Series], list[str], set[str]]:
-    """The samples of bags that have no log of a tree: by signal, what is to be said of them, and which bags these are.
+    """The samples of bags without a log of a tree, by signal, with notes about them, and which bags these are.
 
-    A file that cannot be read is passed over; `read` says what is wrong with it.
+    A file that cannot be read is skipped; `read` reports it.
     """
     found: dict[str, Series] = {}
     remarks: list[str] = []
@@ -95,7 +95,7 @@ def whole_bags(paths: Iterable[str]) -> tuple[str, ...]:
 
 
 def _is_metadata(path: str) -> bool:
-    """Whether it was found for its name only, and not for what is in it."""
+    """Whether it was found by its name only, and not by its content."""
     return path.endswith(bag.METADATA)
 
 

@@ -1,10 +1,10 @@
 """ROS 2 bags, read by `rosbags`: folders with a metadata.yaml, MCAP files and rosbag2's SQLite files.
 
-One invariant: whatever `rosbags` trips over in a file is one NotALog, or, once messages have come, one remark; of a
-recording that was cut off, what is whole is read.
+One invariant: any failure of `rosbags` is one NotALog, or, after the first message, one remark; of a truncated
+recording, all complete messages are read.
 
-Only the definitions of the types that are asked for are looked at, so a type that `rosbags` cannot read spoils nothing
-else in its bag.
+Only the definitions of requested types are parsed, so a type that `rosbags` cannot read does not affect the rest of its
+bag.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Bag:
 
     Attributes:
         connections: each topic with its type.
-        remarks: what is to be said of the file, complete when the messages have been read.
+        remarks: notes about the file, complete when the messages have been read.
     """
 
     def __init__(self, storages: list[Any], remarks: list[str]) -> None:
@@ -50,7 +50,7 @@ class Bag:
         return [each for each in self.connections if each.msgtype == name]
 
     def messages(self, connections: Collection[Connection]) -> Iterator[tuple[str, int, Any]]:
-        """The messages of topics in the order in which they were received: topic, time of reception in ns, message."""
+        """The messages of topics in order of reception: topic, time of reception in ns, message."""
         decoders = {each.msgtype: _decoder(each) for each in connections}
         unread = 0
         for storage in self._storages:
@@ -60,7 +60,7 @@ class Bag:
                     connection, received, data = next(raw)
                 except StopIteration:
                     break
-                except Exception as error:  # `rosbags` lets through what its parts raise
+                except Exception as error:  # `rosbags` does not wrap what its parts raise
                     self.remarks.append(
                         f"the bag is damaged, and what comes after the damage is left out: {_said(error)}"
                     )
@@ -78,7 +78,7 @@ class Bag:
 
 @contextmanager
 def opened(path: str) -> Iterator[Bag]:
-    """A bag, open while the context lasts.
+    """Open a bag for the duration of the context.
 
     Args:
         path: of a folder or a file.
@@ -88,7 +88,7 @@ def opened(path: str) -> Iterator[Bag]:
         OSError: it cannot be read.
     """
     try:
-        import rosbags.rosbag2  # noqa: F401  # is it there?
+        import rosbags.rosbag2  # noqa: F401  # whether it is installed
     except ImportError as error:
         raise NotALog("a ROS 2 bag is read with rosbags; install it with pip install 'btq-lang[ros]'") from error
     limit_chunks()
@@ -103,19 +103,18 @@ def opened(path: str) -> Iterator[Bag]:
 
 
 def _folder(path: str, remarks: list[str]) -> list[Any]:
-    """The storage of a folder; where its metadata and its files do not agree, as in a recording that was cut off, those
-    of its files."""
+    """The storages of a folder; if its metadata and files disagree, as in a truncated recording, one for each file."""
     from rosbags.rosbag2 import Reader
 
     databases = sorted(each for each in os.listdir(path) if each.endswith(".db3"))
-    if any(sqlite.has_log(os.path.join(path, each)) for each in databases):  # which `rosbags` does not read
+    if any(sqlite.has_log(os.path.join(path, each)) for each in databases):  # `rosbags` does not read that log
         return [_file(os.path.join(path, each), remarks) for each in databases]
     storage = Reader.STORAGE_PLUGINS["dir"](Path(path))
     try:
         storage.open()
     except OSError:
         raise
-    except Exception as error:  # whatever is wrong with the metadata
+    except Exception as error:  # whatever the metadata's fault is
         files = sorted(each for each in os.listdir(path) if each.endswith((".mcap", ".db3")))
         if not files:
             raise NotALog(f"the bag cannot be read: {_said(error)}") from error
@@ -125,7 +124,9 @@ def _folder(path: str, remarks: list[str]) -> list[Any]:
 
 
 def _unpacks_by_itself(storage: Any) -> bool:
-    """Whether each message is packed; the storage then gives them as they are, for it knows no limit."""
+    """Whether each message is compressed; the storage then returns them compressed, because its own decompression has
+    no limit.
+    """
     if getattr(getattr(storage, "metadata", None), "compression_mode", None) != "message":
         return False
     storage.metadata = storage.metadata._replace(compression_mode=None)
@@ -153,13 +154,13 @@ def _file(path: str, remarks: list[str]) -> Any:
         storage.open()
     except (OSError, NotALog):
         raise
-    except Exception as error:  # `rosbags` lets through what its parts raise
+    except Exception as error:  # `rosbags` does not wrap what its parts raise
         raise NotALog(f"the bag cannot be read: {_said(error)}") from error
     return storage
 
 
 def files_in(folder: str) -> tuple[str, ...]:
-    """The paths of the files of a bag and of its metadata; empty where the folder is not that of a bag."""
+    """The paths of the files of a bag and of its metadata; empty if the folder is not a bag."""
     metadata = os.path.join(folder, METADATA)
     try:
         with open(metadata, encoding="utf-8", errors="replace") as file:
@@ -180,7 +181,7 @@ def _said(error: Exception) -> str:
 
 
 def _decoder(connection: Connection) -> Callable[[bytes], Any]:
-    """What makes a message of bytes, by the definition in the bag, else by a known one.
+    """A decoder of messages from bytes, by the definition in the bag, else by a known one.
 
     Raises:
         NotALog: there is no definition of its type.
@@ -190,11 +191,11 @@ def _decoder(connection: Connection) -> Callable[[bytes], Any]:
     name, definition = connection.msgtype, connection.msgdef
     try:
         if definition.format == Format.NONE and name == TREE_LOG:
-            # Since Jazzy, and before, when changes of status had no uid.
+            # The forms since Jazzy and before, when status changes had no uid.
             texts = (_TREE_LOG_DEFINITION.format(uid=uid) for uid in ("uint16 uid\n", ""))
             return _either(*(_decoder_of(name, "MSG", text) for text in texts))
         return _decoder_of(name, definition.format.name, definition.data)
-    except Exception as error:  # a definition may hold anything
+    except Exception as error:  # a definition may contain anything
         raise NotALog(f"the bag has no usable definition of {name}: {_said(error)}") from error
 
 
@@ -216,7 +217,7 @@ def _either(first: Callable[[bytes], Any], second: Callable[[bytes], Any]) -> Ca
     def decode(data: bytes) -> Any:
         try:
             return first(data)
-        except Exception:  # bytes of the other form may look like anything
+        except Exception:  # bytes of the other form may raise anything
             return second(data)
 
     return decode
@@ -239,11 +240,11 @@ uint32 nanosec
 _IDL_RULE: Final = f"{'=' * 80}\n"
 
 
-# ---- recordings that were cut off ----
+# ---- truncated recordings ----
 
 
 class _WholeFile:
-    """An MCAP file as `rosbags` opens it; of one that was cut off, its whole records, and an end."""
+    """An MCAP file for `rosbags` to open; a truncated one appears as its complete records followed by an end."""
 
     def __init__(self, path: str, remarks: list[str]) -> None:
         self._path: Final = path
@@ -269,11 +270,11 @@ def _has_end(file: BinaryIO, size: int) -> bool:
 
 
 def _whole_records(file: BinaryIO, size: int) -> list[tuple[int, int]]:
-    """Where the whole records are: those before the cut, and those inside a chunk that was cut, if it is not packed."""
+    """The ranges of complete records: those before the cut, and those in a truncated, uncompressed chunk."""
     end, kind = _records(file, len(MCAP), size)
     parts = [(0, min(end, size))]
     if kind == _CHUNK:
-        file.seek(end + _RECORD_HEAD + 28)  # after two times, a size and a checksum
+        file.seek(end + _RECORD_HEAD + 28)  # skips two times, a size and a checksum
         compression = int.from_bytes(file.read(4), "little")
         begin = end + _RECORD_HEAD + 28 + 4 + 8
         if compression == 0 and begin <= size:
@@ -283,7 +284,7 @@ def _whole_records(file: BinaryIO, size: int) -> list[tuple[int, int]]:
 
 
 def _records(file: BinaryIO, begin: int, size: int) -> tuple[int, bytes]:
-    """Where the last whole record ends, and what the record after it is, if any."""
+    """Where the last complete record ends, and the type of the record after it, if any."""
     while True:
         file.seek(begin)
         head = file.read(_RECORD_HEAD)
@@ -294,7 +295,7 @@ def _records(file: BinaryIO, begin: int, size: int) -> tuple[int, bytes]:
 
 
 class _Parts(RawIOBase):
-    """Parts of a file in a row, followed by the end of an MCAP file without an index."""
+    """Parts of a file, concatenated, followed by the end of an MCAP file without an index."""
 
     def __init__(self, file: BinaryIO, parts: list[tuple[int, int]]) -> None:
         self._file: Final = file
@@ -332,5 +333,5 @@ class _Parts(RawIOBase):
 
 
 _CHUNK: Final = b"\x06"
-_RECORD_HEAD: Final = 9  # what it is, and how long it is in 64 bits
+_RECORD_HEAD: Final = 9  # its type, and its length in 64 bits
 _NO_INDEX: Final = b"\x02" + (20).to_bytes(8, "little") + bytes(20) + MCAP

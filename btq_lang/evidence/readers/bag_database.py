@@ -1,6 +1,6 @@
-"""A rosbag2 SQLite file that `rosbags` cannot open since it was cut off: what can be read of it.
+"""Reads what is left of a truncated rosbag2 SQLite file, which `rosbags` cannot open.
 
-It is used like a storage of `rosbags`: open, connections, messages, close.
+It has the interface of a storage of `rosbags`: open, connections, messages, close.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class BagDatabase:
             self.connections.append(Connection(number, topic, name, definitions.get(name, none), "", 0, ext, self))
 
     def messages(self, connections: Collection[Connection]) -> Iterator[tuple[Connection, int, bytes]]:
-        """The messages as they were written, which is in the order of their reception.
+        """The messages in the order in which they were written, which is that of reception.
 
         Raises:
             sqlite3.Error: the next one cannot be read.

@@ -1,7 +1,7 @@
 """`.btlog`, the file of BehaviorTree.CPP's FileLogger2: the tree as XML, then nine bytes a status change.
 
-One invariant: sizes in the file are checked before they are used, and of a file that was cut off anywhere what is whole
-is read.
+One invariant: sizes in the file are checked before they are used, and of a file truncated anywhere all complete records
+are read.
 
 Source: src/loggers/bt_file_logger_v2.cpp.
 """

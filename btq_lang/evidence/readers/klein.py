@@ -1,9 +1,9 @@
 """`<name>.bb.jsonl` beside `<name>.btlog`: what was on the blackboard, as klein records it from a running robot.
 
-One invariant: a line that cannot be read is left out and counted, and nothing in the file spoils the log beside it.
+One invariant: a line that cannot be read is skipped and counted, and no content of the file affects reading the log.
 
-A header, then a line for each change, in time: µs since the header's time, the blackboard, the entry and its value, or
-that it was removed.  Source: `export_blackboard` in klein/btlog.py of johanubbink/klein-bt.
+The file has a header, then a line for each change in order of time: µs since the header's time, the blackboard, the
+entry, and its value or its removal. Source: `export_blackboard` in klein/btlog.py of johanubbink/klein-bt.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from btq_lang.evidence.model import Series, is_sample
 
 
 def read(log: str) -> tuple[dict[str, Series], list[str]]:
-    """The samples beside a log by entry, and what is to be said of them; neither where there is no such file.
+    """The samples beside a log by entry, and notes about them; both empty without such a file.
 
-    An entry is the main tree's; of a subtree's it is one whose name no other blackboard has.
+    An entry is the main tree's, or a subtree's if no other blackboard has one of that name.
     """
     path = f"{os.path.splitext(log)[0]}{SUFFIX}"
     name = os.path.basename(path)
@@ -43,7 +43,7 @@ def read(log: str) -> tuple[dict[str, Series], list[str]]:
 
 
 def _add(boards: dict[str, dict[str, Series]], line: dict[str, Any] | None, start: int) -> bool:
-    """Add the sample of a line, if it is one; whether the line could be read."""
+    """Add the sample of a line, if it is one; returns whether the line could be read."""
     if line is None:
         return False
     time, board, key = _time(line.get("t")), line.get("board"), line.get("key")

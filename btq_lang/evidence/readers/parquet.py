@@ -1,6 +1,6 @@
 """The columns of a Parquet file, read by DuckDB.
 
-One invariant: whatever DuckDB trips over is one NotParquet that says what was expected.
+One invariant: any failure of DuckDB is one NotParquet whose message names what was expected.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ MAGIC: Final = b"PAR1"
 
 
 class NotParquet(Exception):
-    """A file cannot be read; the message says why."""
+    """A file that cannot be read; the message says why."""
 
 
 def read(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
-    """The names of the columns, and the rows; points in time are in seconds since the epoch.
+    """The names of the columns, and the rows; timestamps are in seconds since the epoch.
 
     Raises:
-        NotParquet: DuckDB is missing, or cannot read it, also while the rows are read.
+        NotParquet: DuckDB is missing, or cannot read the file, also while the rows are read.
     """
     try:
         import duckdb
@@ -52,7 +52,7 @@ def read(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
 
 @lru_cache(1)
 def _engine() -> Any:
-    """DuckDB, which takes longer to start than most files take to read, and longer still with threads."""
+    """A connection to DuckDB; with a single thread, because starting others takes longer than reading most files."""
     import duckdb
 
     return duckdb.connect(config={"threads": 1})

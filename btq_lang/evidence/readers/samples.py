@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class NoSamples(Exception):
-    """A file is not the table of samples that it was taken for; the message says what was expected."""
+    """A file that is not a table of samples; the message says what was expected."""
 
 
 def read(path: str, time: str = "") -> dict[str, Series]:
@@ -56,7 +56,7 @@ def read(path: str, time: str = "") -> dict[str, Series]:
 
 
 def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[object]]]) -> dict[str, Series]:
-    """The columns of a table; rows: each with where it is in the file."""
+    """The columns of a table; rows: each with its place in the file."""
     if len(names) < 2:
         raise NoSamples(_NAMES)
     at = names.index(_known(time, names)) if time else 0
@@ -73,7 +73,7 @@ def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[objec
 
 
 def _values(row: list[str]) -> list[object]:
-    """What the cells of a line say; None for an empty one."""
+    """The values of the cells of a line; None for an empty one."""
     return [_value(cell.strip()) for cell in row]
 
 
@@ -81,10 +81,10 @@ def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Seri
     """The samples of signals that come from files.
 
     Args:
-        folder: that their paths are relative to.
+        folder: the base of their relative paths.
 
     Raises:
-        NoSamples: a file is not as its source says.
+        NoSamples: a file does not match its source.
         OSError: it cannot be read.
     """
     files: dict[tuple[str, str], dict[str, Series]] = {}

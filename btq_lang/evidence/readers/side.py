@@ -1,4 +1,4 @@
-"""Side files beside logs: which mission a log is of, and the nodes that its build numbered."""
+"""Side files beside logs: the mission of a log, and the nodes that its build numbered."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from btq_lang.workspace.loader import absolute, read
 
 
 class SideFile(Record):
-    """A side file, the mission that it says it is of, and the nodes that it lists."""
+    """A side file, the mission that it names, and the nodes that it lists."""
 
     path: str
     mission: str
@@ -32,7 +32,7 @@ def side_files_beside(logs: Sequence[str]) -> Iterator[SideFile]:
 
 
 def side_file_at(path: str) -> SideFile | None:
-    """A side file; None where there is none, or it is damaged."""
+    """The side file at a path; None if it is missing or damaged."""
     text = read(path)[0] if os.path.isfile(path) else None
     try:
         data = json.loads(text or "")

@@ -1,7 +1,7 @@
 """`.db3` and `.btdb`, the database of BehaviorTree.CPP's SqliteLogger: sessions, each with its tree and transitions.
 
-One invariant: the database is opened to be read only, so a robot can write it meanwhile; a damaged one gives what can
-be read.
+One invariant: the database is opened read-only, so a robot can write it meanwhile; of a damaged one, all that is
+readable is read.
 
 Source: src/loggers/bt_sqlite_logger.cpp.
 """
@@ -48,10 +48,10 @@ def is_bag(path: str) -> bool:
 
 @contextmanager
 def opened(path: str, remarks: list[str]) -> Iterator[sqlite3.Connection]:
-    """A database to be read; of one that was cut off what is there.
+    """Open a database for reading; a truncated one, for what is left of it.
 
     Args:
-        remarks: what is to be said of the file is added.
+        remarks: notes about the file are appended.
 
     Raises:
         NotALog: it is not a database, or is damaged where it is read.
@@ -60,7 +60,7 @@ def opened(path: str, remarks: list[str]) -> Iterator[sqlite3.Connection]:
     missing = missing_bytes(path)
     how = "mode=ro"
     if not os.access(os.path.dirname(path) or ".", os.W_OK) and not os.path.exists(f"{path}-shm"):
-        # There SQLite cannot keep the index that it needs for a log beside the database, even an absent one.
+        # In such a folder SQLite cannot create the index that it needs for a write-ahead log, even an absent one.
         if has_log(path):
             raise NotALog(f"{os.path.basename(path)}-wal has a part of it; copy both to a folder that can be written")
         how = "immutable=1"
@@ -69,7 +69,7 @@ def opened(path: str, remarks: list[str]) -> Iterator[sqlite3.Connection]:
         database.text_factory = lambda data: data.decode("utf-8", "replace")
         if missing:
             remarks.append(f"cut off: the last {missing} bytes of the database are missing")
-            database.execute("PRAGMA writable_schema = ON")  # else SQLite reads nothing of it; it is read only anyway
+            database.execute("PRAGMA writable_schema = ON")  # else SQLite reads nothing of it; nothing is written
         yield database
     except _DAMAGED as error:
         raise NotALog(f"the database cannot be read: {error}") from error
@@ -78,7 +78,7 @@ def opened(path: str, remarks: list[str]) -> Iterator[sqlite3.Connection]:
 
 
 def has_log(path: str) -> bool:
-    """Whether a part of a database is in the log beside it: it is being written, or its writer was killed."""
+    """Whether a part of a database is in its write-ahead log: it is being written, or its writer was killed."""
     try:
         return os.path.getsize(f"{path}-wal") > 0
     except OSError:
@@ -86,25 +86,25 @@ def has_log(path: str) -> bool:
 
 
 def missing_bytes(path: str) -> int:
-    """How much of a database was cut off; 0 where nothing was, or its header does not say.
+    """How many bytes a database lacks; 0 if none, or if its header does not tell.
 
     Raises:
         NotALog: it is not a database.
         OSError: it cannot be read.
     """
-    with open(path, "rb") as file:  # for the reason, which SQLite does not give
+    with open(path, "rb") as file:  # SQLite does not give the reason
         head = file.read(_HEAD)
         size = os.fstat(file.fileno()).st_size
     if not head.startswith(MAGIC):
         raise NotALog("expected a SQLite database, as SqliteLogger writes it")
-    if len(head) < _HEAD or head[24:28] != head[92:96]:  # the number of pages was written with the last change
+    if len(head) < _HEAD or head[24:28] != head[92:96]:  # the number of pages is valid
         return 0
     page = int.from_bytes(head[16:18], "big")
     return max(0, (65536 if page == 1 else page) * int.from_bytes(head[28:32], "big") - size)
 
 
 def tables(database: sqlite3.Connection) -> set[str]:
-    """The names of its tables."""
+    """The names of a database's tables."""
     return {name for (name,) in database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
 
 
@@ -128,7 +128,7 @@ def _sessions(database: sqlite3.Connection, of_file: list[str]) -> Iterator[Sess
 def _transitions(
     database: sqlite3.Connection, session: int, samples: dict[str, Series], remarks: list[str]
 ) -> Iterator[Transition]:
-    """The transitions of a session; samples and remarks are added to while they are read."""
+    """The transitions of a session; samples and remarks are appended while they are read."""
     malformed = 0
     try:
         for time, uid, status, extra in database.execute(_TRANSITIONS, (session,)):
@@ -145,7 +145,7 @@ def _transitions(
 
 
 def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:
-    """What a logger's callback has put beside a row: of a JSON object each number, text or bool is a sample."""
+    """Add the samples in a row's extra data, from a logger's callback: each number, text or bool of a JSON object."""
     try:
         values = json.loads(extra) if isinstance(extra, str) else None
     except (ValueError, RecursionError):
@@ -155,7 +155,7 @@ def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:
             samples.setdefault(name, Series()).add(time, value)
 
 
-_DAMAGED: Final = (sqlite3.Error, UnicodeDecodeError)  # which a message of SQLite may itself end in
+_DAMAGED: Final = (sqlite3.Error, UnicodeDecodeError)  # reading an error message may raise the latter
 MAGIC: Final = b"SQLite format 3\0"
 _HEAD: Final = 100
 _TRANSITIONS: Final = (

@@ -1,7 +1,7 @@
 """Samples of signals from topics of a bag, as `[evidence.signals]` of the project file names them.
 
 One invariant: a sample is placed on the clock of the tree's log: at its header's stamp if that is on this clock, else
-at its time of reception; where neither can be, it is an error and no guess.
+at its time of reception; if neither works, it is an error, not a guess.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 class Clock:
     """The clock of a tree's log, in µs since the epoch, and how a bag's times of reception map to it.
 
-    Made of what each message of the log says: when it was received, and the newest stamp in it.
+    Computed from each message of the log: when it was received, and the newest stamp in it.
     """
 
     def __init__(self, received: array[int], stamped: array[int]) -> None:
@@ -42,7 +42,7 @@ class Clock:
         self.is_of_the_bag: Final = len(apart) == 0 or float(median(apart)) < _FAR_APART
 
     def of_reception(self, times: Times) -> Times | None:
-        """Times of reception on this clock; None where they cannot be placed on it."""
+        """Converts times of reception to this clock; None if that is impossible."""
         if self.is_of_the_bag:
             return times
         from numpy import argsort, interp, unique
@@ -59,7 +59,7 @@ class Clock:
         return placed.astype("int64")
 
     def overlaps(self, times: Times) -> bool:
-        """Whether times are about when the tree ran."""
+        """Whether times are close to when the tree ran."""
         begin, end = int(self._stamped.min()) - _FAR_APART, int(self._stamped.max()) + _FAR_APART
         return begin <= int(times.max()) and int(times.min()) <= end
 
@@ -69,11 +69,11 @@ class Topics:
 
     Attributes:
         names: of the topics.
-        remarks: what is to be said of the samples.
+        remarks: notes about the samples.
     """
 
     def __init__(self, sources: Iterable[SignalSource], topics: Iterable[str], namespaces: Iterable[str]) -> None:
-        """Find out which topics are meant.
+        """Find the topics that sources name.
 
         Args:
             topics: those of the bag.
@@ -89,7 +89,7 @@ class Topics:
         self.remarks: Final[list[str]] = []
 
     def add(self, topic: str, received: int, message: Any) -> None:
-        """Add what a message says; received: in ns.
+        """Add the samples of a message; received: in ns.
 
         Raises:
             NotALog: it has no such field.
@@ -120,7 +120,7 @@ def _inside(namespace: str, topic: str) -> str:
 
 
 class _Field:
-    """A field of the messages on a topic, with what they say in it."""
+    """A field of the messages on a topic, with its values."""
 
     def __init__(self, source: SignalSource, topic: str) -> None:
         self.source: Final = source

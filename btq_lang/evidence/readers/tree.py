@@ -1,10 +1,10 @@
 """The tree in a log, from the XML that the engine's loggers write.
 
-One invariant: a tree's numbers are what BehaviorTree.CPP makes of it, 1, 2, 3 … depth first, each node's after its
-parent's; a tree that is numbered otherwise is refused.
+One invariant: nodes are numbered as BehaviorTree.CPP does, 1, 2, 3 … depth first, each after its parent; a tree with
+other numbers is refused.
 
-The engine writes one `<BehaviorTree>` for each instance of a subtree, and a `SubTree` element says nothing about which
-of them is its own: it is the one whose first node has the number after the SubTree's.
+The engine writes one `<BehaviorTree>` for each instance of a subtree, and a `SubTree` element does not name its own: it
+is the one whose first node has the number after the SubTree's.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from btq_lang.evidence.model import ROOT, LoggedTree
 
 
 class NotALog(Exception):
-    """A file is not the log that it was taken for; the message says what was expected."""
+    """A file that is not a log; the message says what was expected."""
 
 
 def read_tree(xml: bytes | str) -> LoggedTree:
@@ -52,7 +52,7 @@ def _numbered(tops: dict[int, tuple[Element, str]]) -> list[tuple[int, str, str,
         uid = _uid(element)
         found.append((uid, _kind(element), _path(element, uid, prefix), parent))
         if element.tag == "SubTree":
-            if uid + 1 in tops:  # taken out: no tree is below two nodes, or below itself
+            if uid + 1 in tops:  # popped: no tree is below two nodes, or itself
                 waiting.append((*tops.pop(uid + 1), uid))
         else:
             waiting += [(child, prefix, uid) for child in reversed([*element.elements])]

@@ -1,9 +1,9 @@
 """What Nav2 publishes about its behavior trees, `nav2_msgs/BehaviorTreeLog`, from a bag.
 
-One invariant: status changes come out in the order of their own stamps, which are wall clock also in simulation: a
-message may bring the last changes of a goal together with the first of the next one, or of another navigator's.
+One invariant: status changes are in the order of their own stamps, which are wall-clock time even in simulation: a
+message may contain the last changes of a goal together with the first of the next, or of another navigator's.
 
-A message says which node changed by its name, and since ROS 2 Jazzy by its uid; which tree it is of, it does not say.
+A message identifies the changed node by name, and since ROS 2 Jazzy by uid, but does not identify the tree.
 """
 
 from __future__ import annotations
@@ -71,10 +71,10 @@ def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[NamedLog]:
 
 
 def samples(path: str, sources: Iterable[SignalSource]) -> tuple[dict[str, Series], list[str]] | None:
-    """The samples in a bag that has no log of a tree, and what is to be said of them; None where it has one.
+    """The samples in a bag without a log of a tree, and notes about them; None if it has one.
 
     Raises:
-        NotALog: it is not a bag, or a topic is not as its source says.
+        NotALog: it is not a bag, or a topic does not match its source.
         OSError: it cannot be read.
     """
     with opened(path) as bag:
@@ -99,11 +99,11 @@ class _Changes:
         self._nodes: Final = array("I")
         self._statuses: Final = array("B")
         self._index: Final[dict[tuple[int, str], int]] = {}
-        self._received: Final = array("q")  # µs, of each message, as the newest stamp in it
+        self._received: Final = array("q")  # µs, of each message
         self._newest: Final = array("q")
 
     def add(self, received: int, message: Any) -> int:
-        """Add the changes in a message; how many of them have no known status."""
+        """Add the changes in a message; returns how many have an unknown status."""
         index, times, nodes, statuses = self._index, self._times, self._nodes, self._statuses
         changes = getattr(message, "event_log", None)
         if not isinstance(changes, list):
@@ -125,11 +125,11 @@ class _Changes:
         return malformed
 
     def clock(self) -> Clock:
-        """The clock of the changes."""
+        """The clock on which the changes are stamped."""
         return Clock(self._received, self._newest)
 
     def log(self, topic: str, trees: list[LoggedTree], signals: dict[str, Series], remarks: list[str]) -> NamedLog:
-        """What was added, in order."""
+        """The log of the added changes, in order."""
         import numpy  # `rosbags` needs it too
 
         order = numpy.argsort(numpy.frombuffer(self._times, numpy.int64), kind="stable")

@@ -1,7 +1,6 @@
-"""Packed parts of a bag, unpacked to no more than a bag has reason to hold.
+"""Decompresses parts of a bag, up to a limit that no sane bag exceeds.
 
-One invariant: a chunk or a message that would be larger is an error before it is in memory, whatever it says of its own
-size.
+One invariant: a chunk or message above the limit is an error before it is in memory, whatever size it declares.
 """
 
 from __future__ import annotations
@@ -10,11 +9,11 @@ from typing import Any, Final
 
 
 class TooLarge(Exception):
-    """What is packed is larger than it may be."""
+    """Decompressed data exceeds the limit."""
 
 
 def limit_chunks() -> None:
-    """Let `rosbags` unpack chunks of MCAP files within the limit; by itself it has none."""
+    """Make `rosbags` decompress chunks of MCAP files within the limit; it has none by itself."""
     from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]  # it has no stubs
     from rosbags.rosbag2 import storage_mcap
 
@@ -23,15 +22,15 @@ def limit_chunks() -> None:
 
 
 def unpacked(data: bytes, size: int | None = None) -> bytes:
-    """What zstd has packed.
+    """Decompress data that zstd compressed.
 
     Args:
-        size: how large it should be, as the bag says; None: it does not.
+        size: as the bag declares it; None: it does not.
 
     Raises:
         TooLarge: it is larger.
     """
-    from rosbags.rosbag2.storage_mcap import zstd  # type: ignore[attr-defined]  # whichever this Python has
+    from rosbags.rosbag2.storage_mcap import zstd  # type: ignore[attr-defined]  # whichever module this Python has
 
     return _whole(data, zstd.ZstdDecompressor, size)
 

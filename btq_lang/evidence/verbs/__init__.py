@@ -1,9 +1,9 @@
-"""What each verb demands: a module a verb, named as its row in `catalog/verbs`; of `takes`, `span` and `total` judge
-the time between events and sums.
+"""Judges each verb: a module a verb, named like its row in `catalog/verbs`; for `takes`, `span` and `total` judge the
+time between events, and sums.
 
-One invariant: a module has one of two functions.  `judge(claim, activation, observed)` sees one activation when that
-has ended, and answers None where it does not count.  `judge_run(claim, run)` sees what the nodes did in a run that has
-ended, and answers None for what the end of the log cuts off.  Odds and windows are not known here.
+One invariant: a module has one of two functions. `judge(claim, activation, observed)` judges one activation that has
+ended, None if it does not count. `judge_run(claim, run)` judges a run that has ended, and yields None for what the end
+of the log cuts off. Odds and windows are unknown here.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
 
 
 class Measure(Record):
-    """What was measured, beside its bound.
+    """A measured value and its bound.
 
     Attributes:
-        unit: that of the bound, to say it in.
+        unit: that of the bound, to print both in.
         bound: in SI.
         bound_text: as typed.
-        excess: how far it is on the wrong side of the bound, in SI; negative on the right side.
+        excess: how far the value is on the wrong side of the bound, in SI; negative on the right side.
     """
 
     si: float
@@ -45,14 +45,14 @@ class Measure(Record):
 
 
 class Judgement(Record):
-    """Whether an activation keeps a clause.
+    """Whether an activation, or a run, satisfies a clause.
 
     Attributes:
         holds: None: unknown.
         at: when that was decided.
-        said: what was measured, in words, in which `{}` is the measure; where it is unknown, why.
-        since: of a clause that is judged over a run, when the time began that it is about.
-        starts: of such a clause, the activations that it counts or adds up.
+        said: a sentence in which `{}` is the measure; if `holds` is None, the reason.
+        since: for a clause judged over a run, when the judged time began.
+        starts: for such a clause, the activations that it counts or adds up.
     """
 
     holds: bool | None
@@ -64,10 +64,10 @@ class Judgement(Record):
 
 
 def judges_of(claim: Claim, subject: Subject | None) -> tuple[Judge | None, RunJudge | None]:
-    """What judges a clause: each activation, or a run; neither where nothing does.
+    """The functions that judge a clause, by activation and by run; at most one is not None.
 
     Args:
-        subject: what it holds for.
+        subject: what the clause holds for.
     """
     name: str = claim.verb
     if isinstance(subject, Span | Total):

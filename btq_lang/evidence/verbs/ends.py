@@ -1,4 +1,4 @@
-"""`ends within d after ev`: how long a node that runs when an event happens goes on."""
+"""`ends within d after ev`: how soon a node that is active when an event happens ends."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
-    """Whether the node ends in time after each event that happens while it runs."""
+    """Judge, for each event that happens while the node is active, whether it ends in time."""
     assert claim.event is not None, "the clause names one"
     moments = [each.started for each in run.own]
     for event in run.happenings(claim.event):

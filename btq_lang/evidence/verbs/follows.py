@@ -1,4 +1,4 @@
-"""`follows ev`: an event before each start of a node, and since its last one."""
+"""`follows ev`: an event between each start of a node and the start before it."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
-    """Whether the event has happened in the run before each start, and since the start before that."""
+    """Judge, for each start, whether the event has happened in the run since the previous start."""
     assert claim.event is not None, "the clause names one"
     events = run.happenings(claim.event)
     name = claim.text.partition(" follows ")[2]
-    before = (run.root.begin, -1)  # of the run
+    before = (run.root.begin, -1)  # the beginning of the run
     for start in run.own:
         found = [each for each in events if each.until > before and each.at <= start.started]
         is_sure = any(each.is_certain and before < each.at and each.until <= start.started for each in found)

@@ -19,14 +19,15 @@ if TYPE_CHECKING:
 
 
 def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
-    """Whether the condition holds all the time."""
+    """Judge whether the condition holds all the time."""
     assert claim.condition is not None, "it keeps a condition"
     return judged_all_along(claim.condition, activation, observed, VERBS["keeps"].said)
 
 
 def judged_all_along(condition: Condition, activation: Activation, observed: Observed, said: str) -> Judgement:
-    """Whether a condition holds at every moment of an activation: the first at which it does not decides, else one at
-    which it is unknown, else the one that came closest to breaking it."""
+    """Judge a condition at every moment of an activation: the first violation decides, else a moment at which it is
+    unknown, else the moment closest to a violation.
+    """
     unknown: tuple[Unknown, Moment] | None = None
     closest: tuple[Reading | bool, Moment] | None = None
     most = float("-inf")
@@ -37,7 +38,7 @@ def judged_all_along(condition: Condition, activation: Activation, observed: Obs
         elif seen is False or (isinstance(seen, Reading) and not seen.holds):
             if activation.timing != "exact" and moment != observed.begin:
                 return Judgement(None, moment[0], "the log does not say whether it was still running")
-            is_of_all = any(isinstance(each, Aggregate) for each in parts_in(condition))  # what is known at the end
+            is_of_all = any(isinstance(each, Aggregate) for each in parts_in(condition))  # known only at the end
             return judged(seen, activation.end if is_of_all else moment[0], said)
         else:
             excess = seen.excess if isinstance(seen, Reading) else most

@@ -1,4 +1,4 @@
-"""`leaves φ`: a condition when an activation has succeeded."""
+"""`leaves φ`: a condition at the end of an activation that succeeded."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
-    """Whether the condition holds when an activation has succeeded."""
+    """Judge whether the condition holds when an activation has succeeded."""
     assert claim.condition is not None, "it leaves a condition"
     if activation.outcome != "S":
         return None
@@ -24,25 +24,25 @@ def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement
 
 
 def judged_at(condition: Condition, moment: Moment, observed: Observed, said: str) -> Judgement:
-    """Whether a condition holds at a moment.
+    """Judge a condition at a moment.
 
     Args:
-        said: the sentence that the measure becomes a part of.
+        said: the sentence, in which `{}` is the measure.
     """
     return judged(seen_at(condition, moment, observed), moment[0], said)
 
 
 def seen_at(condition: Condition, moment: Moment, observed: Observed) -> Reading | bool | Unknown:
-    """Whether a condition holds at a moment, with what is measured where it compares something."""
+    """Whether a condition holds at a moment, as a reading if it compares a signal with a bound."""
     reading = reading_of(condition, observed, moment)
     return reading if reading is not None else truth(condition, observed, moment)
 
 
 def judged(seen: Reading | bool | Unknown, time: int, said: str) -> Judgement:
-    """What a condition says at a time.
+    """The judgement of a condition evaluated at a time.
 
     Args:
-        said: as of `judged_at`.
+        said: as in `judged_at`.
     """
     if isinstance(seen, Reading):
         measure = Measure(seen.si, seen.unit, seen.bound.si, seen.bound.text, seen.excess)

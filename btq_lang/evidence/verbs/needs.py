@@ -1,4 +1,4 @@
-"""`needs φ`: a condition at the start of an activation, however that ends."""
+"""`needs φ`: a condition at the start of an activation, however it ends."""
 
 from __future__ import annotations
 
@@ -15,6 +15,6 @@ if TYPE_CHECKING:
 
 
 def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
-    """Whether the condition holds when an activation starts."""
+    """Judge whether the condition holds when an activation starts."""
     assert claim.condition is not None, "it needs a condition"
     return judged_at(claim.condition, activation.started, observed, VERBS["needs"].said)

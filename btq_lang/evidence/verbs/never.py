@@ -1,4 +1,4 @@
-"""`never φ`: keeps its contrary."""
+"""`never φ`: keeps `not φ`."""
 
 from __future__ import annotations
 
@@ -16,6 +16,6 @@ if TYPE_CHECKING:
 
 
 def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
-    """Whether the condition does not hold at any time."""
+    """Judge whether the condition holds at no time."""
     assert claim.condition is not None, "something must not be"
     return judged_all_along(Not(claim.condition), activation, observed, VERBS["never"].said)

@@ -1,4 +1,4 @@
-"""`runs every d` and `runs at least m per d`: how a node's starts are spread over the time that counts."""
+"""`runs every d` and `runs at least m per d`: how a node's starts are spread over the time in scope."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
-    """Whether it runs often enough, and not too often: each time between two starts, or each stretch of time."""
+    """Judge whether it starts often enough, and not too often: each time between two starts, or each period."""
     starts = run.starts()
     for stretch in run.stretches():
         inside = [(each, counts) for each, counts in starts if stretch.begin <= each.started <= stretch.end]
@@ -40,7 +40,7 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
 def _between(
     claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool
 ) -> Iterator[Judgement | None]:
-    """The times from each start to the next one, and from the last one to the end of the stretch."""
+    """Judge the times from each start to the next, and from the last to the end of the stretch."""
     assert claim.limit is not None, "`every` has a bound"
     for index, start in enumerate(starts):
         is_last = index + 1 == len(starts)
@@ -57,11 +57,11 @@ def _between(
 def _in_windows(
     claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool
 ) -> Iterator[Judgement | None]:
-    """The windows with the fewest and with the most starts; a stretch that is shorter than one has none."""
+    """Judge the windows with the fewest and the most starts; a stretch shorter than a window has none."""
     assert claim.limit is not None, "a number of starts has a bound"
     assert isinstance(claim.per, Value), "and a time"
     length = round(claim.per.si * 1e6)
-    begin, last = stretch.begin[0], stretch.end[0] - length  # of the windows in it, the first and the last begin then
+    begin, last = stretch.begin[0], stretch.end[0] - length  # when the first and the last window begin
     if begin > last:
         return
     times = [each.begin for each in starts]
@@ -69,7 +69,7 @@ def _in_windows(
     def number(window: int) -> int:
         return bisect_left(times, window + length) - bisect_left(times, window)
 
-    # Of those with the fewest and with the most the first: a start has just left it, or is the last in it.
+    # Candidates are windows that a start has just left, or in which a start is the last; of equals, the first.
     fewest = min([begin, *[time + 1 for time in times if time < last]], key=number)
     most = max([begin, *[max(begin, min(time + 1 - length, last)) for time in times]], key=number)
     judgements: list[Judgement] = []

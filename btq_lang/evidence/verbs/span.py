@@ -1,4 +1,4 @@
-"""`from e₁ to e₂ takes at most d`: the time from each first event to the next last one, which ends with the run."""
+"""`from e₁ to e₂ takes at most d`: the time from each first event to the next last event in the run."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 
 def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
-    """Whether each span is as long as it should be."""
+    """Judge the duration of each span."""
     span = claim.subject
     assert isinstance(span, Span), "the time between two events"
     first = span.first
     lasts = run.happenings(span.last)
     certain = [each for each in lasts if each.is_certain]
     moments = [each.at for each in certain]
-    ends = [*accumulate((each.until for each in reversed(certain)), min)][::-1]  # of those from each one on, the first
+    ends = [*accumulate((each.until for each in reversed(certain)), min)][::-1]  # the first end from each index on
     unsure = [each for each in lasts if each.why]
-    next_after = bisect_right if first == span.last else bisect_left  # an event is not the next one after itself
+    next_after = bisect_right if first == span.last else bisect_left  # an event does not follow itself
     for event in run.happenings(first, run.own if first.condition is None else None):
         index = next_after(moments, event.at)
         end = ends[index] if index < len(ends) else None
@@ -41,11 +41,11 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
 def _judged(
     claim: Claim, run: OverRun, first: Happening, last: Moment | None, unclear: str
 ) -> Iterator[Judgement | None]:
-    """What a span says, if it counts.
+    """The judgement of a span, if it counts.
 
     Args:
-        last: when it had ended; None: it did not in the run.
-        unclear: why it may have ended before that; else empty.
+        last: when it ended; None: not in the run.
+        unclear: why it may have ended before; else empty.
     """
     assert claim.limit is not None, "a time has a bound"
     until = last if last is not None else run.root.ended

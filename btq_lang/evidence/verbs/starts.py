@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
-    """Whether each event is answered in time by the next start."""
+    """Judge, for each event, whether the next start comes in time."""
     assert claim.event is not None, "the clause names one"
     moments = [each.started for each in run.own]
     for event in run.happenings(claim.event):
@@ -30,11 +30,11 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
 def judged(
     claim: Claim, run: OverRun, event: Happening, answer: Happening | None, said: str, never: str
 ) -> Iterator[Judgement | None]:
-    """What an event and its answer say, if they count; None: the log ends before the time is over.
+    """The judgement of an event and its answer, if they count; None: the log ends before the deadline.
 
     Args:
         answer: None: there is none in the run.
-        said, never: of an answer, and of its absence.
+        said, never: the sentence for an answer, and for its absence.
     """
     assert claim.limit is not None, "an answer has a time"
     until = answer.until if answer is not None else run.root.ended

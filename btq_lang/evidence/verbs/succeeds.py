@@ -1,4 +1,4 @@
-"""`succeeds [within d]`: an activation's result, and how long it takes to come."""
+"""`succeeds [within d]`: an activation's result, and how long it takes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
-    """Whether an activation succeeds, and in time; where it is halted, or cut off, before that it does not count."""
+    """Judge whether an activation succeeds in time; if it is halted or cut off before, it does not count."""
     said = VERBS["succeeds"].said
     if claim.limit is None:
         if activation.outcome in ("S", "F"):

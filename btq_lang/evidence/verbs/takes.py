@@ -1,6 +1,7 @@
 """`takes at most d`: how long an activation lasts.
 
-Violated as soon as it lasts longer, however it ends; a lower bound is judged where it has come to its own end.
+An upper bound is violated as soon as the activation lasts longer, however it ends; a lower bound is judged only if it
+has ended by itself.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
-    """Whether an activation is as long as it should be."""
+    """Judge the duration of an activation."""
     assert claim.limit is not None, "a time has a bound"
     if is_left_out(claim.limit, activation):
         return None
@@ -31,13 +32,14 @@ def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement
 
 
 def is_left_out(limit: Limit, activation: Activation) -> bool:
-    """Whether an activation cannot break a bound: what was halted, or is open, falls short of nothing."""
+    """Whether an activation cannot violate a bound: one that was halted, or is open, cannot fall short of a lower
+    bound.
+    """
     return limit.relation in (">=", ">") and activation.outcome not in ("S", "F")
 
 
 def judged(found: Compared, activation: Activation, said: str) -> Judgement | None:
-    """What a measure over an activation that grows with it says: where it was halted, only what it has broken by then
-    counts."""
+    """The judgement of a measure that grows during an activation: if it was halted, only a violation by then counts."""
     holds = found.kept(activation.outcome in ("S", "F"))
     if holds is None:
         return None
@@ -47,7 +49,7 @@ def judged(found: Compared, activation: Activation, said: str) -> Judgement | No
 
 
 def duration(limit: Limit, activation: Activation, observed: Observed) -> Compared | Unknown:
-    """How long an activation lasts; unknown where the bound is, or the time."""
+    """The duration of an activation, compared with its bound; unknown if either is."""
     if activation.timing == "broken":
         return Unknown(CLOCK_SET_BACK)
     return compared(limit, activation.seconds, observed, activation.started)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
-    """Whether they last as long together as they should."""
+    """Judge the sum of the durations."""
     starts = run.starts()
     sure = [each for each, counts in starts if counts is True and each.timing == "exact"]
     unclear = next((counts.why for _, counts in starts if isinstance(counts, Unknown)), UNKNOWN_END)
@@ -33,7 +33,7 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
 
 
 def _judged(claim: Claim, run: OverRun, starts: Sequence[Activation]) -> Judgement | None:
-    """What the sum of some durations says; None: nothing, for the log ends before the run does."""
+    """The judgement of a sum of durations; None: undecided, because the log ends before the run does."""
     assert claim.limit is not None, "a time has a bound"
     total = sum(each.end - each.begin for each in starts)
     found = compared(claim.limit, total / 1e6, run.observed, run.observed.begin)

@@ -1,4 +1,4 @@
-"""`tries at most m per P`: how often a node starts while another one is active; without one, in a run."""
+"""`tries at most m per P`: how often a node starts during an activation of another; without `per`, during a run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
-    """Whether the number of starts in each activation of the other node is as it should be."""
+    """Judge the number of starts in each activation of the other node."""
     starts = run.starts()
     moments = [each.started for each, _ in starts]
     for period in run.observed.activations(claim.per) if isinstance(claim.per, Target) else [run.root]:
@@ -40,7 +40,7 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
 
 
 def _judged(claim: Claim, run: OverRun, period: Activation, starts: Sequence[Activation]) -> Judgement | None:
-    """What a number of starts says; None: nothing, for there may have been more."""
+    """The judgement of a number of starts; None: undecided, because there may have been more."""
     assert claim.limit is not None, "a number of tries has a bound"
     number = len(starts)
     found = compared(claim.limit, float(number), run.observed.during(period), period.started)

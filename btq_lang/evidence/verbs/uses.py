@@ -1,5 +1,4 @@
-"""`uses at most x of k`: by how much a level is lower, or a counter higher, at the end of an activation than at its
-start."""
+"""`uses at most x of k`: how much a level falls, or a counter rises, during an activation."""
 
 from __future__ import annotations
 
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
-    """Whether an activation uses as much as it should."""
+    """Judge how much an activation uses."""
     assert claim.limit is not None, "the use has a bound"
     assert claim.signal is not None, "the clause names what is used"
     if is_left_out(claim.limit, activation):
