@@ -1,29 +1,29 @@
-"""The formatter: a text to the same text, laid out in the one way of the project.
+"""The formatter: lays a text out in the one style of the project.
 
-One invariant: what a file says stays what it says.  The formatted text has the tree of the original, up to offsets and
-the order of clauses in the blocks of requirements, and every comment at the element where it was; to format it again
-changes nothing.  Spelling is the author's: the formatter does not know what words mean, only where they stand.
+One invariant: the meaning of a file does not change. The formatted text has the tree of the original, up to offsets and
+the order of clauses in the blocks of requirements, and every comment at the element where it was; formatting it again
+changes nothing. Spelling is the author's: the formatter knows the positions of words, not their meaning.
 
-A text with a syntax error is refused as a whole and comes back as it was.  Indentation is structure here, and brackets
-join lines: what the lines around a mistake belong to is a guess of the parser's recovery, and to lay them out would
-write that guess into the file.
+A text with a syntax error is refused as a whole and returned unchanged. Indentation is structure, and brackets join
+lines: the parser's recovery guesses what the lines around a mistake belong to, and formatting would write that guess
+into the file.
 
 The style:
 
 * four blanks a level; in brackets four more than the line that opens them, and `)` below that line's start;
-* brackets stay on their line if they are on one and it fits 100 columns; else each attribute has a line of its own, and
+* brackets stay on their line if they are on one and it fits 100 columns; else each attribute has its own line, and
   one that is still too long is broken before the description and the clauses of its requirements;
-* inside an attribute or a condition the author's line ends stay, save where they tear apart what is one: round `=`,
+* inside an attribute or a condition the author's line ends stay, except where they split a unit: around `=`,
   before `,` and so on;
 * one blank between words, none inside brackets, paths and units, one between a number and its unit, two before a
-  comment behind code; such comments of lines that follow each other stay in one column if they are in one;
+  comment after code; such comments on consecutive lines stay aligned if they are;
 * each clause in the block of a requirement has a line of its own, in one order: what is demanded, `while` and `when`,
-  odds, confidence, window, `on violation`, `goal`, `because`, `verified by`; clauses behind the requirement's head stay
+  odds, confidence, window, `on violation`, `goal`, `because`, `verified by`; clauses after the requirement's head stay
   there if they fit the line;
-* at most one blank line anywhere, none at the start of the file or of a block; one before and behind every item that
-  has a block; no blanks at a line's end;
+* at most one blank line anywhere, none at the start of the file or of a block; one before and after every item that
+  has a block; no blanks at the end of a line;
 * the line ends that the file has: `\\r\\n` where its first one is that, else `\\n`, in strings and comments too, where
-  they mean the same (docs/language.md).
+  they are equivalent (docs/language.md).
 """
 
 from __future__ import annotations
@@ -50,12 +50,12 @@ DEFAULTS = FormatOptions()
 
 
 class Formatted(Record):
-    """A text, formatted.
+    """The result of formatting a text.
 
     Attributes:
-        text: the new text; the old one where it was refused.
-        edits: what makes it of the old one: in order, not overlapping, none where nothing changes.
-        refused: the first syntax error of a text that was left as it is; its span counts from the start of the text.
+        text: the new text; the old one if it was refused.
+        edits: that turn the old text into it: in order, not overlapping, none if nothing changes.
+        refused: the first syntax error of a text that was refused; its span counts from the start of the text.
     """
 
     text: str
@@ -64,15 +64,15 @@ class Formatted(Record):
 
 
 def format_text(text: str, options: FormatOptions = DEFAULTS) -> Formatted:
-    """Format a file; where it has a syntax error, the result says so and has the text as it is.
+    """Format a file; if it has a syntax error, the result has the error and the text unchanged.
 
         >>> from btq_lang import format_text
         >>> format_text("BehaviorTree   Main\\n  Dock( a=1 )\\n").text
         'BehaviorTree Main\\n    Dock (a = 1)\\n'
 
     Args:
-        text: any string at all.
-        options: how wide a line is, and the like.
+        text: any string.
+        options: such as the width of a line.
     """
     parsed = parse(text)
     if error := refused(parsed):
@@ -82,15 +82,15 @@ def format_text(text: str, options: FormatOptions = DEFAULTS) -> Formatted:
 
 
 def format_range(text: str, start: int, end: int, options: FormatOptions = DEFAULTS) -> tuple[Edit, ...]:
-    """The edits that format the lines between two offsets; none where the text has a syntax error.
+    """The edits that format the lines between two offsets; none if the text has a syntax error.
 
-    Where another line of the same top-level block is not indented as it would be, the whole block is formatted: one
-    half of a block in new columns and one in old ones would be another tree.
+    If another line of the same top-level block has a different indentation than formatting would give it, the whole
+    block is formatted: a block with half its lines in new columns and half in old ones would be another tree.
     """
     parsed = parse(text)
     if refused(parsed):
         return ()
-    if _OLD_LINE_END.search(text):  # a new `\n` behind an old `\r` would be one line end and not two
+    if _OLD_LINE_END.search(text):  # a new `\n` after an old `\r` would be one line end, not two
         start, end = 0, len(text)
     start = min(start, len(text) - 1)  # the end of the text belongs to its last line
     chosen: list[_Stretch] = []
@@ -103,7 +103,7 @@ def format_range(text: str, start: int, end: int, options: FormatOptions = DEFAU
 
 
 def refused(parsed: Parsed) -> Diagnostic | None:
-    """The first syntax error of a text, for which it is left as it is."""
+    """The first syntax error of a text, because of which it is not formatted."""
     errors = (problem for problem in parsed.diagnostics if problem.effective_severity is Severity.ERROR)
     return min(errors, key=lambda problem: problem.span, default=None)
 
@@ -112,7 +112,7 @@ def refused(parsed: Parsed) -> Diagnostic | None:
 
 
 class _Stretch(Record):
-    """What becomes of the text between two offsets; `is_moved`: one of its lines gets another indentation."""
+    """The new text between two offsets; `is_moved`: one of its lines gets another indentation."""
 
     start: int
     end: int
@@ -149,7 +149,7 @@ def _stretches(parsed: Parsed, options: FormatOptions) -> list[_Stretch]:
 
 
 def _aligned(old: str, sections_of_rows: list[list[_Row]]) -> list[list[_Row]]:
-    """The rows with comments that were aligned aligned again."""
+    """The rows, with formerly aligned comments aligned again."""
     gaps: list[Gap] = []
     at = 0
     for row in (row for rows in sections_of_rows for row in rows):
@@ -178,7 +178,7 @@ def _line_end(text: str) -> str:
 
 
 def _part_items(lines: Sequence[Line], items: Container[int]) -> None:
-    """A blank line before and behind each item with a block, above the comments that stand above the item."""
+    """Put a blank line before and after each item with a block, above the comments that precede the item."""
     previous: Line | None = None
     was_block = False
     for line, below in pairwise(lines):
@@ -194,7 +194,7 @@ def _part_items(lines: Sequence[Line], items: Container[int]) -> None:
 
 
 class _Row(Record):
-    """A logical line or a comment line, as text; `blank`: a blank line stands above, unless it opens a block."""
+    """A logical line or a comment line, as text; `blank`: a blank line precedes it, unless it opens a block."""
 
     level: int
     blank: bool
@@ -223,7 +223,7 @@ def _remark_row(remark: Remark, options: FormatOptions) -> _Row:
 
 
 def _blocks(stretches: Iterable[_Stretch]) -> Iterator[list[_Stretch]]:
-    """The stretches by the line at the top level that they stand below."""
+    """The stretches, grouped by top-level line."""
     block: list[_Stretch] = []
     for stretch in stretches:
         if stretch.level == 0 and block:

@@ -1,6 +1,7 @@
-"""Comments behind code that are aligned stay aligned: those of lines that follow each other, in one column.
+"""Keeps trailing comments on consecutive lines aligned if they were.
 
-One invariant: to align again changes nothing, for a column is always two blanks behind the longest code of its lines.
+One invariant: aligning again changes nothing, because the column is always two blanks after the longest code of the
+lines.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from btq_lang.util.text import LineIndex
 
 
 class Gap(Record):
-    """The blanks between code and the comments behind it.
+    """The blanks between code and the comments after it.
 
     Attributes:
         at: where they begin in the new text, whose line ends are `\n`.
@@ -24,12 +25,12 @@ class Gap(Record):
 
 
 def paddings(old: str, new: str, gaps: Sequence[Gap]) -> list[int]:
-    """How many blanks more each gap needs; the gaps are in the order of the new text, one a line at most."""
+    """How many more blanks each gap needs; the gaps are in the order of the new text, one a line at most."""
     found = [0] * len(gaps)
     lines = LineIndex(old)
     columns = [_column(old, gap.comment, lines.position(gap.comment).column) for gap in gaps]
     ends = [gap.at - new.rfind("\n", 0, gap.at) for gap in gaps]
-    first = 0  # of the gaps that are aligned with the one at hand
+    first = 0  # of the gaps aligned with the current one
     for index in range(1, len(gaps) + 1):
         if (
             index < len(gaps)
@@ -44,6 +45,7 @@ def paddings(old: str, new: str, gaps: Sequence[Gap]) -> list[int]:
 
 
 def _column(text: str, at: int, length: int) -> int:
-    """The column of a place `length` behind the start of its line; a tab goes to the next multiple of four columns, as
-    for comment lines."""
+    """The column of a place `length` after the start of its line; a tab goes to the next multiple of four columns, as
+    for comment lines.
+    """
     return len(text[at - length : at].lstrip("\ufeff").expandtabs(4))

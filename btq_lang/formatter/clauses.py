@@ -1,6 +1,6 @@
 """The blocks of requirements: one clause a line, in one order.
 
-One invariant: a clause keeps its words and takes its comments along, those above it, behind it and below it.
+One invariant: a clause keeps its words, and its comments above, after and below it move with it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from btq_lang.util.text import Span
 
 
 class Section(Record):
-    """Lines that are written together, and the span of the file that they come from."""
+    """Lines written together, and the span of the file that they come from."""
 
     span: Span
     lines: tuple[Line, ...]
@@ -26,11 +26,11 @@ class Section(Record):
 def sections(lines: Sequence[Line], marks: Marks, options: FormatOptions) -> Iterator[Section]:
     """The lines in order: each is a section of its own, but the block of a requirement is one section.
 
-    The clauses of a block are sorted if the requirement has no more than one claim: with two of them, a reader may
-    take what follows a claim as said of that claim.  Clauses behind a head that is too long go into the block.
+    The clauses of a block are sorted if the requirement has no more than one claim: with two of them, a reader may take
+    what follows a claim as said of that claim. Clauses after a head that is too long go into the block.
     """
     starts = [line.pieces[0].start for line in lines[:-1]]
-    # Of several requirements in one line, the last is the one that may have a block.
+    # Of several requirements in one line, only the last may have a block.
     found = {bisect_right(starts, clauses.start) - 1: clauses for clauses in sorted(marks.clauses, key=_start)}
     index = 0
     while index < len(lines):
@@ -57,7 +57,7 @@ def _start(clauses: Clauses) -> int:
 
 
 def _is_too_long(head: Line, clauses: Clauses, marks: Marks, options: FormatOptions) -> bool:
-    """Whether a line ends in clauses that do not fit it, of a requirement to which a block below it would belong."""
+    """Whether a line ends in clauses that do not fit it, of a requirement that would own a block below the line."""
     words = head.words
     first, last = words[0], words[-1]
     return (
@@ -68,7 +68,9 @@ def _is_too_long(head: Line, clauses: Clauses, marks: Marks, options: FormatOpti
 
 
 def _parted(head: Line, clauses: Clauses) -> tuple[Line, Line]:
-    """A head without the clauses behind it, and those as a line of its block; a comment behind it all stays there."""
+    """A head without its trailing clauses, and those as a line of its block; a comment at the end stays with
+    the head.
+    """
     pieces = head.pieces
     begin = next(index for index, piece in enumerate(pieces) if piece.start in clauses.ranks)
     end = pieces.index(head.words[-1]) + 1

@@ -1,8 +1,8 @@
-"""One logical line as text: the gaps between its words, and the lines of text that its brackets run over.
+"""Writes one logical line: the gaps between its words, and the physical lines that its brackets span.
 
-One invariant: the lexer cuts the new text as it cut the old one.  It reads `6` at a line's end and `s` on the next as
-two words, and `-` differently behind a line end; so a line end inside an attribute stays where it is, save in places
-where the words on both sides are the same either way, and a new one stands only before a name or a string.
+One invariant: the lexer splits the new text into the same tokens. It reads `6` at a line's end and `s` on the next as
+two words, and `-` differently after a line end; so a line end inside an attribute stays, except where the words on both
+sides are the same either way, and a new one is inserted only before a name or a string.
 """
 
 from __future__ import annotations
@@ -19,15 +19,14 @@ from btq_lang.util.record import Record
 
 
 class FormatOptions(Record):
-    """How wide lines may become, and how many blanks a level has (at least one)."""
+    """The maximal width of lines, and how many blanks a level has (at least one)."""
 
     columns: int = 100
     indent: int = 4
 
 
 def laid_out(pieces: Sequence[Piece], level: int, marks: Marks, options: FormatOptions) -> tuple[str, tuple[Gap, ...]]:
-    """The text of a logical line, its indentation included, without the line end; and the gaps before the comments
-    behind its code."""
+    """The text of a logical line, with indentation and without line end, and the gaps before its trailing comments."""
     writer = _Writer(pieces, level * options.indent, marks, options)
     for index in range(len(pieces)):
         writer.write(index)
@@ -35,7 +34,7 @@ def laid_out(pieces: Sequence[Piece], level: int, marks: Marks, options: FormatO
 
 
 def fits(pieces: Iterable[Piece], column: int, marks: Marks, options: FormatOptions) -> bool:
-    """Whether pieces, written on one line from a column on, keep within the columns; comments do not count."""
+    """Whether pieces, written on one line from a column on, fit the width; comments do not count."""
     before: Piece | None = None
     for piece in pieces:
         if piece.kind != COMMENT:
@@ -52,13 +51,13 @@ def fits(pieces: Iterable[Piece], column: int, marks: Marks, options: FormatOpti
 
 
 class _Group:
-    """Brackets that are open.
+    """Open brackets.
 
     Attributes:
-        spread: each of their elements has a line of its own.
+        spread: each of their elements has its own line.
         indent: the indentation of the line that opens them.
-        has_lines: a line began in them already.
-        loose: the element at hand is broken, because it is too long for one line.
+        has_lines: a line has begun inside them.
+        loose: the current element is broken, because it is too long for one line.
     """
 
     __slots__ = ("has_lines", "indent", "loose", "spread")
@@ -71,7 +70,7 @@ class _Group:
 
 
 class _Writer:
-    """A logical line, written up to some piece."""
+    """Writes a logical line piece by piece."""
 
     def __init__(self, pieces: Sequence[Piece], indent: int, marks: Marks, options: FormatOptions) -> None:
         self.pieces: Final = pieces
@@ -80,12 +79,12 @@ class _Writer:
         self.closing: Final = _closing(pieces)
         self.groups: Final[list[_Group]] = []
         self.out: Final = [" " * indent]
-        self.indent = indent  # of the line of text at hand
+        self.indent = indent  # of the current physical line
         self.column = indent
-        self.next_word = -1  # a piece that is no comment, behind comments at hand
-        self.remark = -1  # the gap in `out` behind the code of this line, if only comments follow it
+        self.next_word = -1  # the first piece after the current comments that is not a comment
+        self.remark = -1  # the gap in `out` after this line's code, if only comments follow
         self.comment = 0  # where the first of them begins in the file
-        self.gaps: Final[list[tuple[int, int]]] = []  # those of the lines before
+        self.gaps: Final[list[tuple[int, int]]] = []  # of earlier lines
 
     def write(self, index: int) -> None:
         piece = self.pieces[index]
@@ -126,7 +125,7 @@ class _Writer:
         self.indent = indent
 
     def end_code(self) -> None:
-        """Set apart the comments at the end of the line of text at hand."""
+        """Separate the comments at the end of the current physical line."""
         if self.remark >= 0:
             self.out[self.remark] = "  "
             self.gaps.append((self.remark, self.comment))
@@ -135,7 +134,7 @@ class _Writer:
     # ---- line ends ----
 
     def new_line(self, index: int, before: Piece) -> int | None:
-        """The indentation of the line that begins with this piece; None where it begins none."""
+        """The indentation of the line that begins with this piece; None if none does."""
         piece = self.pieces[index]
         if not self.groups:
             return None
@@ -156,7 +155,7 @@ class _Writer:
         return None
 
     def begins_element(self, index: int) -> bool:
-        """Whether an element begins here, or a comment with lines of its own before one or behind the last."""
+        """Whether an element begins here, or a comment on its own lines before one or after the last."""
         piece = self.pieces[index]
         if piece.kind == COMMENT and not piece.broken:
             return False
@@ -166,7 +165,7 @@ class _Writer:
         return word.start in self.marks.elements or (piece.kind == COMMENT and word.kind == CLOSE)
 
     def stays_broken(self, before: Piece, piece: Piece) -> bool:
-        """Whether the author's line end before a piece stays: not where both words belong together anyway."""
+        """Whether the author's line end before a piece stays: not if both words belong together."""
         return (
             piece.broken
             and _gap(before, piece, self.marks) != ""
@@ -177,7 +176,7 @@ class _Writer:
         )
 
     def spreads(self, index: int) -> bool:
-        """Whether the elements of the brackets that open here have lines of their own."""
+        """Whether the elements of the brackets that open here have their own lines."""
         start, close = self.pieces[index].start, self.closing[index]
         if close == index + 1 or (start not in self.marks.attributes and start not in self.marks.arguments):
             return False
@@ -185,7 +184,7 @@ class _Writer:
             return True
         if start not in self.marks.attributes:
             return False
-        column = self.column - 1  # of the bracket, which is written
+        column = self.column - 1  # of the bracket, which is already written
         if not self.fits(self.pieces[index : close + 1], column):
             return True
         return not self.fits(self.rest_of_element(index), column) and self.fits(
@@ -193,7 +192,7 @@ class _Writer:
         )
 
     def rest_of_element(self, index: int) -> Iterator[Piece]:
-        """The pieces from this one to the end of the element, or of the line where it stands in no brackets."""
+        """The pieces from this one to the end of the element, or of the line outside brackets."""
         yield self.pieces[index]
         depth = int(self.pieces[index].kind == OPEN)
         for at in range(index + 1, len(self.pieces)):
@@ -211,7 +210,7 @@ class _Writer:
 
 
 def _gap(before: Piece | None, piece: Piece, marks: Marks) -> str:
-    """What stands between two pieces on one line."""
+    """The text between two pieces on one line."""
     if before is None or before.kind == OPEN or piece.kind == CLOSE or _is(piece, OPERATOR, ","):
         return ""
     return "" if piece.start in marks.tight and before.kind != COMMENT else " "
@@ -222,7 +221,7 @@ def _is(piece: Piece, kind: int, text: str) -> bool:
 
 
 def _closing(pieces: Sequence[Piece]) -> dict[int, int]:
-    """Where the brackets close that open at an index."""
+    """The index of the closing bracket for each opening one."""
     found: dict[int, int] = {}
     open_at: list[int] = []
     for index, piece in enumerate(pieces):

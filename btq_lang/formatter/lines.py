@@ -1,7 +1,8 @@
-"""The logical lines of a file with the comments between them, each with the level it belongs to.
+"""The logical lines of a file with the comments between them, each with its level.
 
 One invariant: every token and every comment of the file is in exactly one line, in order, and the lines' spans follow
-each other from the start of the file to its end.  It knows no grammar; where a comment belongs, `comments` knows.
+each other from the start of the file to its end. The grammar is unknown here; `comments` decides where a comment
+belongs.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ class Piece:
     Attributes:
         kind: its token kind.
         start: where it begins in the file.
-        text: as it will be written: a quantity with one blank, line ends as `\\n`, no blanks behind a comment.
-        broken: the author began a line with it, inside brackets or behind a comment over lines.
+        text: as it will be written: a quantity with one blank, line ends as `\\n`, no blanks after a comment.
+        broken: the author began a line with it, inside brackets or after a multi-line comment.
         blank: the author left a blank line before that.
     """
 
@@ -41,12 +42,12 @@ class Piece:
 
 
 class Remark:
-    """Comments that have a line of text to themselves.
+    """Comments on a line of their own.
 
     Attributes:
-        blanks: what stands before them on that line.
-        blank: whether a blank line stands above.
-        depth: the level they belong to.
+        blanks: the text before them on that line.
+        blank: whether a blank line precedes them.
+        depth: their level.
         end: where they end in the file.
     """
 
@@ -65,15 +66,15 @@ class Remark:
 
 
 class Line:
-    """A logical line: what brackets join is one.
+    """A logical line, with all lines that brackets join.
 
     Attributes:
         level: how many blocks are open around it.
-        blanks: what stands before it on its line of text.
-        blank: whether a blank line stands above it.
+        blanks: the text before it on its physical line.
+        blank: whether a blank line precedes it.
         lead: the comment lines above it, at its own level.
-        pieces: its words and the comments between and behind them; none: the end of the file.
-        tail: the comment lines below it that belong to it or to a line above it, not beside the line that follows.
+        pieces: its words and the comments between and after them; none: the end of the file.
+        tail: the comment lines below it that belong to it or to a line above it, not to the next line.
         start, end: its span, with comment lines and with the blank lines above.
     """
 
@@ -90,7 +91,7 @@ class Line:
 
     @property
     def words(self) -> list[Piece]:
-        """The pieces that are no comments."""
+        """The pieces that are not comments."""
         return [piece for piece in self.pieces if piece.kind != COMMENT]
 
 
@@ -99,10 +100,10 @@ def logical_lines(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) 
 
     Args:
         tokens: all tokens of the text.
-        atoms: start and end of what is written as it stands, though it is several tokens: units and types.
+        atoms: start and end of what is kept verbatim though it is several tokens: units and types.
     """
     lines: list[Line] = []
-    open_lines: list[Line] = []  # the line above and those whose blocks it stands in
+    open_lines: list[Line] = []  # the previous line and the lines whose blocks contain it
     for remarks, line in _gathered(text, tokens, atoms):
         for remark in remarks:
             owner = block_of(remark.blanks, open_lines, line.level)
@@ -153,7 +154,7 @@ def _gathered(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) -> I
                 remarks.append(Remark(blanks, line_ends > 1))
             remarks[-1].pieces.append(piece)
             remarks[-1].end = token.end
-        elif remarks and not line_ends:  # behind a comment: that is where the line begins
+        elif remarks and not line_ends:  # after a comment: the line begins there
             before = remarks.pop()
             line = Line(level, before.blanks, before.blank, [*before.pieces, piece])
         else:

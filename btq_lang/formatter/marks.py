@@ -1,7 +1,7 @@
-"""What the tree tells about single tokens, so that a line can be laid out without looking at the tree again.
+"""Facts of the tree about single tokens, so that a line can be laid out without the tree.
 
-One invariant: a mark is the offset of a token of the file.  The tokens alone do not say whether `/` divides or joins a
-path, whether `-` subtracts, or which brackets hold attributes; the tree does.
+One invariant: a mark is the offset of a token of the file. Only the tree tells whether `/` divides or joins a path,
+whether `-` subtracts, and which brackets hold attributes.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Clauses(Record):
     Attributes:
         start: where the requirement begins.
         spans: where each clause begins and ends, in order.
-        ranks: the places of the clauses that begin at these offsets in the order that all blocks have.
+        ranks: the positions, in the order of all blocks, of the clauses that begin at these offsets.
         claims: how many of them are claims.
     """
 
@@ -66,15 +66,15 @@ class Clauses(Record):
 
 
 class Marks:
-    """Offsets of tokens that are laid out in a way of their own.
+    """Offsets of tokens that need special layout.
 
     Attributes:
-        tight: no blank stands before them.
+        tight: no blank comes before them.
         attributes: the `(` of attributes, and of the requirements that a quality encloses.
         arguments: the `(` of parameters and of their values.
-        elements: what has a line of its own in brackets of several lines.
+        elements: what has its own line in brackets over several lines.
         breaks: where an element that is too long is broken.
-        atoms: start and end of units and types, which are written as they stand though they are several tokens.
+        atoms: start and end of units and types, which are kept verbatim though they are several tokens.
         clauses: those of every requirement that has any.
     """
 
@@ -169,7 +169,7 @@ class _Marker:
             marks.add(self.tokens[at].start)
 
     def mark_arguments(self, name: Word, base: int) -> None:
-        """Mark the `(` behind the name of a requirement: its parameters, or their values."""
+        """Mark the `(` after the name of a requirement: its parameters, or their values."""
         at = self.index[base + name.start] + 1
         self.mark_bracket(self.marks.arguments, at)
         self.mark_bracket(self.marks.tight, at)
@@ -179,12 +179,14 @@ class _Marker:
             self.marks.atoms[base + word.start] = base + word.end
 
     def path_end(self, path: QualityPath, base: int) -> int:
-        """The token behind a quality's path."""
+        """The token after a quality's path."""
         last = self.index[base + path.names[-1].start]
         return last + 2 if self.tokens[last - 1].text == "<" else last + 1
 
     def mark_requirement(self, requirement: Requirement, base: int) -> None:
-        """Its parameters, and where a long one is broken: before the classic description and before its clauses."""
+        """Mark its parameters, and where a long one is broken: before the classic description and before its
+        clauses.
+        """
         if requirement.name is not None and not requirement.classic:
             self.mark_arguments(requirement.name, base)
         if requirement.text is not None and requirement.classic:
@@ -197,16 +199,16 @@ class _Marker:
             self.marks.clauses.append(Clauses(base + requirement.start, spans, ranks, claims))
 
     def mark_signed(self, at: int) -> None:
-        """The number behind a `-` that is no part of it.
+        """Mark the number after a `-` that is not part of it.
 
-        Where the lexer reads a `-` as a sign of its own because of the word before it, no blank is needed; elsewhere
-        the blank is what keeps it apart (docs/language.md, NUMBER).
+        If the lexer reads a `-` as a token of its own because of the word before it, no blank is needed; elsewhere only
+        a blank separates it (docs/language.md, NUMBER).
         """
         before = self.tokens[at - 1]
         if before.kind in _OPERANDS and not LINE_END.search(self.text, before.end, self.tokens[at].start):
             self.marks.tight.add(self.tokens[at + 1].start)
 
 
-# The order of clauses in a block: what is demanded, where and how often, what follows, why and how it is verified.
+# The order of clauses in a block: what is demanded, where and how often, what follows, why, and how it is verified.
 _ORDER: Final = (Claim, Scope, Odds, Confidence, Window, OnViolation, Goal, Because, How)
 _OPERANDS: Final = (NAME, NUMBER, QUANTITY, STRING, CLOSE)
