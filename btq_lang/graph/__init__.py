@@ -1,15 +1,16 @@
-"""A mission as a picture, in the notation of the behavior-tree literature, with qualities beside their nodes.
+"""Draws a mission in the notation of the behavior-tree literature, with qualities beside their nodes.
 
-One invariant: the same mission gives the same bytes.  It knows no disk and starts no program: no Graphviz is needed.
+One invariant: the same mission gives the same bytes. It does not touch the disk and starts no program: Graphviz is not
+needed.
 
     figure.py    what is drawn: boxes, and what is attached to them
     missions.py  a mission's trees as figures
-    folding.py   figures without what is folded away
-    layout.py    where the boxes stand: a tidy tree in linear time
-    widths.py    how wide a text is
-    placing.py   a figure with the place of everything in it
+    folding.py   figures without folded parts
+    layout.py    positions of the boxes: a tidy tree in linear time
+    widths.py    widths of texts
+    placing.py   a figure with the positions of its parts
     svg.py, dot.py, mermaid.py   the writers
-    picture.py   all of it for the page beside a text
+    picture.py   all of it, for the page beside a text
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ def draw(figures: Sequence[Figure], form: str = "svg", direction: str = "down") 
     """Figures as one text in one of FORMATS.
 
     Args:
-        direction: whether children stand below their parent or to the right of it.
+        direction: whether children are below their parent or to its right.
 
     Raises:
         ValueError: there is no such format or direction.

@@ -1,4 +1,4 @@
-"""DOT, the language of Graphviz, for documents that are made with it.
+"""DOT, the language of Graphviz.
 
 One invariant: children are drawn in their order (`ordering=out`).  The format: https://graphviz.org/doc/info/lang.html
 """

@@ -1,7 +1,7 @@
-"""What a picture shows: a tree's boxes in the order of its text, and what is attached to each.
+"""The contents of a picture: a tree's boxes in the order of its text, and what is attached to each.
 
-One invariant: a parent stands before its children, so that nobody who reads a figure needs recursion: trees are deep.
-It does not know where anything stands on the paper.
+One invariant: a parent comes before its children, so that readers of a figure need no recursion: trees are deep.
+Positions are unknown here.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from btq_lang.util.record import Record
 if TYPE_CHECKING:
     # How a node is drawn: control nodes as boxes with a symbol, actions as boxes, conditions as ellipses, decorators as
     # hexagons (the literature has diamonds, in which no word fits), SubTree nodes as boxes with a second line at both
-    # ends, as flow charts draw what is drawn elsewhere.
+    # ends, as flow charts draw subroutines.
     Outline: TypeAlias = Literal["control", "action", "condition", "decorator", "subtree", "unknown"]
 
 
@@ -21,12 +21,12 @@ class Note(Record):
     """A quality or a requirement at a node.
 
     Attributes:
-        key: the same for all notes that stand for the same thing.
+        key: the same for all notes of the same thing.
         title: its name.
-        lines: what it says, each line short enough to be drawn.
-        text: all of it.
-        state: a class of the drawing: `enforced`, `monitored`, `reviewed`; empty: nothing is known.
-        link: where a page leads from it.
+        lines: its contents, each line short enough to be drawn.
+        text: all of its contents.
+        state: a class of the drawing: `enforced`, `monitored`, `reviewed`; empty: unknown.
+        link: its target on a page.
     """
 
     kind: Literal["quality", "requirement"]
@@ -42,15 +42,15 @@ class Box(Record):
     """A node.
 
     Attributes:
-        key: its name in the document that the figure becomes a part of.
-        parent: the place of its parent in the figure; None: it stands at the top.
-        title: its symbol or what it is.
+        key: its id in the document that contains the figure.
+        parent: the index of its parent in the figure; None: it is the root.
+        title: its symbol or its kind.
         lines: its instance name, and values worth seeing.
-        text: all of it.
-        link: where a page leads from it.
-        name: the names on the way to it, where subtrees can be folded: the same after an edit elsewhere.
+        text: all of its contents.
+        link: its target on a page.
+        name: the names on the path to it, if subtrees can be folded: unchanged by edits elsewhere.
         hidden: how many nodes are folded away below it.
-        state: a class of the drawing; empty: nothing is known.
+        state: a class of the drawing; empty: unknown.
     """
 
     key: str

@@ -1,8 +1,8 @@
-"""Folded figures: a subtree becomes the one box at its top, which says how much is below it; the notes of a node become
+"""Folds figures: a subtree becomes the one box at its top, which shows how much is below it; the notes of a node become
 the name of the first.
 
-One invariant: a fold names its node by the names on the way to it, so an edit elsewhere in the mission neither opens
-it nor folds another.  Nothing is known of pages and keys.
+One invariant: a fold identifies its node by the names on the path to it, so an edit elsewhere in the mission neither
+opens it nor folds another. Pages and keys are unknown here.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ def foldable(figure: Figure, folded: Container[str] = ()) -> Figure:
     """A figure whose boxes have their `name`, without what is below those that are folded.
 
     Args:
-        folded: names of boxes; what is the name of none, or of a leaf, folds nothing.
+        folded: names of boxes; unknown names, and those of leaves, fold nothing.
     """
     names = _names(figure)
     below: list[list[Box]] = [[] for _ in figure.boxes]
-    top: list[int | None] = []  # of each box the folded one that it is below
+    top: list[int | None] = []  # for each box, the folded one that contains it
     for box in figure.boxes:
         hiding = None
         if box.parent is not None:
@@ -56,13 +56,13 @@ def _kept(box: Box, name: str, below: list[Box], now: dict[int, int]) -> Box:
     if not below:
         return replace(box, name=name, parent=parent)
     count = f"{len(below)} node{'s' if len(below) > 1 else ''}"
-    # Who looks for a node that is folded away finds the box that hides it.
+    # A search for a folded node finds the box that hides it.
     text = f"{box.text or box.title}; folded: {', '.join(each.text or each.title for each in below)}"
     return replace(box, name=name, parent=parent, hidden=len(below), lines=(*box.lines, f"… {count}"), text=text)
 
 
 def _names(figure: Figure) -> list[str]:
-    """Of each box the titles and instance names from the top of its tree; equal siblings are counted."""
+    """For each box, the titles and instance names from the top of its tree; equal siblings are numbered."""
     found: list[str] = []
     seen: dict[str, int] = {}
     for box in figure.boxes:

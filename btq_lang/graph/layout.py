@@ -1,13 +1,13 @@
-"""Where the nodes of a tree stand: a tidy tree of boxes of any size, in linear time.
+"""The positions of a tree's nodes: a tidy tree of boxes of any size, in linear time.
 
 The algorithm is that of A. van der Ploeg, "Drawing non-layered tidy trees in linear time", Software: Practice and
-Experience 44 (12), 2014, pp. 1467-1484: Reingold and Tilford's contours and threads, as C. Buchheim, M. Jünger and
-S. Leipert ("Improving Walker's Algorithm to Run in Linear Time", Graph Drawing 2002) made them linear for any number
-of children, with boxes of any height.  Nodes here have layers all the same, but what hangs below a leaf pushes no layer
-down; and a box has an anchor, the point that stands over the middle of its children.
+Experience 44 (12), 2014, pp. 1467-1484: Reingold and Tilford's contours and threads, as C. Buchheim, M. Jünger and S.
+Leipert ("Improving Walker's Algorithm to Run in Linear Time", Graph Drawing 2002) made them linear for any number of
+children, with boxes of any height. Nodes here have layers all the same, but what hangs below a leaf pushes no layer
+down; and a box has an anchor, the point placed over the middle of its children.
 
-One invariant: no two boxes overlap, and a parent's anchor stands midway between those of its first and last child.
-`breadth` is the direction in which siblings stand beside each other, `depth` that in which children follow parents.
+One invariant: no two boxes overlap, and a parent's anchor is midway between those of its first and last child.
+`breadth` is the direction in which siblings are next to each other, `depth` that in which children follow parents.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ class Size(Record):
 
 
 def layout(sizes: Sequence[Size], parents: Sequence[int | None], gap: int, level_gap: int) -> list[tuple[int, int]]:
-    """The least breadth and depth of each box; the least of all are 0.
+    """The smallest breadth and depth coordinate of each box; the smallest of all are 0.
 
     Args:
-        parents: the place of each box's parent; parents stand before their children.
+        parents: the index of each box's parent; parents come before their children.
         gap: between siblings.
         level_gap: between a layer's inner boxes and the next layer.
     """
@@ -49,15 +49,15 @@ def layout(sizes: Sequence[Size], parents: Sequence[int | None], gap: int, level
 
 
 class _Node:
-    """A box while it is placed.  The names are the paper's, written out.
+    """A box during placement. The names are the paper's, written out.
 
     Attributes:
         breadth: with the gap to the next sibling.
         start, end: its depth; an inner box reaches to its children, so that contours have no holes.
-        preliminary: where it stands, counted from the place that `modifier` moves.
-        modifier: what is added to the place of the whole subtree.
-        shift, change: what is to be spread over the siblings between two that were moved apart.
-        thread_left, thread_right: of a leaf, the next node of the contour.
+        preliminary: its position, relative to the place that `modifier` moves.
+        modifier: what is added to the positions of the whole subtree.
+        shift, change: what to spread over the siblings between two that were moved apart.
+        thread_left, thread_right: for a leaf, the next node of the contour.
         extreme_left, extreme_right: the lowest nodes of the contours, and the sums of modifiers down to them.
     """
 
@@ -94,7 +94,7 @@ class _Node:
 
 
 def _layers(nodes: Sequence[_Node], parents: Sequence[int | None], level_gap: int) -> None:
-    """Put each node in its layer: below the deepest inner box of the layer before."""
+    """Put each node in its layer: below the deepest inner box of the previous layer."""
     levels: list[int] = []
     for parent in parents:
         levels.append(0 if parent is None else levels[parent] + 1)
@@ -111,7 +111,7 @@ def _layers(nodes: Sequence[_Node], parents: Sequence[int | None], level_gap: in
 
 
 def _first_walk(node: _Node) -> None:
-    """Place the children of a node, whose own children are placed, beside each other."""
+    """Place the children of a node, whose own subtrees are already placed, next to each other."""
     children = node.children
     if not children:
         return
@@ -128,7 +128,9 @@ def _first_walk(node: _Node) -> None:
 
 
 class _Low:
-    """The siblings whose subtrees reach deepest so far, the last one first: who is met when two are moved apart."""
+    """The siblings whose subtrees reach deepest so far, the last one first: the ones that a new subtree can collide
+    with.
+    """
 
     __slots__ = ("index", "low", "next")
 
@@ -174,7 +176,7 @@ def _move(children: list[_Node], index: int, met: int, distance: float) -> None:
     child.modifier += distance
     child.extreme_left_sum += distance
     child.extreme_right_sum += distance
-    if met != index - 1:  # what lies between shares the distance
+    if met != index - 1:  # the siblings between share the distance
         share = distance / (index - met)
         children[met + 1].shift += share
         child.shift -= share

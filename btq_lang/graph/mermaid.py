@@ -1,7 +1,7 @@
 """Mermaid, which code hosts draw in Markdown files, issues and pull requests.
 
-The format: https://mermaid.js.org/syntax/flowchart.html.  Texts stand in quotes, with entity codes for what Mermaid
-would read itself: quotes, brackets of HTML, `#`, the backtick that begins Markdown, and the backslash of `\\n`.
+The format: https://mermaid.js.org/syntax/flowchart.html. Texts are quoted, with entity codes for what Mermaid would
+interpret: quotes, brackets of HTML, `#`, the backtick that begins Markdown, and the backslash of `\\n`.
 """
 
 from __future__ import annotations

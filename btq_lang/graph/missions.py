@@ -1,6 +1,6 @@
-"""The trees of a mission as figures: what each node is drawn as and what is written on it.
+"""The trees of a mission as figures: the shape and the text of each node.
 
-One invariant: one box for each written node.  A SubTree node is a box; its tree is a figure of its own.
+One invariant: one box for each written node. A SubTree node is a box; its tree is a separate figure.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def draw_tree(
     Args:
         path: of the file in the workspace.
         form: `svg`, `dot` or `mermaid`.
-        qualities: with qualities and requirements beside their nodes.
+        qualities: draw qualities and requirements beside their nodes.
         direction: the position of the children, `down` or `right`.
 
     Raises:
@@ -51,7 +51,7 @@ def figures(workspace: Workspace, path: str, with_qualities: bool = False) -> tu
     """A figure for each tree of a file, in the order of its text.
 
     Args:
-        with_qualities: qualities and requirements stand beside their nodes.
+        with_qualities: attach qualities and requirements to their nodes.
 
     Raises:
         KeyError: there is no such file.
@@ -78,7 +78,7 @@ def _keyed(found: Requirements, path: str) -> tuple[tuple[str, SourceNode], ...]
 
 
 def by_tree(nodes: Iterable[SourceNode]) -> Iterator[tuple[SourceNode, ...]]:
-    """Nodes in the order of their text, those of each tree together."""
+    """Nodes in the order of their text, grouped by tree."""
     found: dict[int, list[SourceNode]] = {}
     for node in nodes:
         found.setdefault(id(node.item), []).append(node)
@@ -91,13 +91,13 @@ def figure(
     notes: Mapping[int, tuple[Note, ...]],
     links: Mapping[str, str] | None = None,
 ) -> Figure:
-    """A tree's figure.
+    """The figure of a tree.
 
     Args:
         nodes: all of the tree's, parents before their children.
-        keys: of each node, by `id(node)`.
-        notes: of each node that has some, by `id(node)`.
-        links: where a SubTree node leads, by the name of its tree.
+        keys: of all nodes, by `id(node)`.
+        notes: of nodes that have some, by `id(node)`.
+        links: targets of SubTree nodes, by the name of the tree.
     """
     at = {id(node): number for number, node in enumerate(nodes)}
     boxes = [
@@ -117,7 +117,7 @@ def figure(
 
 
 def concerns(node: SourceNode) -> Iterator[tuple[str, QualityPath]]:
-    """The qualities that a node, or its tree, satisfices: their names joined by points, and how they are written."""
+    """The qualities that a node, or its tree, satisfices: their names joined by dots, and their syntax."""
     for clause in clauses_of(node):
         if isinstance(clause, Satisfices):
             for quality in clause.qualities:
@@ -125,7 +125,7 @@ def concerns(node: SourceNode) -> Iterator[tuple[str, QualityPath]]:
 
 
 def clauses_of(node: SourceNode) -> tuple[NodeClause, ...]:
-    """The clauses of a node; of the one node of a tree those of the tree as well."""
+    """The clauses of a node; for the top node of a tree, those of the tree as well."""
     tree = node.item
     if node.parent is None and sum(isinstance(each, Node) for each in tree.children) == 1:
         return (*tree.clauses, *node.node.clauses)
@@ -133,7 +133,9 @@ def clauses_of(node: SourceNode) -> tuple[NodeClause, ...]:
 
 
 def said(applied: Applied) -> tuple[str, ...]:
-    """The clauses that hold for a subject, as typed but for the subject; of a requirement without any its title."""
+    """The clauses that hold for a subject, as typed but without the subject; the title of a requirement without
+    clauses.
+    """
     requirement = applied.requirement
     lines = [_predicate(claim) for claim in requirement.claims]
     lines += [scope.text for scope in requirement.scopes]
@@ -151,7 +153,7 @@ def _predicate(claim: Claim) -> str:
 
 
 def arguments(applied: Applied) -> str:
-    """`(limit = 5 min)`; nothing where there are none."""
+    """`(limit = 5 min)`; empty without arguments."""
     given = ", ".join(f"{each.name} = {each.value.text}" for each in applied.arguments)
     return f"({given})" if given else ""
 
@@ -179,7 +181,7 @@ def _outline(node: SourceNode) -> Outline:
 
 
 def _title(node: SourceNode) -> str:
-    """The symbol of a control node, or what it is; of a placeholder its name."""
+    """The symbol of a control node, the kind of others; for a placeholder, its name."""
     if is_placeholder(node.node) and node.node.name is not None:
         return node.node.name.text
     if node.kind is not None:
@@ -188,7 +190,7 @@ def _title(node: SourceNode) -> str:
 
 
 def _lines(node: SourceNode) -> tuple[str, ...]:
-    """The instance name, and of a built-in what its ports are set to."""
+    """The instance name, and for a built-in node the values of its ports."""
     lines = []
     name = node.node.name
     if name is not None and name.text != _title(node):

@@ -1,4 +1,4 @@
-"""A mission as a page shows it beside the text: its trees with all that is attached, and where each node stands.
+"""A mission as a page shows it beside the text: its trees with notes, and the place of each node in the text.
 
 One invariant: every key of `places` is the id of a group in the picture.
 """
@@ -17,7 +17,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class Picture(Record):
-    """The SVG, and of each node in it the word that says what it is, in the order of the text."""
+    """The SVG, and for each node in it the word that names its kind, in the order of the text."""
 
     svg: str
     places: Mapping[str, Span]
@@ -27,9 +27,8 @@ def picture(workspace: Workspace, path: str, folded: Container[str] = ()) -> Pic
     """The trees of a file.
 
     Args:
-        folded: the names of the nodes whose subtrees are not shown, as `data-name` in the SVG has them; with `+notes`
-            among them all notes are shown, with `-notes` they are folded.  Without either they are folded where more
-            than 60 nodes are shown.
+        folded: the names of the nodes whose subtrees are not shown, as in `data-name` of the SVG; `+notes` among them
+            shows all notes, `-notes` folds them.  Without either they are folded if more than 60 nodes are shown.
 
     Raises:
         KeyError: there is no such file.
@@ -42,7 +41,7 @@ def picture(workspace: Workspace, path: str, folded: Container[str] = ()) -> Pic
 
 
 def places(workspace: Workspace, path: str) -> dict[str, Span]:
-    """Where each node of a file stands, folded or not.
+    """The place of each node of a file in its text, folded or not.
 
     Raises:
         KeyError: there is no such file.

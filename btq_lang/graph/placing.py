@@ -1,7 +1,7 @@
-"""A figure on paper: where every box, note and line of it is.
+"""A placed figure: positions of all its boxes, notes and lines.
 
-One invariant: nothing overlaps, and every text is inside what it belongs to.  Units are CSS pixels.  Notes hang on a
-leaf in the direction in which children would follow, and stand beside an inner node, so that its children stay below.
+One invariant: nothing overlaps, and every text is inside what it belongs to. Units are CSS pixels. Notes are attached
+to a leaf in the direction in which children would follow, and beside an inner node, so that its children stay below.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Rectangle(Record):
 
 
 class PlacedNote(Record):
-    """A note; lines: its texts as they fit, the title first."""
+    """A note; lines: its texts, broken to fit, the title first."""
 
     note: Note
     at: Rectangle
@@ -43,11 +43,11 @@ class PlacedNote(Record):
 
 
 class PlacedBox(Record):
-    """A box, its texts as they fit, and its notes.
+    """A box, its texts, broken to fit, and its notes.
 
     Attributes:
         edge: the line from its parent; none at the top.
-        ties: the line that its notes hang on.
+        ties: the lines that connect its notes.
     """
 
     box: Box
@@ -59,7 +59,7 @@ class PlacedBox(Record):
 
 
 class Drawing(Record):
-    """A figure on paper of a width and a height."""
+    """A placed figure with its width and height."""
 
     title: str
     width: int
@@ -89,7 +89,7 @@ def place(figure: Figure, direction: str = "down") -> Drawing:
 
 
 def note_lines(note: Note) -> tuple[str, ...]:
-    """The title and the clauses; of a quality whose name is too wide the last part, which says the most."""
+    """The title and the clauses; of a quality whose name is too wide the last part, the most specific."""
     title = note.title
     if note.kind == "quality" and width(title, SMALL, bold=True) > _NOTE_ROOM:
         title = title.rpartition(".")[2]
@@ -98,7 +98,7 @@ def note_lines(note: Note) -> tuple[str, ...]:
 
 
 class _Part:
-    """A box with its notes, before it has a place.
+    """A box with its notes, before it is placed.
 
     Attributes:
         w, h: of all of it.
@@ -115,7 +115,7 @@ class _Part:
         heights = [len(lines) * LEADING + _NOTE_PAD for lines in self._notes]
         notes_h = sum(heights) + _NOTE_GAP * (len(heights) - 1) if heights else 0
         self._heights = heights
-        # Beside the box, to its right: of a leaf that grows to the right, and of an inner node that grows down.
+        # To the right of the box: for leaves of trees that grow right, and inner nodes of trees that grow down.
         self._beside = bool(heights) and (is_inner if down else not is_inner)
         if self._beside:
             self.w = self._w + _TIE + self._note_w
@@ -144,14 +144,14 @@ class _Part:
         return PlacedBox(self._box, at, self._lines, tuple(notes), self._edge(at, parent), self._ties(at, notes))
 
     def _edge(self, at: Rectangle, parent: PlacedBox | None) -> Line:
-        """From the parent: along, across in the gap before this layer, along."""
+        """The line from the parent: along, across in the gap before this layer, along."""
         if parent is None:
             return ()
         (x, y), (px, py) = at.middle, parent.at.middle
         if self._down:
             turn = at.y - self._box_y - _LEVEL_GAP // 2
             start, end = parent.at.y + parent.at.h, at.y
-            if abs(x - px) <= 1:  # places are rounded
+            if abs(x - px) <= 1:  # positions are rounded
                 return (x, start), (x, end)
             return (px, start), (px, turn), (x, turn), (x, end)
         turn = at.x - self._box_x - _LEVEL_GAP // 2

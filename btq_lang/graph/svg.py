@@ -1,7 +1,7 @@
-"""SVG, written by hand: a document that stands alone, or a part of a page.
+"""SVG, written by hand: a standalone document, or a part of a page.
 
-One invariant: the same figures give the same bytes, and texts are escaped.  Standing alone, it has a ground of its own,
-light or dark as the reader's system is; in a page, the page's style sheet paints it (`STYLE` has the classes' shapes,
+One invariant: the same figures give the same bytes, and texts are escaped. A document has its own background, light or
+dark like the reader's system; in a page, the page's style sheet paints it (`STYLE` has the shapes of the classes,
 `LIGHT` and `DARK` their colours).
 """
 
@@ -14,7 +14,7 @@ from typing import Final
 from btq_lang.graph.figure import Figure
 from btq_lang.graph.placing import LEADING, MARGIN, SMALL, TITLE, Drawing, Line, PlacedBox, PlacedNote, Rectangle, place
 
-# What paints which part, and its colour on light and on dark ground; text on its ground has a contrast of 4.5 and more.
+# Selectors, properties, and colours on light and dark background; text has a contrast of at least 4.5.
 _COLOURS: Final = (
     (".ground", "fill", "#ffffff", "#16191d"),
     (".edge, .tie", "stroke", "#6b7580", "#8f9aa6"),
@@ -53,7 +53,7 @@ def colours(dark: bool) -> str:
 
 
 def document(figures: Sequence[Figure], direction: str = "down") -> str:
-    """Figures below each other, each with its title, as a file of its own."""
+    """Figures below each other, each with its title, as a standalone document."""
     drawings = [place(figure, direction) for figure in figures]
     title = ", ".join(drawing.title for drawing in drawings)
     total = max((max(drawing.width, _title_width(drawing)) for drawing in drawings), default=2 * MARGIN)
@@ -77,10 +77,10 @@ def document(figures: Sequence[Figure], direction: str = "down") -> str:
 
 
 def part(drawing: Drawing, label: str) -> str:
-    """A drawing as a part of a page, which has the style sheet, and may draw it smaller by three tenths.
+    """A drawing as a part of a page, which has the style sheet and may shrink it to 70 %.
 
     Args:
-        label: what it shows, for those who hear the page.
+        label: what it shows, for screen readers.
     """
     lines = [
         f'<svg class="tree" width="{drawing.width}" height="{drawing.height}"'
@@ -99,7 +99,7 @@ def _title_width(drawing: Drawing) -> int:
 
 
 def _drawn(drawing: Drawing) -> Iterator[str]:
-    """Lines below boxes."""
+    """The elements of a drawing, lines below boxes."""
     for box in drawing.boxes:
         if box.edge:
             yield f'<path class="edge" d="{_path(box.edge)}"/>'
@@ -117,7 +117,7 @@ def _box(placed: PlacedBox, above: str) -> Iterator[str]:
     x = at.middle[0]
     names = " ".join(dict.fromkeys(note.note.key for note in placed.notes))
     told = f' data-notes="{escape(names)}"' if names else ""
-    if box.name:  # what a page needs to fold it
+    if box.name:  # a page folds by it
         told += f' data-name="{escape(box.name)}" data-parent="{escape(above)}" data-hidden="{box.hidden}"'
     state = f" {box.state}" if box.state else ""
     yield f'<g class="box {box.outline}{state}" id="{escape(box.key)}"{told}>'

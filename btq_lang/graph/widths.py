@@ -1,7 +1,7 @@
-"""How wide a text is, estimated without a font: no program has to be there, and the same text is as wide everywhere.
+"""Estimates the width of a text without a font: it needs no other program, and is the same everywhere.
 
-One invariant: the estimate is no less than what the usual sans-serif fonts need.  The table has the advance widths of
-DejaVu Sans, the widest of those that browsers take for `sans-serif`, in thousandths of the font's size, rounded up.
+One invariant: the estimate is at least what the usual sans-serif fonts need. The table has the advance widths of DejaVu
+Sans, the widest of the fonts that browsers use for `sans-serif`, in thousandths of the font's size, rounded up.
 """
 
 from __future__ import annotations
@@ -11,16 +11,17 @@ from functools import lru_cache
 from typing import Final
 
 
-@lru_cache(maxsize=4096)  # the same kinds and clauses stand in many boxes
+@lru_cache(maxsize=4096)  # many boxes have the same kinds and clauses
 def width(text: str, size: int, bold: bool = False) -> int:
-    """The width of a line, in the unit of `size`, the font's size."""
+    """The width of a line, in the unit of `size`, the font size."""
     total = sum(_width(character) for character in text)
     return -(-total * size * (_BOLD if bold else 100) // 100_000)
 
 
 def wrapped(text: str, size: int, room: int, most: int) -> tuple[str, ...]:
-    """A text in lines of at most `room`, broken at blanks, but not between a number and its unit; `…` where more than
-    `most` lines would be needed.  Runs of blanks are one."""
+    """A text in lines of at most `room`, broken at blanks, but not between a number and its unit; `…` if it needs more
+    than `most` lines. Runs of blanks become one.
+    """
     lines: list[str] = []
     for word in _NUMBER.sub("\u00a0", " ".join(text.split())).split(" "):
         if lines and width(f"{lines[-1]} {word}", size) <= room:
@@ -33,7 +34,7 @@ def wrapped(text: str, size: int, room: int, most: int) -> tuple[str, ...]:
 
 
 def shortened(text: str, size: int, room: int) -> str:
-    """A line, cut off with `…` where it is wider than `room`."""
+    """A line, cut off with `…` if it is wider than `room`."""
     if width(text, size) <= room:
         return text
     text = text.removesuffix(" …")
