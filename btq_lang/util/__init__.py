@@ -1,14 +1,13 @@
-"""What every program needs and no language knows: text, records, paths.
+"""General helpers: text, records, paths.
 
-One invariant: nothing here knows a behavior tree, and nothing imports another room.  Strings and numbers come in, and
-strings and numbers go out.
+One invariant: nothing here concerns behavior trees or imports another room.
 
-    text.py         spans, edits and the index of lines: the base of every place in a file
-    source_map.py   from a generated text to the one it was made of, and back
-    spelling.py     names near to a misspelt one
+    text.py         spans, edits and the index of lines: the basis of all positions in a file
+    source_map.py   maps a generated text to its source, and back
+    spelling.py     names similar to a misspelt one
     record.py       immutable classes, without the start-up time of dataclasses
     globs.py        patterns of paths
-    toml_places.py  where in a TOML text a key stands
+    toml_places.py  positions of keys in a TOML text
     garbage.py      pauses of the garbage collector
     version.py      the version of btq
 """

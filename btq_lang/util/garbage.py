@@ -1,7 +1,7 @@
-"""Pauses of the garbage collector: what a parse makes stays, and to look through it again and again takes a fifth of
-the time of a parse.
+"""Pauses the garbage collector: the objects of a parse are kept, and scanning them repeatedly takes a fifth of its
+time.
 
-One invariant: whether Python collects by itself is as before afterwards.
+One invariant: afterwards collection is enabled or disabled as before.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import gc
 
 
 class NotCollecting:
-    """`with NotCollecting():` Python looks for no garbage inside."""
+    """`with NotCollecting():` disables the collector inside."""
 
     __slots__ = ("_was_collecting",)
 

@@ -1,8 +1,8 @@
 """Patterns of paths, as .gitignore writes the simple ones.
 
-`*` and `?` match within one name, `**` over any number of folders.  A pattern with a `/` before its end counts from the
-project's folder, another matches at any depth; one that ends with `/` matches folders only.  Every string is a pattern:
-there are no character classes and no `!`, so nothing can be malformed.
+`*` and `?` match within one name, `**` over any number of folders. A pattern with a `/` before its end is relative to
+the project's folder, any other matches at any depth; one that ends with `/` matches folders only. Every string is a
+pattern: there are no character classes and no `!`, so no pattern is malformed.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-_PARTS = r"/\*\*/|^\*\*/|/\*\*$|\*\*|\*|\?|[^*?/]+|/"  # compiled when it is used: most projects exclude nothing
+_PARTS = r"/\*\*/|^\*\*/|/\*\*$|\*\*|\*|\?|[^*?/]+|/"  # compiled on use: most projects exclude nothing
 _MEANINGS = {"/**/": "/(?:.*/)?", "**/": "(?:.*/)?", "/**": "/.+", "**": ".*", "*": "[^/]*", "?": "[^/]"}
 
 
 def glob_matcher(patterns: Iterable[str]) -> re.Pattern[str] | None:
-    """One expression whose `fullmatch` tells whether a path matches any pattern; None for no patterns.
+    """An expression whose `fullmatch` succeeds for paths that match any pattern; None without patterns.
 
-    The path is relative to the project's folder, has `/` between its names, and ends with `/` where it is a folder.
+    The path is relative to the project's folder, has `/` between its names, and ends with `/` if it is a folder.
     """
     expressions = [_expression(pattern) for pattern in patterns if pattern.strip("/")]
     return re.compile("|".join(expressions), re.DOTALL) if expressions else None

@@ -1,8 +1,8 @@
-"""`class Point(Record):` makes an immutable class with slots from its annotations, as a frozen, slotted dataclass is.
+"""`class Point(Record):` makes an immutable class with slots from its annotations, like a frozen, slotted dataclass.
 
-Why not dataclasses, measured: 200 of their decorators cost 100 ms at each start of `btq check`, and to construct a
-frozen one takes 359 ns under mypyc instead of 22.  Here one function is generated, `__init__`, and only when a class
-gets its first instance: of most classes a run has none.  Type checkers treat both alike (PEP 681).  Left out:
+Why not dataclasses, measured: 200 of their decorators cost 100 ms at each start of `btq check`, and constructing a
+frozen one takes 359 ns under mypyc instead of 22. Here one function is generated, `__init__`, and only when a class
+gets its first instance: a run instantiates few of the classes. Type checkers treat both alike (PEP 681). Left out:
 inheritance, keyword-only fields, default factories, ordering.
 """
 
@@ -25,7 +25,7 @@ T = TypeVar("T")
 @dataclass_transform(frozen_default=True, eq_default=True)
 class _RecordType(type):
     _key: attrgetter[Any]  # the class and the fields, for equality and hash
-    _defaults: tuple[object, ...]  # those of the last fields
+    _defaults: tuple[object, ...]  # of the last fields
 
     def __new__(cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> Any:
         fields = tuple(namespace.get("__annotations__", ()))
@@ -70,11 +70,11 @@ class Record(metaclass=_RecordType):
 
 
 def replace(instance: T, **changes: Any) -> T:
-    """A copy of a record with some fields changed; a name that is not a field's raises a TypeError."""
+    """A copy of a record with some fields changed; an unknown name raises a TypeError."""
     return type(instance)(**{field: getattr(instance, field) for field in fields_of(instance)} | changes)
 
 
 def fields_of(part: object) -> tuple[str, ...]:
     """The names of the fields, in order, of a record or of another class with `__match_args__`."""
-    fields: tuple[str, ...] = type(part).__match_args__  # type: ignore[attr-defined]  # what has none is no record
+    fields: tuple[str, ...] = type(part).__match_args__  # type: ignore[attr-defined]  # records have it
     return fields

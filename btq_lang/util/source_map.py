@@ -1,6 +1,7 @@
-"""Which part of a text was made of which part of another, to show on the other what was found in the first.
+"""Maps parts of a generated text to the parts of the original, to show on the original what was found in the generated
+text.
 
-One invariant: pieces are in order and do not overlap in the text that was made.  It knows offsets only.
+One invariant: pieces are in order and do not overlap in the generated text. Only offsets are known here.
 """
 
 from __future__ import annotations
@@ -13,16 +14,16 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
-    # Start and end in the text that was made, start and end in the one it was made of.
+    # Start and end in the generated text, start and end in the original.
     Piece: TypeAlias = tuple[int, int, int, int]
 
 
 class Places:
-    """Pieces of a text that was made, each with what it was made of; found when they are first asked for, for most
-    files have nothing wrong with them.
+    """Pieces of a generated text, each with its origin; computed on first use, because most files have no diagnostics
+    to map.
 
     Args:
-        marks, lines: whatever `located` makes the pieces of.
+        marks, lines: the arguments of `located`, which computes the pieces.
     """
 
     def __init__(
@@ -37,12 +38,13 @@ class Places:
 
     @cached_property
     def pieces(self) -> Sequence[Piece]:
-        """In the order of the text that was made; they do not overlap in it."""
+        """The pieces, in the order of the generated text."""
         return self._located(self._marks, self._lines) if self._located else ()
 
     def made(self, offset: int) -> int | None:
-        """Where in the text that was made an offset of the original is: in the shortest piece around it, or that ends
-        there; None: nothing was made of what stands there."""
+        """The offset in the generated text for one of the original, in the shortest piece that contains it or ends
+        there; None: nothing was generated from it.
+        """
         around = [piece for piece in self.pieces if piece[2] <= offset <= piece[3]]
         if not around:
             return None
@@ -53,10 +55,10 @@ class Places:
         return Places, (self.pieces, (), _as_they_are)
 
     def origin(self, span: Span) -> Span:
-        """The span of the original that a span stands for: from the first piece in it to the last.
+        """The span of the original for a span of the generated text: from the first piece in it to the last.
 
-        A part of a piece is a part of the original, if both are as long; a span that meets no piece stands for the
-        nearest one before it, or the start.
+        A part of a piece maps to a part of the original if both have the same length; a span without a piece maps to
+        the nearest one before it, or to the start.
         """
         pieces = self.pieces
         first = bisect_right(pieces, span.start, key=_end)
@@ -68,7 +70,7 @@ class Places:
             return Span(*pieces[before][2:]) if pieces else Span(0, 0)
         start = _within(pieces[first], max(span.start, pieces[first][0]))
         end = _within(pieces[last], min(span.end, pieces[last][1]), at_end=True)
-        if end < start:  # attributes stand in another order than in the original
+        if end < start:  # attributes are in another order than in the original
             return Span(*pieces[first][2:])
         return Span(start, end)
 
@@ -78,7 +80,7 @@ def _as_they_are(pieces: Sequence[Piece], _: Sequence[str]) -> Sequence[Piece]:
 
 
 def _within(piece: Piece, at: int, at_end: bool = False) -> int:
-    """Where an offset in a piece is in the original."""
+    """The offset in the original for one in a piece."""
     start, end, original_start, original_end = piece
     if end - start == original_end - original_start:
         return original_start + at - start

@@ -1,7 +1,7 @@
-"""Near names: what somebody probably meant who wrote a word that is in no table.
+"""Near names: what an unknown word was probably meant to be.
 
-One invariant: the answer depends on the word and on the set of candidates, never on their order.  It does not know
-what the candidates are; a caller that wants only names of one kind passes only those.
+One invariant: the answer depends on the word and on the set of candidates, never on their order. It does not know what
+the candidates are: a caller that wants names of one kind passes only those.
 """
 
 from __future__ import annotations
@@ -12,17 +12,17 @@ from typing import Final
 
 
 def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...]:
-    """The candidates nearest to `word`, best first: at most `limit`, none that only a wild guess would offer.
+    """The candidates nearest to `word`, best first: at most `limit`, without wild guesses.
 
-    One edit is allowed for every three letters of the word, three in all, and one more than the best candidate needs.
-    A candidate that differs in case alone leaves no room for any other; the word itself is never an answer.
+    One edit is allowed for every three letters of the word, three in all, and at most one more than the best candidate
+    needs. A candidate that differs in case alone leaves no room for any other; the word itself is never an answer.
     """
     folded, letters = word.casefold(), _letters(word)
     cutoff = min(len(folded) // 3, 3)
     same_letters: list[tuple[int, str]] = []
     found: list[tuple[int, int, str]] = []
     for candidate in set(candidates):
-        # Most candidates fall here, and cost little: every edit mends one letter that only one of the two has.
+        # This rejects most candidates cheaply: an edit mends at most one letter that only one of the two has.
         others = _letters(candidate)
         if (letters & ~others).bit_count() > cutoff or (others & ~letters).bit_count() > cutoff or candidate == word:
             continue
@@ -38,7 +38,7 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
 
 
 def did_you_mean(names: Iterable[str]) -> str:
-    """The end of a message that names what was probably meant; empty without a name."""
+    """`; did you mean …?` for the end of a message; empty without names."""
     shown = [f"`{name}`" for name in names]
     if not shown:
         return ""
@@ -46,14 +46,14 @@ def did_you_mean(names: Iterable[str]) -> str:
 
 
 def distance(a: str, b: str, enough: int | None = None) -> int:
-    """How many letters must be put in, left out, replaced or swapped with their neighbour to turn `a` into `b`.
+    """How many letters must be inserted, deleted, replaced or swapped with their neighbour to turn `a` into `b`.
 
     This is the optimal string alignment form of the Damerau-Levenshtein distance: no piece is edited twice.
 
     Args:
-        enough: stop counting when the distance is surely larger; the answer is then some number above it.
+        enough: stop counting when the distance is surely larger; the result is then some larger number.
     """
-    # What both begin and end with costs nothing, and names in one file often have much of it: `requirement_17`.
+    # Common prefixes and suffixes cost nothing; names in one file often have long ones: `requirement_17`.
     start = 0
     for left, right in zip(a, b, strict=False):
         if left != right:
@@ -64,7 +64,7 @@ def distance(a: str, b: str, enough: int | None = None) -> int:
         end_a -= 1
         end_b -= 1
     a, b = a[start:end_a], b[start:end_b]
-    band = max(len(a), len(b)) if enough is None else enough  # what is further off the diagonal needs more edits
+    band = max(len(a), len(b)) if enough is None else enough  # cells further off the diagonal need more edits
     before: list[int] = []
     last = list(range(len(b) + 1))
     for i, left in enumerate(a, 1):
@@ -76,7 +76,7 @@ def distance(a: str, b: str, enough: int | None = None) -> int:
             if i > 1 and j > 1 and left == b[j - 2] and a[i - 2] == right:
                 edits = min(edits, before[j - 2] + 1)
             row[j] = edits
-        # A swap reaches back two rows, so only two rows in a row that are too far away decide.
+        # A swap reaches back two rows, so two consecutive rows must be too far away.
         if enough is not None and min(row) > enough and min(last) > enough:
             return enough + 1
         before, last = last, row
@@ -85,11 +85,11 @@ def distance(a: str, b: str, enough: int | None = None) -> int:
 
 @lru_cache(10_000)
 def _letters(word: str) -> int:
-    """A bit for each letter in a word, whatever its case; some letters share one."""
+    """A bit set of a word's letters, ignoring case; some letters share a bit."""
     found = 0
     for letter in set(word.casefold()):
         found |= 1 << ord(letter) % _BITS
     return found
 
 
-_BITS: Final = 39  # with so many no letter of ASCII shares one with a digit
+_BITS: Final = 39  # with so many bits no ASCII letter shares one with a digit

@@ -1,7 +1,7 @@
-"""Text, spans and edits: what every other module counts in.
+"""Text, spans and edits: the units of all other modules.
 
-One invariant: an offset is an index into a Python string.  Lines and columns exist only at the edges (a terminal, an
-editor), and `LineIndex` is the only place that turns one into the other, in the unit the reader asked for.
+One invariant: an offset is an index into a Python string. Lines and columns exist only at the edges (a terminal, an
+editor), and only `LineIndex` converts between them, in the encoding that the reader requests.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from btq_lang.util.record import Record
 
 Encoding: TypeAlias = "Literal['code-points', 'utf-8', 'utf-16']"
 
-# A line ends with these and with nothing else: str.splitlines would also cut at form feeds and U+2028.
+# Only these end a line: str.splitlines would also cut at form feeds and U+2028.
 LINE_END = re.compile(r"\r\n|\n|\r")
 
 
@@ -62,11 +62,11 @@ def apply_edits(text: str, edits: Iterable[Edit]) -> str:
 
 
 def changed(before: str, after: str) -> Span | None:
-    """The part of a text that an edit replaced: what is before and behind it is in both; None where they are equal."""
+    """The part of a text that an edit replaced, without a common prefix and suffix; None if the texts are equal."""
     if before == after:
         return None
     shorter = min(len(before), len(after))
-    # One of the two is compared where it stands: of a large text the copies take most of the time.
+    # One of the two is compared in place: copying takes most of the time for a large text.
     start = _same(lambda low, high: after.startswith(before[low:high], low), shorter)
     size, new_size = len(before), len(after)
     rest = _same(lambda low, high: after.endswith(before[size - high : size - low], 0, new_size - low), shorter)
@@ -74,7 +74,7 @@ def changed(before: str, after: str) -> Span | None:
 
 
 def _same(is_same: Callable[[int, int], bool], size: int) -> int:
-    """How much is the same from the start of something on, found by halving."""
+    """The length of a common prefix or suffix, found by bisection."""
     low, high = 0, size
     while low < high:
         middle = (low + high + 1) // 2
@@ -86,10 +86,10 @@ def _same(is_same: Callable[[int, int], bool], size: int) -> int:
 
 
 class LineIndex:
-    """Where the lines of a text begin, to turn offsets into positions and back.
+    """Where the lines of a text begin; converts offsets to positions and back.
 
-    After an edit of a large text most lines only begin elsewhere; what moves them is kept beside them, and added when
-    one is asked for: an author types in one place.
+    After an edit of a large text most lines are merely shifted; the shift is kept separately and added on look-up,
+    because an author types in one place.
     """
 
     __slots__ = ("_by", "_moved", "_starts", "_text")
@@ -97,24 +97,24 @@ class LineIndex:
     def __init__(self, text: str) -> None:
         self._text = text
         self._starts = [0, *_line_starts(text)]
-        self._moved = 0  # from this line on all begin further behind than `_starts` says,
-        self._by = 0  # by this
+        self._moved = 0  # from this line on, all begin later than in `_starts`
+        self._by = 0  # by this much
 
     def edited(self, text: str, change: Span | None = None) -> LineIndex:
-        """The index of the text after an edit; the lines before and behind the change are not looked for again.
+        """The index of the text after an edit; the lines before and after the change are not searched again.
 
         Args:
-            change: what `changed` says of the two texts, where that is known.
+            change: the result of `changed` for the two texts, if known.
         """
         change = change or changed(self._text, text)
         return self if change is None else self._replaced(change, text)
 
     def replaced(self, span: Span, by: str) -> LineIndex:
-        """The index of the text with another one at `span`."""
+        """The index of the text with `span` replaced."""
         return self._replaced(span, self._text[: span.start] + by + self._text[span.end :])
 
     def _replaced(self, change: Span, text: str) -> LineIndex:
-        # A \r before the change, or a \n behind it, may be half of a line end that the change makes or breaks.
+        # A \r before the change, or a \n after it, may be half of a line end that the change creates or splits.
         first = max(self._line_of(change.start - 1), 0)
         last = self._line_of(change.end) + 1
         is_end = last == len(self._starts)
@@ -122,7 +122,7 @@ class LineIndex:
         end = len(text) if is_end else self._start(last) + by
         between = [self._start(first) + start for start in _line_starts(text[self._start(first) : end])]
         if not is_end:
-            between.pop()  # behind it is the line that is there already
+            between.pop()  # the line after it exists already
         after = LineIndex("")
         after._text = text
         after._starts = self._moved_from(last)
@@ -132,7 +132,7 @@ class LineIndex:
         return after
 
     def _moved_from(self, line: int) -> list[int]:
-        """As `_starts`, were this the line from which on all begin further behind."""
+        """`_starts`, if this were the line from which all are shifted."""
         starts, by = self._starts[:], self._by
         low, high = sorted((self._moved, line))
         if by:
@@ -144,7 +144,7 @@ class LineIndex:
         return self._starts[line] + self._by if line >= self._moved else self._starts[line]
 
     def _line_of(self, offset: int) -> int:
-        """The line that an offset is in; -1 before the first one."""
+        """The line of an offset; -1 before the first one."""
         starts, moved = self._starts, self._moved
         if moved < len(starts) and starts[moved] + self._by <= offset:
             return bisect_right(starts, offset - self._by, moved) - 1
@@ -168,12 +168,12 @@ class LineIndex:
         offset = max(0, min(offset, len(self._text)))
         line = self._line_of(offset)
         start = self._start(line)
-        if self._text.isascii():  # Python knows that of a text without looking at it
+        if self._text.isascii():  # a flag of the string: takes no time
             return Position(line, offset - start)
         return Position(line, width_of(self._text[start:offset], encoding))
 
     def ends(self, span: Span, encoding: Encoding = "code-points") -> tuple[int, int, int, int]:
-        """Line and column of both ends of a span; nearly all begin and end in one line."""
+        """Line and column of both ends of a span; fast if both are in one line, as nearly always."""
         start, end = span
         if self._text.isascii() and 0 <= start <= end <= len(self._text):
             starts, moved, by = self._starts, self._moved, self._by
@@ -188,12 +188,12 @@ class LineIndex:
         return *self.position(start, encoding), *self.position(end, encoding)
 
     def place(self, offset: int) -> tuple[int, str]:
-        """The line that an offset is in, and what stands before it there."""
+        """The line of an offset, and the text before it on that line."""
         line = self._line_of(offset)
         return line, self._text[self._start(line) : offset]
 
     def offset(self, position: Position, encoding: Encoding = "code-points") -> int:
-        """The offset of a position; what lies beyond a line or the text is clamped to its end, as LSP asks."""
+        """The offset of a position; beyond a line or the text it is clamped to the end, as LSP demands."""
         if position.line < 0:
             return 0
         if position.line >= len(self._starts):
@@ -214,7 +214,7 @@ def _line_starts(text: str) -> Iterator[int]:
 
 
 def width_of(text: str, encoding: Encoding) -> int:
-    """How many columns a text takes: characters, or the units that it has in UTF-8 or UTF-16."""
+    """How many columns a text takes: code points, or code units in UTF-8 or UTF-16."""
     if encoding == "code-points" or text.isascii():
         return len(text)
     if encoding == "utf-8":

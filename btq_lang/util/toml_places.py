@@ -1,7 +1,7 @@
-"""Where keys and values stand in a TOML file: the standard reader gives values without positions.
+"""Finds the positions of keys and values in a TOML file: the standard reader gives values only.
 
-This looks for the lines that a person would look for, and for a key in an inline table behind the key of that table.
-Invariant: what it answers is a place in the text, or None; it never raises, also for a text that is no TOML.
+It searches line by line, and for a key in an inline table after the key of that table. Invariant: the result is a
+position in the text, or None; it never raises, even for a text that is not TOML.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _NAME = re.compile(r"""[\w\-]+|"[^"]*"|'[^']*'""")
 
 
 def find_key(text: str, keys: tuple[str, ...], value: str | None = None) -> Position | None:
-    """Where a key stands, from the outermost table's name on; or a string in its value."""
+    """The position of a key, given from the outermost table's name on, or of a string in its value."""
     text = _LONG_STRING.sub(lambda string: re.sub(r"[^\n]", " ", string[0]), text)
     found, known, end = -1, 0, len(text)
     for path, start, stop in _key_lines(text):
@@ -35,7 +35,7 @@ def find_key(text: str, keys: tuple[str, ...], value: str | None = None) -> Posi
 
 
 def word_end(text: str, start: int) -> int:
-    """Where the key or value ends that begins at a place; where none does, the end of the line."""
+    """The end of the key or value that begins at an offset; the end of the line if none does."""
     word = _WORD.match(text, start)
     return word.end() if word else start
 
