@@ -97,7 +97,7 @@ def missing_bytes(path: str) -> int:
         size = os.fstat(file.fileno()).st_size
     if not head.startswith(MAGIC):
         raise NotALog("expected a SQLite database, as SqliteLogger writes it")
-    if len(head) < _HEAD or head[24:28] != head[92:96]:  # the number of pages is valid
+    if len(head) < _HEAD or head[24:28] != head[92:96]:  # then the page count is not valid
         return 0
     page = int.from_bytes(head[16:18], "big")
     return max(0, (65536 if page == 1 else page) * int.from_bytes(head[28:32], "big") - size)
