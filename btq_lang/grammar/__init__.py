@@ -1,17 +1,17 @@
 """The productions of docs/grammar.md between lexer and parser: a module a group of productions.
 
-One invariant: a production reads from a cursor, always moves on, and gives a tree and diagnostics for every text; one
-mistake gives one diagnostic.  Logical lines come in, trees of `syntax` go out.  Not known here: other items, other
-files, and what names mean.
+One invariant: a production reads from a cursor, always advances, and gives a tree and diagnostics for every text; one
+mistake gives one diagnostic.  Logical lines come in, trees of `syntax` go out.  Other items, other files and the
+meaning of names are unknown here.
 
-    cursor.py        where the parser is: the next token, what is expected, recovery
+    cursor.py        the position of the parser: the next token, what is expected, recovery
     items.py         the items of a file
     nodes.py         trees' blocks: nodes, their children, ports
     attributes.py    attributes in brackets, and what is attached to nodes
     requirements.py  requirements, their parameters and units
     clauses.py       the clauses of a requirement
     claims.py        what a clause demands
-    conditions.py    what it demands it under
+    conditions.py    the conditions in clauses
     blocks.py        the lines below a head
-    item_words.py    the words that items begin with
+    item_words.py    the words that begin items
 """

@@ -1,6 +1,6 @@
-"""The part of the parser that reads what stands at a node: attributes in brackets, qualities and requirements attached.
+"""The part of the parser that reads what is attached to a node: attributes in brackets, qualities and requirements.
 
-One invariant: it stays on the logical line at hand; lines and blocks are the business of `nodes`.
+One invariant: it stays on the current logical line; `nodes` handles lines and blocks.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from btq_lang.util.text import Span
 
 
 class AttributeParser(RequirementParser):
-    """A cursor that can read what stands at a node."""
+    """A cursor that can read what is attached to a node."""
 
     # ---- attributes ----
 
@@ -81,7 +81,7 @@ class AttributeParser(RequirementParser):
         return tuple(pairs)
 
     def not_an_attribute(self, pairs: list[Pair], clauses: list[NodeClause]) -> None:
-        """Complain of what stands in brackets and is no attribute; what it is probably meant for is read as that."""
+        """Report what is in brackets and is not an attribute, and read it as what it was probably meant to be."""
         at = self.index
         if self.at_name() and (self.is_operator(at + 1, ":") or self.is_operator(at + 1, "==")):
             sign = self.starts[at + 1]
@@ -153,7 +153,7 @@ class AttributeParser(RequirementParser):
         return self.needs_quotes(word)
 
     def half_quoted(self, word: Word) -> Word:
-        """`charger" …`: what follows is a string only because a quote is missing."""
+        """`charger" …`: the rest is a string only because a quote is missing."""
         span = word.span.shifted(self.base)
         fix = Fix(f"Put {self.raw[0]} before it", (Change(Place(Span(span.start, span.start)), self.raw[0]),))
         at = self.starts[self.index]
@@ -165,17 +165,17 @@ class AttributeParser(RequirementParser):
         return word
 
     def joins(self) -> bool:
-        """Whether the token at hand makes one value with the one before it: there is no blank between."""
+        """Whether the current token forms one value with the one before it: there is no blank between."""
         if not self.adjacent(self.index):
             return False
         return self.kind not in (NEWLINE, OPEN, CLOSE) and self.raw not in (",", "=")
 
     def ends_value(self) -> bool:
-        """Whether what may follow a value follows."""
+        """Whether the next token may follow a value."""
         return self.kind in (NEWLINE, CLOSE) or self.raw == "," or self.raw in _ATTRIBUTE_WORDS or self.at_key()
 
     def needs_quotes(self, word: Word) -> Word:
-        """`map/frame`, `/map`: take what is written without a blank as one value, and say that it needs quotes."""
+        """`map/frame`, `/map`: read what is written without a blank as one value, and report that it needs quotes."""
         cause = self.lost_quote() or self.wrong_unit()
         while self.joins():
             self.advance()
@@ -188,7 +188,7 @@ class AttributeParser(RequirementParser):
             note = "write a quote in a string as \\\", in a script as '; or add a closing quote that is missing above"
             self.complain("syntax-error", Span(start, end), "unexpected text right after a string", (note,))
         else:
-            # A quote or a brace in it means that more went wrong than this.
+            # A quote or a brace in it indicates another mistake.
             safe = self.ends_value() and not set(raw) & set("\"'{}\\")
             fix = value_meant(self.text, start, end, safe=safe)
             self.complain("syntax-error", Span(start, end), "this value needs quotes", (), (fix,))
@@ -197,14 +197,14 @@ class AttributeParser(RequirementParser):
     # ---- qualities and requirements on nodes ----
 
     def misspelt_clause(self) -> str | None:
-        """The word that is probably meant by the one at hand, reported: `satisfys rq1`."""
+        """Report a misspelt word, `satisfys rq1`, and return the one that was probably meant."""
         meant = meant_clause(self.raw) if self.raw not in _ATTRIBUTE_WORDS else None
         if meant is not None:
             self.attaches_nothing(self.here(), meant)
         return meant
 
     def attaches_nothing(self, span: Span, meant: str) -> None:
-        """Complain of a misspelt satisfices, satisfies or tags."""
+        """Report a misspelt satisfices, satisfies or tags."""
         word = self.text[span.start : span.end]
         by = self.index + 1
         place = span
@@ -218,7 +218,7 @@ class AttributeParser(RequirementParser):
         """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }
 
         Args:
-            meant: the word to read instead of the one at hand.
+            meant: the word to read instead of the current one.
         """
         start = self.start()
         word = self.take().raw
@@ -238,7 +238,7 @@ class AttributeParser(RequirementParser):
         return Tags(start, self.last_end(), tuple(names))
 
     def satisfices(self) -> tuple[Quality, ...]:
-        """Quality { "," Quality };  classic files leave the commas out"""
+        """Quality { "," Quality };  classic files omit the commas"""
         found: list[Quality] = []
         self.skip_sign(":")
         while True:
@@ -284,13 +284,13 @@ class AttributeParser(RequirementParser):
         return Quality(path, tuple(requirements))
 
     def names_follow(self, index: int) -> bool:
-        """Whether a quality's name is there, so that `Quality` before it lacks its `=`."""
+        """Whether a quality's name follows, so that `Quality` before it lacks its `=`."""
         if self.kinds[index] not in (NAME, STRING) or self.raws[index] in _ATTRIBUTE_WORDS:
             return False
         return not self.is_operator(index + 1, "=")
 
     def satisfies(self) -> tuple[Requirement | ReqRef, ...]:
-        """ReqUse { "," ReqUse };  classic files leave the commas out"""
+        """ReqUse { "," ReqUse };  classic files omit the commas"""
         found: list[Requirement | ReqRef] = []
         self.skip_sign(":", "=")
         if self.at_word("by") and self.kinds[self.index + 1] in (NAME, STRING):
@@ -316,7 +316,7 @@ class AttributeParser(RequirementParser):
         return self.req_ref(name) if name is not None else None
 
     def list_goes_on(self, qualities: bool = False) -> bool:
-        """Pass a comma if another element follows it; in brackets an attribute may follow it instead."""
+        """Skip a comma if another element follows it; in brackets an attribute may follow instead."""
         if self.at_word("and") and self.kinds[self.index + 1] in (NAME, STRING) and not self.group:
             gone = Span(self.last_end() + self.base, self.here().end)
             fix = replace_fix("Write `,`", gone, ",", safe=True)
@@ -340,7 +340,7 @@ class AttributeParser(RequirementParser):
 
 
 def meant_clause(word: str) -> str | None:
-    """Which of satisfices, satisfies and tags is probably meant by another word."""
+    """Which of satisfices, satisfies and tags a word probably means."""
     if likely := near(word, NODE_CLAUSES, limit=1):
         return likely[0]
     return "satisfies" if word.startswith("satisf") else None

@@ -1,4 +1,4 @@
-"""The blocks that are open while a tree is read.
+"""The open blocks while a tree is parsed.
 
 One invariant: a node gets its children when its block closes, all at once.
 """
@@ -9,12 +9,12 @@ from typing import Final
 
 from btq_lang.syntax.tree import Node, NodeClause, Verbatim
 
-MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine reads no more (4.9 and later)
+MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine's limit (4.9 and later)
 OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"
 
 
 class Block:
-    """The open block of a node, or of the tree itself: what was read of it so far."""
+    """The open block of a node, or of the tree itself, with what has been parsed so far."""
 
     __slots__ = ("children", "clauses", "level", "node")
 

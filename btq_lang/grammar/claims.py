@@ -1,6 +1,6 @@
-"""The part of the parser that reads claims: which node is to do what, and within which bounds.
+"""The part of the parser that reads claims: what a node must do, and within which bounds.
 
-Each function is a production of docs/grammar.md and named as it; its docstring shows the production.
+Each function is a production of docs/grammar.md and named after it; its docstring shows the production.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from btq_lang.util.text import Span
 
 VERB_WORDS: Final = frozenset(VERBS)
 HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
-MAX_CASES: Final = 100  # in one value: a table may stand in each case of another one
+MAX_CASES: Final = 100  # in one value: each case of a table may be another table
 RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"): "<", ("more", "than"): ">"}
 
 
@@ -59,7 +59,7 @@ class ClaimParser(ConditionParser):
         return self.verb(start, subject)
 
     def verb(self, start: int, subject: Subject | None) -> Claim:
-        """Verb = "takes" Bound | "succeeds" [ "within" Bounded ] | "needs" Cond | …;  what it claims of the subject
+        """Verb = "takes" Bound | "succeeds" [ "within" Bounded ] | "needs" Cond | …; the verb of a subject
 
         Args:
             start: of the claim.
@@ -105,7 +105,7 @@ class ClaimParser(ConditionParser):
         return Claim(start, self.last_end(), subject, verb, bound, condition, resource, per, event, every)
 
     def every_meant(self) -> bool:
-        """`all MoveBase`: complain, and pass it as `every`."""
+        """Report `all MoveBase`, and read it as `every`."""
         if self.kind != NAME or self.raw not in ("all", "each", "any"):
             return False
         if self.kinds[self.index + 1] != NAME or self.raws[self.index + 1] in VERB_WORDS:
@@ -116,12 +116,12 @@ class ClaimParser(ConditionParser):
         return True
 
     def is_verb(self, further: int) -> bool:
-        """Whether the next word but `further` is a verb."""
+        """Whether the word `further` tokens ahead is a verb."""
         index = self.index + further
         return index < len(self.kinds) and self.kinds[index] == NAME and self.raws[index] in VERB_WORDS
 
     def no_verb(self, subject: Subject) -> None:
-        """Complain of a subject without a verb, or of a misspelt verb that was read as a subject."""
+        """Report a subject without a verb, or of a misspelt verb that was read as a subject."""
         first = subject.names[0] if isinstance(subject, Path) and len(subject.names) == 1 else None
         if isinstance(subject, Path) and self.kind == NAME and self.raw in MODALS:
             self.expected("a verb: takes, succeeds, needs, keeps, …", (MEANT[self.raw],))
@@ -169,7 +169,7 @@ class ClaimParser(ConditionParser):
             self.expected(f"a verb after `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
 
     def blank_in_path(self, path: Subject | None, follow: frozenset[str]) -> bool:
-        """Complain of `Inspect Dock succeeds`, where a path is written `Inspect/Dock`, and pass over the rest.
+        """Report `Inspect Dock succeeds`, where a path is written `Inspect/Dock`, and skip the rest.
 
         Args:
             follow: the words that may follow the path.
@@ -192,7 +192,7 @@ class ClaimParser(ConditionParser):
         return True
 
     def misspelt(self, span: Span, word: str, likely: str) -> None:
-        """Complain of a word that begins no clause, and pass over the rest."""
+        """Report a word that begins no clause, and skip the rest."""
         fix = replace_fix(f"Replace `{word}` with `{likely}`", span, likely)
         self.complain("syntax-error", span, f"unknown word `{word}`; did you mean `{likely}`?", (), (fix,))
         self.recover()
@@ -289,7 +289,7 @@ class ClaimParser(ConditionParser):
         return Bound(start, self.last_end(), relation, value)
 
     def bound_in_other_words(self) -> str | None:
-        """`no more than`, `up to`: complain, and leave their last word at hand."""
+        """Report `no more than`, `up to`, and stop at their last word."""
         if self.kind != NAME and self.kind != OPERATOR:
             return None
         for length in (5, 4, 3, 2):
@@ -305,7 +305,7 @@ class ClaimParser(ConditionParser):
         return None
 
     def within(self) -> Bound:
-        """Bounded, as the upper bound that `within` and `every` mean"""
+        """Bounded, as the upper bound after `within` and `every`"""
         start = self.start()
         value = self.bounded()
         end = self.last_end()
@@ -354,7 +354,7 @@ def is_time(raw: str) -> bool:
 
 
 QUALITY_IN_HEAD: Final = "a requirement's quality goes after its name: `QualityReq fast : reliability`"
-MEANT: Final = {  # by what is read as a node in front of a verb
+MEANT: Final = {  # by the word that is read as a node before a verb
     "at": "a bound goes after its verb, `takes at most 3 s`; a probability is written `in at least 95 % of runs`",
     "violation": "write `on violation fail`",
     **dict.fromkeys(("max", "maximum"), "an upper bound goes after its verb: `takes at most 30 s`"),

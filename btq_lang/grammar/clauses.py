@@ -1,6 +1,6 @@
 """The part of the parser that reads clauses: a claim, or what limits, weighs or explains the claims of a requirement.
 
-Each function is a production of docs/grammar.md and named as it; its docstring shows the production.
+Each function is a production of docs/grammar.md and named after it; its docstring shows the production.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class ClauseParser(ClaimParser):
     """A cursor that can read clauses."""
 
     def clauses(self, at_least_one: bool = False) -> tuple[Clause, ...]:
-        """{ Clause }, to the end of the line or of what holds them"""
+        """{ Clause }, to the end of the line or of the brackets"""
         found: list[Clause] = []
         while self.kind == NAME or self.kind == STRING:
             following = self.index + 1
@@ -223,7 +223,7 @@ class ClauseParser(ClaimParser):
         return None
 
     def no_violation(self) -> None:
-        """Complain that `violation` is missing, and pass over what is meant for it: `on failure fail`."""
+        """Report that `violation` is missing, and skip the word in its place: `on failure fail`."""
         following = self.index + 1
         if self.kind == NAME and self.kinds[following] == NAME and self.raws[following] in ACTIONS:
             fix = replace_fix(f"Replace `{self.raw}` with `violation`", self.here(), "violation")
@@ -233,14 +233,14 @@ class ClauseParser(ClaimParser):
             self.expect_word("violation", forgotten=self.kind == NAME and self.raw in ACTIONS)
 
     def after_missing(self, words: str) -> Word:
-        """The percentage at hand; complain that `words` are missing before it."""
+        """Read the current percentage; report that `words` are missing before it."""
         at = self.here()
         fix = replace_fix(f"Put `{words}` before it", Span(at.start, at.start), f"{words} ")
         self.complain("syntax-error", at, f"a probability is written `with probability >= {self.raw}`", (), (fix,))
         return self.take()
 
     def bare_bound(self) -> None:
-        """Complain of `<= 30 s` without a verb."""
+        """Report `<= 30 s` without a verb."""
         sign, value = self.raw, self.index + 1
         bound = {"<=": "at most", "<": "less than", ">=": "at least", ">": "more than"}.get(sign)
         fixes: tuple[Fix, ...] = ()
@@ -251,7 +251,7 @@ class ClauseParser(ClaimParser):
         self.expected(_A_CLAUSE, ("a bound goes after its verb: `takes at most 30 s`",), fixes)
 
     def is_no_time(self) -> bool:
-        """Whether a word stands behind a number where its unit of time should be, and is nothing else."""
+        """Whether a number is followed by a word that can only be a wrong unit of time."""
         if self.kind != NAME or self.index == 0 or self.kinds[self.index - 1] != NUMBER:
             return False
         following = self.index + 1

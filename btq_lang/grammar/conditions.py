@@ -1,6 +1,6 @@
-"""The part of the parser that reads conditions: what a context says, and what clauses are about.
+"""The part of the parser that reads conditions, in contexts and clauses.
 
-Each function is a production of docs/grammar.md and named as it; its docstring shows the production.
+Each function is a production of docs/grammar.md and named after it; its docstring shows the production.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.util.text import Span
 
-# Words that begin a clause, so that they end the condition before them.
+# Words that begin a clause and so end the condition before them.
 SUBJECT_HEADS: Final = frozenset(("mission", "every", "from", "sum"))
 HEADS: Final = SUBJECT_HEADS | {
     "while",
@@ -53,8 +53,8 @@ class ConditionParser(Cursor):
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
-        self._nesting = 0  # how many conditions are open, one in the brackets of another
-        self._operators = 0  # how many the outermost of them has so far
+        self._nesting = 0  # how many conditions are open, nested in brackets
+        self._operators = 0  # how many operators the outermost has so far
 
     def cond(self) -> Condition | None:
         """Cond = Conj { "or" Conj }"""
@@ -74,7 +74,7 @@ class ConditionParser(Cursor):
         return left
 
     def accept_instead(self, sign: str, word: str) -> bool:
-        """What other languages write, reported and read as the word that is meant"""
+        """Report an operator of another language, and read it as the word that is meant"""
         if self.kind not in (SYMBOL, ERROR) or self.raw != sign:
             return False
         written = word if word != "not" else "not "
@@ -84,7 +84,7 @@ class ConditionParser(Cursor):
         return True
 
     def binary(self, operator: str, left: Condition, right: Condition) -> Condition:
-        """Two operands and what joins them; too many in one condition are reported, for a chain is a deep tree."""
+        """Join two operands; report too many in one condition, because a chain is a deep tree."""
         self._operators += 1
         if self._operators > MAX_OPERATORS:
             self.too_deep(f"more than {MAX_OPERATORS} operators in one condition")
@@ -128,7 +128,7 @@ class ConditionParser(Cursor):
         operands = [first]
         while self.kind == OPERATOR and (self.raw in COMPARISONS or self.raw == "="):
             if self.raw == "=":
-                if self.group and self._nesting < 2:  # the next attribute's
+                if self.group and self._nesting < 2:  # of the next attribute
                     break
                 self.single_equals()
             if len(operators) == 2:
@@ -137,7 +137,7 @@ class ConditionParser(Cursor):
             operators.append("==" if self.raw == "=" else self.raw)
             self.advance()
             if operators[-1] == "==" and (self.at("<") or self.at(">")) and self.adjacent(self.index):
-                self.advance()  # `=<`, told as a whole
+                self.advance()  # `=<` is reported as a whole
             operand = self.expr()
             if operand is None:
                 return first
@@ -147,7 +147,7 @@ class ConditionParser(Cursor):
         return Comparison(first.start, operands[-1].end, tuple(operators), tuple(operands))
 
     def single_equals(self) -> None:
-        """A `=` where values are compared: `==` is meant, or in `=<` and `=>` another order."""
+        """Report `=` in a comparison, where `==` is meant, and `=<` and `=>`."""
         span = self.here()
         following = self.index + 1
         if self.raws[following] in ("<", ">") and self.adjacent(following):
@@ -160,11 +160,11 @@ class ConditionParser(Cursor):
         self.complain("syntax-error", span, message, (), (fix,))
 
     def ends_condition(self) -> bool:
-        """Whether the next word ends the operand at hand, so that a lone `node` is a name like any other."""
+        """Whether the next word ends the current operand, so that a lone `node` is an ordinary name."""
         return self.raws[self.index + 1] in _ENDS_OPERAND
 
     def at_keyword(self) -> bool:
-        """Whether the word at hand begins a clause or joins conditions; without what must follow it is a name."""
+        """Whether the current word begins a clause or joins conditions; without what must follow it, it is a name."""
         if self.raw not in _ENDS_OPERAND:
             return False
         following = self.index + 1
@@ -251,7 +251,7 @@ class ConditionParser(Cursor):
         return Path(tuple(names))
 
     def close_group(self, what: str) -> None:
-        """The `)` of a group, whatever stands before it."""
+        """Close a group, whatever precedes its `)`."""
         while self.kind != CLOSE and self.kind != NEWLINE:
             self.expected(what)
             if self.kind != CLOSE:

@@ -1,8 +1,8 @@
-"""The cursor: where a parse stands in its logical line, and the few moves and complaints every production is made of.
+"""The cursor: the position of a parse in its logical line, with the moves and reports that productions consist of.
 
-One invariant: no move goes behind the NEWLINE that ends the line, so a production may look at what follows without
-asking whether anything does.  One mistake gives one complaint: a second one on the same line of text is not reported,
-nor is one where the lexer has said what is wrong.
+One invariant: no move goes beyond the NEWLINE that ends the line, so a production may look ahead without checking for
+the end.  One mistake gives one diagnostic: a second one on the same physical line is dropped, and so is one where the
+lexer has reported a mistake.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ class Cursor:
 
     Attributes:
         base: where the open item begins; the offsets of the tree count from there.
-        kind, raw: the token at hand.
+        kind, raw: the current token.
         index: its index in `kinds`, `starts` and `raws`, the lexer's lists for this line.
         problems: what is wrong, counted from the start of the file.
-        inside_out: from here on strings are read as code and code as strings, for a quote is missing.
+        inside_out: from here on strings are read as code and code as strings, because a quote is missing.
         known: how many problems the lexer had before this logical line.
-        group: how many brackets are open around the token at hand.
-        more: a further line is open (the lexer stands at its first character), not yet scanned.
+        group: how many brackets are open around the current token.
+        more: another line is open (the lexer is at its first character) but not yet scanned.
     """
 
     def __init__(self, text: str) -> None:
@@ -49,10 +49,10 @@ class Cursor:
         self.group = 0
         self.problems: list[Diagnostic] = []
         self.inside_out = len(text) + 1
-        self._silent_from = self._silent_to = -1  # the last line of text with a complaint
+        self._silent_from = self._silent_to = -1  # the last physical line with a diagnostic
         self.known = 0
         self._line_start = 0  # of the logical line
-        self._said: list[int] | None = None  # where it found a mistake in it
+        self._said: list[int] | None = None  # the mistakes that the lexer found in it
         self._in_wake = self._would_complain = False  # the line follows brackets that ended early; it has a mistake
         self._ends_early = False  # it ends brackets early itself
         self._unclosed = len(text)  # the first of its brackets that is not closed
@@ -60,10 +60,10 @@ class Cursor:
     # ---- lines ----
 
     def scan(self) -> None:
-        """Cut the open line into tokens and stand on the first."""
+        """Tokenize the open line and go to its first token."""
         lexer = self.lexer
-        # What follows a line that ends its brackets early is probably the rest of the brackets, and so is what follows
-        # that; that a `)` is missing has been said.
+        # The line after one that ends its brackets early is probably the rest of the brackets, and so are further
+        # lines; the missing `)` has already been reported.
         wakes = self._would_complain if self._in_wake else self._ends_early
         self._in_wake = wakes and not self.text[self._line_end() : lexer.line_start].strip()
         self._would_complain = False
@@ -85,7 +85,7 @@ class Cursor:
         return self.starts[-1] + len(self.raws[-1])
 
     def end_line(self, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> int:
-        """NL: complain of what is left of the line, open the next one; return where this one's last token ends."""
+        """NL: report what is left of the line and open the next one; returns where this one's last token ends."""
         if self.kind != NEWLINE:
             self.skip_last_sign()
         if self.kind != NEWLINE:
@@ -96,7 +96,7 @@ class Cursor:
         return end - self.base
 
     def no_end(self, notes: tuple[str, ...], fixes: tuple[Fix, ...]) -> None:
-        """Complain of what is left of the line."""
+        """Report what is left of the line."""
         if not notes and self.at_name() and self.is_behind_name():
             notes = (_QUOTES,)
         if not notes and self.at(".") and self.kinds[self.index + 1] == NAME and self.adjacent(self.index + 1):
@@ -106,7 +106,7 @@ class Cursor:
         self.expected("the end of the line", notes, fixes)
 
     def skip_sign(self, *signs: str) -> None:
-        """Report a sign as other languages have it after a word, and pass over it: `on violation: fail`."""
+        """Report and skip a sign that other languages have after a word: `on violation: fail`."""
         if self.kind == OPERATOR and self.raw in signs:
             at = self.here()
             is_apart = self.text[at.start - 1] in " \t" and self.text[at.end : at.end + 1] in (" ", "\t")
@@ -115,21 +115,21 @@ class Cursor:
             self.advance()
 
     def skip_glued_colon(self) -> None:
-        """Report a `:` right after a word that takes none, and pass over it: `QualityReq: rq1`."""
+        """Report and skip a `:` directly after a word that takes none: `QualityReq: rq1`."""
         if self.at(":") and self.adjacent(self.index):
             self.skip_sign(":")
 
     def skip_last_sign(self) -> None:
-        """Report a `:` or `.` at the end of a line, and pass over it."""
+        """Report and skip a `:` or `.` at the end of a line."""
         if self.kinds[self.index + 1 :] == [NEWLINE]:
             self.skip_sign(":", ".")
 
     def deeper(self, level: int) -> bool:
-        """Whether the open line stands in a block below `level`."""
+        """Whether the open line is in a block below `level`."""
         return self.more and self.lexer.level > level
 
     def skip_block(self, level: int) -> None:
-        """Pass over all lines deeper than `level`; what the lexer finds in them is not worth a word."""
+        """Skip all lines deeper than `level`, without reporting what the lexer finds in them."""
         while self.deeper(level):
             known = len(self.lexer.problems)
             self.lexer.scan()
@@ -150,7 +150,7 @@ class Cursor:
         self.raw = self.raws[index]
 
     def take(self) -> Word:
-        """The token at hand as a word, and on to the next."""
+        """Return the current token as a word and go to the next."""
         index = self.index
         word = Word(self.kind, self.starts[index] - self.base, self.raw)
         if self.kind != NEWLINE:
@@ -160,11 +160,11 @@ class Cursor:
         return word
 
     def at_key(self) -> bool:
-        """Whether `key =` is at hand."""
+        """Whether the next tokens are `key =`."""
         return (self.kind == NAME or self.kind == STRING) and self.raws[self.index + 1] == "="
 
     def is_behind_name(self) -> bool:
-        """Whether the token before the one at hand is a NAME."""
+        """Whether the previous token is a NAME."""
         return self.index > 0 and self.kinds[self.index - 1] == NAME
 
     def at(self, operator: str) -> bool:
@@ -195,7 +195,7 @@ class Cursor:
         return False
 
     def expect(self, operator: str, further: str = "") -> bool:
-        """The operator, and `further` is what a complaint says about it."""
+        """Skip the operator or report that it is missing; `further`: the end of that message."""
         if self.accept(operator):
             return True
         fixes: tuple[Fix, ...] = ()
@@ -205,7 +205,9 @@ class Cursor:
         return False
 
     def expect_word(self, word: str, instead: tuple[str, ...] = (), forgotten: bool = False) -> bool:
-        """The word; `instead` is what people write for it, and `forgotten` that what stands here may follow it."""
+        """Skip the word or report that it is missing; `instead`: common mistakes for it; `forgotten`: the current token
+        may follow it.
+        """
         if self.accept_word(word):
             return True
         fixes: tuple[Fix, ...] = ()
@@ -231,31 +233,30 @@ class Cursor:
         return self.take() if self.kind == QUANTITY else self.missing_word(what)
 
     def missing_word(self, what: str) -> Word | None:
-        """Complain that a word is missing; there is none."""
+        """Report that a word is missing; returns None."""
         self.expected(what)
         return None
 
     # ---- places ----
 
     def start(self) -> int:
-        """Where the token at hand begins, counted from the item."""
+        """The start of the current token, relative to the item."""
         return self.starts[self.index] - self.base
 
     def last_end(self) -> int:
-        """Where the token before the one at hand ends, counted from the item."""
+        """The end of the previous token, relative to the item."""
         before = self.index - 1
         return self.starts[before] + len(self.raws[before]) - self.base if before >= 0 else self.start()
 
     def adjacent(self, index: int) -> bool:
-        """Whether no blank stands before the token at `index`."""
+        """Whether the token at `index` directly follows the previous one."""
         before = index - 1
         return self.starts[before] + len(self.raws[before]) == self.starts[index]
 
     # ---- complaints ----
 
     def here(self) -> Span:
-        """The token at hand, counted from the start of the file; where the line ends, the place behind its last
-        token."""
+        """The span of the current token in the file; at the end of the line, the place after its last token."""
         if self.kind == NEWLINE:
             at = self.last_end() + self.base
             return Span(at, at)
@@ -263,7 +264,7 @@ class Cursor:
         return Span(at, at + len(self.raw))
 
     def found(self) -> str:
-        """The token at hand, as a message names it."""
+        """The current token, as a message names it."""
         if self.kind == NEWLINE:
             return "the end of the line"
         if self.kind == CLOSE and not self.raw:
@@ -271,8 +272,7 @@ class Cursor:
         return f"`{shown(self.raw)}`"
 
     def expected(self, what: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> None:
-        """Complain that something else was expected, and pass over what stands here: to the end of the brackets'
-        attribute, or to the end of the line."""
+        """Report that something else was expected, and skip to the end of the attribute in brackets, or of the line."""
         cause = self.lost_quote() or self.wrong_unit() or self.decimal_comma() or self.leading_point()
         if cause is not None:
             self.report(cause)
@@ -281,8 +281,9 @@ class Cursor:
         self.recover()
 
     def lost_quote(self) -> Diagnostic | None:
-        """What stands here makes no sense because the string before it lacks its closing quote, and ends at the quote
-        that should begin another string on a later line."""
+        """A diagnostic if the current token is unexpected because the string before it lacks its closing quote, and
+        ends at the quote that should begin another string on a later line.
+        """
         before = self.index - 1
         if before < 0 or self.kinds[before] != STRING or self.kind in (NEWLINE, CLOSE):
             return None
@@ -299,7 +300,7 @@ class Cursor:
         return Diagnostic("unclosed-string", Span(start, end), message, related, (), (close_string(self.text, start),))
 
     def wrong_unit(self) -> Diagnostic | None:
-        """What is probably meant as a unit: the word behind a number, or what follows `30 m/`."""
+        """A diagnostic for what is probably meant as a unit: the word after a number, or what follows `30 m/`."""
         if self.index == 0:
             return None
         before = self.kinds[self.index - 1]
@@ -316,7 +317,7 @@ class Cursor:
         return None
 
     def decimal_comma(self) -> Diagnostic | None:
-        """A comma in a number: `0,5 m/s`."""
+        """A diagnostic for a comma in a number: `0,5 m/s`."""
         comma = self.index if self.at(",") else self.index - 1
         following = comma + 1
         if comma < 1 or self.raws[comma] != "," or self.kinds[comma - 1] != NUMBER:
@@ -326,13 +327,13 @@ class Cursor:
             return None
         place = Span(self.starts[comma], self.starts[following])
         fixes = [replace_fix("Write a decimal point", place, ".")]
-        if number_end(self.text, self.starts[following]) - self.starts[following] == 3:  # thousands, perhaps
+        if number_end(self.text, self.starts[following]) - self.starts[following] == 3:  # perhaps a thousands separator
             fixes.append(replace_fix("Remove the comma", place, ""))
         message = "a decimal number is written with a point"
         return Diagnostic("syntax-error", place, message, fixes=tuple(fixes))
 
     def leading_point(self) -> Diagnostic | None:
-        """A number without its first digit: `.5 m/s`."""
+        """A diagnostic for a number without its first digit: `.5 m/s`."""
         following = self.index + 1
         if not self.at(".") or not self.adjacent(following) or self.kinds[following] not in (NUMBER, QUANTITY):
             return None
@@ -341,25 +342,27 @@ class Cursor:
         return Diagnostic("syntax-error", self.here(), "a number begins with a digit", fixes=(fix,))
 
     def replaced_by(self, words: Iterable[str]) -> tuple[Fix, ...]:
-        """The fix for a word at hand that is probably one of `words`, misspelt; none for any other."""
+        """The fix if the current word is a misspelling of one of `words`; else none."""
         meant = near(self.raw, words, limit=1) if self.kind == NAME else ()
         return tuple(replace_fix(f"Replace `{self.raw}` with `{word}`", self.here(), word) for word in meant)
 
     def complain(
         self, rule: str, span: Span, message: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()
     ) -> None:
-        """Report, if nothing was reported on this line of text yet; `span` counts from the start of the file."""
+        """Report, unless something was already reported on this physical line; `span` counts from the start of the
+        file.
+        """
         self.report(Diagnostic(rule, span, message, (), notes, fixes))
 
     def report(self, diagnostic: Diagnostic) -> None:
-        """Report, if nothing was reported on this line of text yet."""
+        """Report, unless something was already reported on this physical line."""
         at = diagnostic.span.start
         if diagnostic.rule == "unclosed-string":
             self.inside_out = min(self.inside_out, at + 1)
-        in_line = at <= self._line_end()  # that was cut into tokens last
+        in_line = at <= self._line_end()  # the line tokenized last
         if in_line:
             if self.kinds[0] == NEWLINE:
-                return  # of a line without any token the lexer has said what is wrong
+                return  # the lexer has reported a line without tokens
             self._would_complain = True
             if self._in_wake:
                 return
@@ -371,7 +374,9 @@ class Cursor:
             self.problems.append(diagnostic)
 
     def _lexer_complained(self, at: int) -> bool:
-        """Whether the lexer found a mistake on this line of text, or brackets that it has closed itself hold it."""
+        """Whether the lexer found a mistake on this physical line, or it is in brackets that the lexer closed
+        itself.
+        """
         if self._said is None:
             found = self.lexer.problems[self.known :]
             self._said = sorted(problem.span.start for problem in found if problem.rule in _SAID)
@@ -381,14 +386,14 @@ class Cursor:
         return at > self._unclosed or (next_said < len(self._said) and self._said[next_said] <= self._silent_to)
 
     def complain_instead(self, of: list[Diagnostic], diagnostic: Diagnostic) -> bool:
-        """Report one mistake in the place of what the lexer found in this line; where there is nothing to report, as
-        another mistake was not told for what the lexer said of it, that stays.
+        """Report a mistake instead of what the lexer found in this line; if the lexer's diagnostics have already
+        suppressed another one, keep them.
 
         Returns:
             Whether it was reported.
         """
         found, known, told = self.lexer.problems, self.known, len(self.problems)
-        of_line = found[known:]  # before it there may be thousands
+        of_line = found[known:]  # there may be thousands before it
         found[known:] = [problem for problem in of_line if problem not in of]
         self._said = None
         self.report(diagnostic)
@@ -399,7 +404,9 @@ class Cursor:
         return is_told
 
     def recover(self) -> None:
-        """To the next `key =` or the closing bracket of the group at hand; outside brackets to the end of the line."""
+        """Skip to the next `key =` or the closing bracket of the current group; outside brackets to the end of the
+        line.
+        """
         depth = 0
         while self.kind != NEWLINE:
             if self.kind == OPEN:
@@ -416,14 +423,14 @@ class Cursor:
 
 
 def shown(raw: str) -> str:
-    """A piece of the source as a message names it: its first line, and not too much of that."""
+    """A piece of the source as a message shows it: its first line, shortened."""
     line = raw[: line_end(raw, 0)]
     return line if len(line) == len(raw) <= 40 else f"{line[:37]}…"
 
 
 _QUOTES: Final = "a name of several words goes in quotes"
 VALUES: Final = frozenset((STRING, NAME, NUMBER, QUANTITY, BRACED))
-# Mistakes that the lexer reports and that leave something missing for the parser.
+# Mistakes reported by the lexer after which the parser misses something.
 _SAID: Final = frozenset(
     ("syntax-error", "unclosed-bracket", "unclosed-string", "unclosed-comment", "misplaced-comment", "unknown-unit")
 )

@@ -1,6 +1,6 @@
-"""The words that items begin with, and what was meant by a misspelt one.
+"""The words that begin items, and corrections of misspelt ones.
 
-One invariant: every include that the parser reads, well spelt or not, is in a text of which `may_include` says so.
+One invariant: `may_include` is true for every text in which the parser finds an include, misspelt or not.
 """
 
 from __future__ import annotations
@@ -19,21 +19,22 @@ ITEM_WORDS: Final = (
 
 
 def item_word_meant(word: str) -> str:
-    """The item word that is nearest to another one; empty if none is near."""
+    """The item word nearest to another word; empty if none is near."""
     return _meant(word)
 
 
 def read_as(word: str) -> str:
-    """The item word that another one is read as; empty for none: a model may be meant for a node of the tree above, and
-    what is to be an include must be found in texts that nobody parses."""
+    """The item word that a misspelt one is read as, or empty: a model may be meant as a node of the tree above, and an
+    include must be found without parsing the text.
+    """
     meant = _meant(word)
     return "" if meant in CATEGORIES or (meant == "include" and not may_include(word)) else meant
 
 
 def may_include(text: str) -> bool:
-    """Whether there may be an include in a text: most have none, and need not be parsed to know what others mean.
+    """Whether a text may contain an include: most contain none, and need not be parsed to resolve names in others.
 
-    One slip in the word leaves one of its ends whole.
+    A single mistake in the word leaves its beginning or its end intact.
     """
     folded = text.casefold()
     return "inc" in folded or "ude" in folded

@@ -1,6 +1,6 @@
-"""The part of the parser that reads the items of a file, but for Root, whose block holds items.
+"""The part of the parser that reads the items of a file, except Root, whose block holds items.
 
-Each function is a production of docs/grammar.md and named as it; its docstring shows the production.
+Each function is a production of docs/grammar.md and named after it; its docstring shows the production.
 """
 
 from __future__ import annotations
@@ -237,7 +237,7 @@ class ItemParser(NodeParser):
         return Tree(start, end, name, attributes, ports, clauses, children)
 
     def unquoted_path(self) -> Word | None:
-        """Complain of `include stations.btq`; there is no path."""
+        """Report `include stations.btq`, whose path lacks quotes."""
         has_sign = self.at(":") or self.at("=")
         first = self.index + 1 if has_sign and self.kinds[self.index + 1] != NEWLINE else self.index
         start = self.starts[first]
@@ -258,13 +258,13 @@ class ItemParser(NodeParser):
         return None
 
     def without_sign(self, title: str, end: int, text: str, *, safe: bool) -> Fix:
-        """Write a text from the `:` or `=` behind `include` on, up to `end`; a blank stays before it."""
+        """A fix that replaces everything from the `:` or `=` after `include` up to `end`, keeping a blank."""
         start = self.starts[self.index]
         blank = "" if self.text[start - 1] in " \t" else " "
         return replace_fix(title, Span(start, end), f"{blank}{text}", safe=safe)
 
     def at_unit(self) -> bool:
-        """ ":" before the unit of a signal, whose absence is reported"""
+        """ ":" before the unit of a signal; its absence is reported"""
         if self.accept(":"):
             return True
         unit = self.index + 1

@@ -1,6 +1,6 @@
-"""The part of the parser that reads the block of a tree: nodes and ports, and the requirements between them.
+"""The part of the parser that reads the block of a tree: nodes, ports, and the requirements between them.
 
-Nodes nest by indentation, so their blocks are a stack of open nodes and no recursion.
+Nodes nest by indentation, so their blocks are a stack of open nodes, without recursion.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class NodeParser(AttributeParser):
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
-        self.bare_until = -1  # where the last line `key = value` without brackets ends
+        self.bare_until = -1  # the end of the last line `key = value` without brackets
 
     def tree_block(self, level: int) -> tuple[tuple[Port, ...], tuple[NodeClause, ...], tuple[Node | Verbatim, ...]]:
         """INDENT { Port } { ClauseLine } { Node } DEDENT"""
@@ -89,13 +89,13 @@ class NodeParser(AttributeParser):
         return tuple(ports), tuple(blocks[0].clauses), tuple(blocks[0].children)
 
     def other_line(self, level: int, blocks: list[Block], ports: list[Port]) -> bool:
-        """ClauseLine | Port | Verbatim, into the last of the open blocks; False where the word at hand begins a node"""
+        """ClauseLine | Port | Verbatim, into the last of the open blocks; False where the current word begins a node"""
         block = blocks[-1]
         word = self.raw
         if word in NODE_CLAUSES:
             if len(blocks) > 1 or block.has_nodes():
                 block.clauses += self.clause_line_behind(level, block.children)
-            else:  # the tree's own: XML may stand before it, as it may among ports
+            else:  # the tree's own: XML may precede it, as it may be among ports
                 block.clauses += self.clause_line(level)
         elif word == "QualityReq" and self.is_requirement():
             block.clauses.append(self.requirement_line(level))
@@ -158,7 +158,7 @@ class NodeParser(AttributeParser):
         return Node(start, end, category, kind, label, attributes, tuple(clauses) if clauses else (), ())
 
     def skip_dash(self) -> None:
-        """Report the dash of a list as YAML and Markdown have it, and pass over it: `- Go`."""
+        """Report and skip the dash of a list, as in YAML and Markdown: `- Go`."""
         following = self.index + 1
         if not (self.at("-") or self.at("*")) or self.kinds[following] not in (NAME, SYMBOL, STRING):
             return
@@ -170,12 +170,12 @@ class NodeParser(AttributeParser):
         self.advance()
 
     def is_doc_string(self) -> bool:
-        """Whether a string of Python with three quotes is at hand, on one line."""
+        """Whether the line is a triple-quoted string, as in Python."""
         following = self.index + 1
         return self.raw in ('""', "''") and self.kinds[following] == STRING and self.adjacent(following)
 
     def other_comment(self, inner: int) -> None:
-        """Report a comment of another language, which begins at the token at hand; its text begins at `inner`."""
+        """Report a comment of another language, which begins at the current token; its text begins at `inner`."""
         start = self.here().start
         span = Span(start, line_end(self.text, start))
         inside = self.text[inner : span.end].rstrip()
@@ -186,7 +186,7 @@ class NodeParser(AttributeParser):
         self.go_to(len(self.kinds) - 1)
 
     def no_node(self) -> None:
-        """Complain of a line in a tree that begins no node."""
+        """Report a line in a tree that does not begin a node."""
         start = self.starts[self.index]
         if self.text.startswith("<!--", start):
             self.other_comment(start + len("<!--"))
@@ -199,7 +199,7 @@ class NodeParser(AttributeParser):
             self.expected("a node: its kind, or a symbol: -> ? || …", notes, self.symbol_meant())
 
     def xml_here(self) -> tuple[Span, str, tuple[str, ...], tuple[Fix, ...]]:
-        """What to report of the line at hand, which is XML: the fix writes an element as a node."""
+        """What to report for the current line, which is XML; the fix writes an element as a node."""
         start = self.starts[self.index]
         span = Span(start, start + len(self.text[start : line_end(self.text, start)].rstrip()))
         tag = _TAG.fullmatch(self.text, start, span.end)
@@ -210,7 +210,7 @@ class NodeParser(AttributeParser):
         return span, f"expected btq, found XML: a node is written `{written}`", (XML,), fixes
 
     def skip_xml(self, level: int) -> None:
-        """Pass over the lines of XML that follow one which is reported."""
+        """Skip the lines of XML that follow a reported one."""
         while self.more and self.lexer.level == level and self.text.startswith("<", self.lexer.position):
             known = len(self.lexer.problems)
             self.scan()
@@ -220,17 +220,17 @@ class NodeParser(AttributeParser):
             self.skip_block(level)
 
     def at_bare_value(self) -> bool:
-        """Whether `= value` or `: value` is at hand, outside brackets."""
+        """Whether the next tokens are `= value` or `: value`, outside brackets."""
         return self.at("=") or (self.at(":") and self.kinds[self.index + 1] in VALUES)
 
     def symbol_meant(self) -> tuple[Fix, ...]:
-        """The fix for what is probably a symbol: `-->`, `=>`, `- >`."""
+        """The fix for what is probably meant as a symbol: `-->`, `=>`, `- >`."""
         start = self.starts[self.index]
         run = _ARROW.match(self.text, start)
         return (replace_fix("Write `->`", Span(start, run.end()), "->"),) if run else ()
 
     def leftover(self, kind: Word | None, has_label: bool, clauses: list[NodeClause]) -> None:
-        """Complain of what is left of a node's line."""
+        """Report what is left of a node's line."""
         if kind is not None and kind.kind == NAME and kind.raw in _STATEMENTS and self.raws[-2] == ":":
             message = f"expected a node, found the statement `{kind.raw}`"
             self.complain("syntax-error", kind.span.shifted(self.base), message, (_STATEMENTS[kind.raw],))
@@ -270,15 +270,16 @@ class NodeParser(AttributeParser):
         self.go_to(len(self.kinds) - 1)
 
     def ends_label(self, clauses: list[NodeClause]) -> bool:
-        """Whether the name at hand may be the label of a node: nothing follows it but clauses, and the brackets before
-        it are the node's own."""
+        """Whether the current name may be the label of a node: only clauses follow, and the brackets before it are the
+        node's own.
+        """
         following = self.index + 1
         if clauses and clauses[-1].end == self.last_end():
             return False
         return self.kinds[following] == NEWLINE or self.raws[following] in NODE_CLAUSES
 
     def label_after_brackets(self, kind: Word | None, has_label: bool) -> None:
-        """Complain of `Retry (num_attempts = 5) Again`, where a node's label goes before the brackets."""
+        """Report `Retry (num_attempts = 5) Again`, where the label belongs before the brackets."""
         opened = self.starts[self.kinds.index(OPEN)]
         if has_label or kind is None:
             self.expected("the end of the line", ("a node has one label, before its brackets",))
@@ -291,13 +292,13 @@ class NodeParser(AttributeParser):
         self.complain("syntax-error", self.here(), "a node's label goes before its brackets", (CHILD,), (fix,))
 
     def bare_attributes(self) -> None:
-        """Complain of `MoveBase station = "charger"`, and once of several lines `key = value`."""
+        """Report `MoveBase station = "charger"`, and several lines `key = value` once."""
         lexer = self.lexer
         start, end = self.starts[self.index - 1], self.starts[-2] + len(self.raws[-2])
         if self.index == 1:
             is_next = self.bare_until >= 0 and not self.text[self.bare_until : lexer.line_start].strip()
             self.bare_until = lexer.position
-            lexer.ended_early = 1  # the `)` that follows them is no mistake of its own
+            lexer.ended_early = 1  # the `)` after them is not another mistake
             if is_next:
                 return
         rest = range(self.index, len(self.kinds))
@@ -310,7 +311,7 @@ class NodeParser(AttributeParser):
                 written = "=" if self.text[sign - 1] in " \t" else " ="
                 changes += (Change(Place(Span(sign, sign + 1)), written),)
         closing = [problem for problem in lexer.problems[self.known :] if self.is_stray_bracket(problem)]
-        if not closing:  # else what is missing is the `(`
+        if not closing:  # else the `(` is missing
             changes += (Change(Place(Span(end, end)), ")"),)
         fixes = (Fix("Put brackets around them", changes),) if plain or closing else ()
         message = "attributes go in brackets: `(key = value)`"
@@ -336,7 +337,7 @@ class NodeParser(AttributeParser):
         return found
 
     def clause_line_behind(self, level: int, children: list[Node | Verbatim]) -> list[NodeClause]:
-        """A clause line in the block of a node; behind children, where it should not stand, it is reported."""
+        """A clause line in the block of a node; it is reported if it comes after children."""
         start = self.lexer.line_start
         at = self.here()
         word = self.raw
@@ -360,7 +361,7 @@ class NodeParser(AttributeParser):
         return found
 
     def is_requirement(self) -> bool:
-        """Whether the line cannot be a node called QualityReq."""
+        """Whether the line is a requirement, not a node called QualityReq."""
         following = self.index + 1
         if self.kinds[following] not in (NAME, STRING) or self.raws[following] in NODE_CLAUSES:
             return False
@@ -368,7 +369,7 @@ class NodeParser(AttributeParser):
         return not (behind in (NEWLINE, OPEN) or self.raws[following + 1] in NODE_CLAUSES)
 
     def requirement_line(self, level: int) -> Satisfies:
-        """A requirement in the block of a node: `satisfies` is missing."""
+        """Report that `satisfies` is missing before a requirement in the block of a node."""
         at = self.here()
         fix = replace_fix("Write `satisfies QualityReq`", at, "satisfies QualityReq")
         note = "to share it between nodes, write it outside the tree"
@@ -417,7 +418,7 @@ class NodeParser(AttributeParser):
         """( "input" | … ) [ NAME ] [ ":" Name { "::" Name } ] [ "=" Value ] [ Attributes ] [ STRING ] NL
 
         Args:
-            meant: the first letters of the word at hand, which are read instead of it.
+            meant: the first letters of the current word, which are read instead of it.
         """
         direction = self.take()
         if meant:
@@ -441,7 +442,7 @@ class NodeParser(AttributeParser):
         return Port(direction.start, self.end_line(notes), direction, name, type_, default, attributes, text)
 
     def type_(self) -> Word | None:
-        """Type = Name { "::" Name };  its words are one"""
+        """Type = Name { "::" Name }; as one word"""
         found = self.name("the port's type")
         while found is not None and self.at("::"):
             self.advance()
@@ -451,14 +452,14 @@ class NodeParser(AttributeParser):
         return self.unquoted_type(found) if found is not None and self.goes_on(found) else found
 
     def goes_on(self, type_: Word) -> bool:
-        """Whether more than a name of C++ stands behind `:`: `vector<int>`, `unsigned int`, `Pose*`."""
+        """Whether the type after `:` is more than a C++ name: `vector<int>`, `unsigned int`, `Pose*`."""
         end = type_.end + self.base
         if type_.kind != NAME:
             return False
         return self.text[end : end + 1] in ("<", "*", "&", "[") or (self.kind == NAME and type_.raw in _BEFORE_TYPES)
 
     def unquoted_type(self, type_: Word) -> Word:
-        """`std::map<int, double>`: take all of it for one type, and say that it needs quotes."""
+        """`std::map<int, double>`: read all of it as one type, and report that it needs quotes."""
         start = end = type_.start + self.base
         depth = 0
         while end < len(self.text) and self.text[end] not in "\r\n#\"'" and (depth > 0 or self.text[end] not in "=("):
@@ -477,7 +478,7 @@ class NodeParser(AttributeParser):
     # ---- blocks ----
 
     def no_block(self, level: int) -> None:
-        """Complain of lines deeper than the line just read, which takes no block, and pass over them."""
+        """Report and skip lines deeper than the line just read, which takes no block."""
         if not self.deeper(level):
             return
         at = self.lexer.position

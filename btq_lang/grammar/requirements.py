@@ -1,6 +1,6 @@
-"""The part of the parser that reads requirements but for their clauses, and the units of what is declared.
+"""The part of the parser that reads requirements, except their clauses, and the units of declarations.
 
-Each function is a production of docs/grammar.md and named as it; its docstring shows the production.
+Each function is a production of docs/grammar.md and named after it; its docstring shows the production.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from btq_lang.syntax.tree import (
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
-UNITLESS: Final = frozenset(("bool", "text", "1"))  # what may stand for a unit behind the `:` of a signal
+UNITLESS: Final = frozenset(("bool", "text", "1"))  # allowed instead of a unit after the `:` of a signal
 
 
 class RequirementParser(ClauseParser):
@@ -36,7 +36,7 @@ class RequirementParser(ClauseParser):
     # ---- requirements ----
 
     def requirement(self) -> Requirement:
-        """Requirement = ReqHead { Clause };  the word QualityReq is at hand"""
+        """Requirement = ReqHead { Clause }; the current word is QualityReq"""
         start = self.start()
         self.advance()
         self.skip_glued_colon()
@@ -61,7 +61,7 @@ class RequirementParser(ClauseParser):
         return Requirement(start, self.last_end(), name, False, parameters, quality, title, clauses)
 
     def skip_brackets(self, message: str) -> None:
-        """Report the brackets at hand, which do not belong there, and go on as if there were none."""
+        """Report the current brackets, which do not belong there, and continue as if there were none."""
         if self.kind != OPEN or CLOSE not in self.kinds[self.index :]:
             return
         closing = self.kinds.index(CLOSE, self.index)
@@ -75,10 +75,10 @@ class RequirementParser(ClauseParser):
         self.go_to(self.index)
 
     def skip_key(self, words: tuple[str, ...], instead: str) -> bool:
-        """Report an attribute's key where the value alone belongs, `description = "in time"`, and pass over it.
+        """Report and skip an attribute's key where only the value belongs, as in `description = "in time"`.
 
         Args:
-            instead: what is written instead of the key.
+            instead: what to write instead of the key.
         """
         value = self.index + 2
         if self.kind != NAME or self.raw not in words or self.kinds[value] not in (NAME, STRING):
@@ -103,7 +103,7 @@ class RequirementParser(ClauseParser):
         return self.kinds[name] == NAME and self.raws[name + 1] in ("description", ",", "\n", "\r\n", "\r", "")
 
     def requirement_id(self, what: str) -> Word | None:
-        """Name;  `REQ.001`, `1.2` and `4711` are told to need quotes, and taken"""
+        """Name; `REQ.001`, `1.2` and `4711` are accepted, and reported to need quotes"""
         start = self.start()
         first = self.starts[self.index]
         if self.kind in (NUMBER, QUANTITY):
@@ -120,7 +120,7 @@ class RequirementParser(ClauseParser):
         return Word(NAME, start, text)
 
     def torn_quality(self, quality: QualityPath) -> None:
-        """Complain of `time behaviour`: a quality's name has no spaces."""
+        """Report `time behaviour`: a quality's name has no spaces."""
         last = quality.names[-1]
         if self.kind != NAME or last.kind != NAME or self.kinds[self.index + 1] not in (STRING, NEWLINE):
             return
@@ -131,12 +131,12 @@ class RequirementParser(ClauseParser):
             self.advance()
 
     def second_quality(self, requirement: Requirement) -> None:
-        """Complain of a comma behind a requirement that is no element of a list: `QualityReq r : safety, usability`."""
+        """Report a comma after a requirement that is not an element of a list: `QualityReq r : safety, usability`."""
         if requirement.quality is not None and not requirement.clauses and self.at(","):
             self.expected("the requirement's title, or its clauses", ("a requirement has one quality",))
 
     def bare_title(self, has_quality: bool) -> Word | None:
-        """Complain of a title without its quotes, and take it; or of a quality without its `:`."""
+        """Report and accept a title without quotes; or report a quality without its `:`."""
         following = self.index + 1
         if self.kind != NAME or self.group or self.raw in VERB_WORDS or self.raw in HEADS or self.raw in ENDS_CLAUSES:
             return None
@@ -168,7 +168,9 @@ class RequirementParser(ClauseParser):
         return replace_fix("Put `:` before it", Span(at, at), ": ")
 
     def is_prose(self, index: int) -> bool:
-        """Whether a word behind another is none that makes a claim of both: a verb, or `must` and a verb."""
+        """Whether the word at `index`, after another, does not make a claim of both, as a verb, or `must` and a verb,
+        would.
+        """
         if self.kinds[index] != NAME or self.raws[index] in VERB_WORDS or self.raws[index] in ENDS_CLAUSES:
             return False
         if self.raws[index] in MODALS:
@@ -176,11 +178,11 @@ class RequirementParser(ClauseParser):
         return not (self.is_clause(index) or near(self.raws[index], VERB_WORDS, limit=1))
 
     def is_long_prose(self) -> bool:
-        """Whether nothing but words stands here to the end of the line, and more than two: `keep the arm still`."""
+        """Whether the rest of the line is more than two words: `keep the arm still`."""
         return len(self.kinds) - 1 - self.index > 2 and all(kind == NAME for kind in self.kinds[self.index : -1])
 
     def is_clause(self, index: int) -> bool:
-        """Whether what stands at `index` can be nothing but the beginning of a clause, even behind prose."""
+        """Whether the token at `index` can only begin a clause, even after prose."""
         if self.kinds[index] != NAME:
             return False
         raw, second = self.raws[index], self.raws[index + 1] if self.kinds[index + 1] == NAME else ""
@@ -207,7 +209,7 @@ class RequirementParser(ClauseParser):
         return Requirement(start, self.last_end(), name, True, (), None, text, clauses)
 
     def no_equals(self, keys: list[int]) -> None:
-        """Complain that the `=` after some words of the classic form is missing."""
+        """Report that the `=` after some words of the classic form is missing."""
         changes: list[Change] = []
         for key in keys:
             end = self.starts[key] + len(self.raws[key])
@@ -244,7 +246,7 @@ class RequirementParser(ClauseParser):
         return Parameter(name, unit, default)
 
     def req_ref(self, name: Word) -> ReqRef:
-        """ReqRef = Name [ "(" NAME "=" Bounded { "," NAME "=" Bounded } ")" ];  the name is taken"""
+        """ReqRef = Name [ "(" NAME "=" Bounded { "," NAME "=" Bounded } ")" ]; the name is already read"""
         if self.kind != OPEN:
             return ReqRef(name)
         self.advance()
@@ -287,13 +289,13 @@ class RequirementParser(ClauseParser):
     # ---- units ----
 
     def unit(self) -> Word | None:
-        """UNIT, behind the `:` of a signal or a parameter, where it is not part of a QUANTITY"""
+        """UNIT, after the `:` of a signal or a parameter, where it is not part of a QUANTITY"""
         first = self.starts[self.index]
         start = self.start()
         if self.kind not in (NAME, NUMBER, QUANTITY, STRING) and not self.at("%"):
             self.expected("a unit: s, m/s, %, 1, bool, text, …")
             return None
-        end = max(unit_run(self.text, first), first + len(self.raw))  # right or wrong
+        end = max(unit_run(self.text, first), first + len(self.raw))  # valid or not
         word = self.text[first:end]
         if self.kind == STRING and is_unit(inner := unquote(word)):
             fix = replace_fix(f"Write `{inner}`", self.here(), inner, safe=True)
