@@ -1,12 +1,13 @@
 """The lexer: text to tokens, one logical line at a time.
 
-One invariant: it takes every string, and moves forward with every step.
-It knows indentation, brackets, strings, numbers with units and comments (docs/language.md); it knows no grammar but the
-words that begin an item, for these are where a forgotten bracket ends.
+One invariant: it accepts every string, and every step advances.  It knows indentation, brackets, strings, numbers with
+units and comments (docs/language.md); of the grammar it knows only the words that begin an item, because a forgotten
+bracket ends there.
 
-The parser pulls: `open_line` finds the next line that says something and compares its indentation, `scan` cuts it into
+The parser pulls: `open_line` finds the next line with tokens and compares its indentation, `scan` splits it into
 `kinds`, `starts` and `raws`, three flat lists.  Characters are compared as numbers, one by one, because mypyc compiles
-that well; words and blanks are long, so two maps of the text say where they end, which is quick in both forms.
+that well; words and blanks are long, so two maps of the text show where they end, which is fast interpreted and
+compiled.
 """
 
 from __future__ import annotations
@@ -103,8 +104,9 @@ def tokens(text: str) -> tuple[Token, ...]:
 
 
 def pieces(text: str) -> list[tuple[int, int, str]]:
-    """Kind, start and text of all tokens but brackets, line ends, blanks and what begins nothing: a third of
-    what `tokens` has, and quickly."""
+    """Kind, start and text of all tokens except brackets, line ends, blanks and invalid characters: a third of
+    `tokens`, and faster.
+    """
     lexer = Lexer(text)
     comments = lexer.comments
     found: list[tuple[int, int, str]] = []
@@ -125,10 +127,10 @@ class Lexer(StrangeCharacters):
     """A place in a text, and the logical line that begins there.
 
     Attributes:
-        words: the map of the text that says where words end (`word_map`).
+        words: the map of the text that shows where words end (`word_map`).
         comments: start and end of every comment so far.
-        ends_early: the line ends brackets that have no `)`, and nothing follows these.
-        ended_early: how many brackets ended before a line further left, while no other has opened since.
+        ends_early: the line ends brackets that have no `)`, and nothing follows them.
+        ended_early: how many brackets ended before a line with less indentation, if no other has opened since.
     """
 
     def __init__(self, text: str) -> None:
@@ -137,10 +139,10 @@ class Lexer(StrangeCharacters):
         self.comments: list[tuple[int, int]] = []
         self.ends_early = False
         self.ended_early = 0
-        self._stray_until = -1  # the end of the last line of text where a `)` was reported
+        self._stray_until = -1  # the end of the last physical line with a reported `)`
         self._wrong_units = 0  # how many were reported on this line
-        self._line_blanks = ""  # of the line of text at hand, but for lines inside strings and comments
-        self._no_double = self._no_single = self.size + 1  # from here on no such quote closes anything
+        self._line_blanks = ""  # of the current physical line, except inside strings and comments
+        self._no_double = self._no_single = self.size + 1  # from here on there is no such closing quote
         self._has_returns: Final = "\r" in text
         self._has_escapes: Final = "\\" in text
         self._no_comment_end = self.size + 1  # nor any */
@@ -148,7 +150,7 @@ class Lexer(StrangeCharacters):
     # ---- lines ----
 
     def open_line(self) -> bool:
-        """Go to the next line that says something and find its level; False at the end of the text."""
+        """Go to the next line with tokens and find its level; False at the end of the text."""
         text, size = self.text, self.size
         start, position = line_opening(text, self.ink, self.position)
         blanks = text[start:position]
@@ -172,15 +174,16 @@ class Lexer(StrangeCharacters):
         return True
 
     def state(self) -> State | None:
-        """The blanks of the open blocks, what was taken for them, and the level of an open Root's items, where they and
-        the text from here on are all that tells what follows; else None."""
+        """The blanks of the open blocks, their aliases, and the level of an open Root's items, if these and the rest of
+        the text determine what follows; else None.
+        """
         searched = min(self._no_double, self._no_single, self._no_comment_end) <= self.size
         if searched or self.problems or self.ended_early or self._block_ends:
             return None
         return tuple(self.columns), tuple(self._aliases) if self.adopted else (), self._root_level
 
     def begin_at(self, start: int, state: State) -> None:
-        """Stand before the line that starts there, in such a state."""
+        """Go to the line that starts there, in this state."""
         columns, aliases, self._root_level = state
         self.columns = list(columns)
         self._aliases = list(aliases) or [()] * len(columns)
@@ -189,7 +192,7 @@ class Lexer(StrangeCharacters):
         self.position = start
 
     def scan(self) -> None:
-        """Cut the opened line into tokens, through all lines that its brackets join."""
+        """Tokenize the opened line, through all lines that its brackets join."""
         self._begin_line()
         kinds, starts, raws, brackets = self.kinds, self.starts, self.raws, self._brackets
         text, words = self.text, self.words
@@ -250,7 +253,7 @@ class Lexer(StrangeCharacters):
         self._line_blanks = self.blanks
 
     def _end_line(self, position: i64) -> None:
-        """NEWLINE, and what is remembered of the line"""
+        """Add NEWLINE, and store what later lines need"""
         if self._brackets:
             self._end_brackets(len(self._brackets), position, None)
         raws = self.raws
@@ -266,21 +269,21 @@ class Lexer(StrangeCharacters):
             self._root_level = self.level + 1
 
     def first_word(self) -> str:
-        """The NAME that the opened line begins with; else it begins with no such text."""
+        """The NAME that the opened line begins with; any other text if it begins with none."""
         return self.text[self.position : name_end(self.text, self.words, self.position)]
 
     def line_end(self) -> int:
-        """Where the line of text at hand ends."""
+        """The end of the current physical line."""
         return line_end(self.text, self.position)
 
     def _is_root_line(self) -> bool:
-        """Whether the line at hand, of which at least one token is read, begins a `Root` block."""
+        """Whether the current line, of which at least one token is read, begins a `Root` block."""
         return self.raws[0] == "Root" and self.kinds[0] == NAME and self.level in (0, self._root_level)
 
-    # ---- tokens, each from its first character to the position behind it ----
+    # ---- tokens, each from its first character to the position after it ----
 
     def _other(self, start: i64, character: str) -> i64:
-        """Symbols, signs, braces and comments; a tab is passed over."""
+        """Symbols, signs, braces and comments; a tab is skipped."""
         if character == "\t":
             return start + 1
         text = self.text
@@ -305,12 +308,12 @@ class Lexer(StrangeCharacters):
             return self._quote_this(start)
         if (two := text[start : start + 2]) in _TWO or character in ":.<>+-*/%^":
             return self._add(OPERATOR, start, start + 2 if two in _TWO else start + 1)
-        if character == "!" or text.startswith("&&", start):  # the parser knows whether a condition is meant
+        if character == "!" or text.startswith("&&", start):  # the parser decides whether it is a condition
             return self._add(ERROR, start, start + (1 if character == "!" else 2))
         return self._nothing(start, character)
 
     def _after_operand(self, position: int) -> bool:
-        """Whether a `-` here subtracts: it does behind an operand on the same line (docs/language.md, NUMBER)."""
+        """Whether a `-` here subtracts: it does after an operand on the same line (docs/language.md, NUMBER)."""
         if not self.kinds or self.kinds[-1] not in (NAME, NUMBER, QUANTITY, STRING, CLOSE):
             return False
         return not has_line_end(self.text, self.starts[-1] + len(self.raws[-1]), position)
@@ -326,7 +329,7 @@ class Lexer(StrangeCharacters):
         return self._add(kind, start, end)
 
     def _string_end(self, start: i64, quote: str) -> i64:
-        """A string runs to its closing quote, however many lines; -1 where there is none, or none begins."""
+        """The end of a string, which may span lines; -1 if it has no closing quote, or no string begins here."""
         if start >= (self._no_double if quote == '"' else self._no_single):
             return -1
         text = self.text
@@ -346,12 +349,13 @@ class Lexer(StrangeCharacters):
         return end
 
     def _no_string(self, start: i64, quote: str) -> i64:
-        """A quote that closes the path of an include, or one that is not closed."""
+        """Handle a quote that closes the path of an include, or that is not closed."""
         return self._add(ERROR, start, start + 1) if self._closes_path(start) else self._unclosed_string(start, quote)
 
     def _closes_path(self, start: int) -> bool:
-        """Whether a quote at the end of its line closes what stands behind `include` without an opening one: no string
-        begins there, and the parser says what is missing."""
+        """Whether a quote at the end of its line closes the path after `include`, which lacks the opening one: no
+        string begins there, and the parser reports what is missing.
+        """
         if len(self.raws) < 2 or self.raws[0] != "include" or self.kinds[-1] == STRING:
             return False
         end = blanks_end(self.text, start + 1, self.size)
@@ -385,8 +389,9 @@ class Lexer(StrangeCharacters):
                 return
 
     def _quote_this(self, at: int) -> int:
-        """A comment sign, or a word before one, where no comment may begin: the word around it needs quotes; behind
-        what is no word a blank is missing."""
+        """Report a comment sign, or a word before one, where no comment may begin: the word around it needs quotes;
+        after anything but a word a blank is missing.
+        """
         text = self.text
         start, end = self._whole_word(at)
         sign = _COMMENT_SIGN.search(text, start)
@@ -401,7 +406,7 @@ class Lexer(StrangeCharacters):
         safe = in_value and text[end : end + 1] not in _QUOTES and self._takes_strings()
         fix = replace_fix("Put quotes around it", Span(start, end), quoted(text[start:end]), safe=safe)
         fixes = (fix,) if in_value or sign[0] == "/*" else (fix, insert)
-        if sign.end() == end:  # the comment was not even begun right behind the word
+        if sign.end() == end:  # a blank separates the comment from the word
             fixes = fixes[::-1]
         self.problems.append(
             Diagnostic("misplaced-comment", Span(start, end), f"{message}; put this in quotes", fixes=fixes)
@@ -409,7 +414,7 @@ class Lexer(StrangeCharacters):
         return self._add(NAME, start, end)
 
     def _comment(self, start: int) -> int:
-        """The end of the comment that begins here, or `start` where none may begin."""
+        """The end of the comment that begins here, or `start` if none may begin."""
         text = self.text
         if ord(text[start]) != HASH and text[start : start + 2] not in ("//", "/*"):
             return start
@@ -443,8 +448,8 @@ class Lexer(StrangeCharacters):
     # ---- brackets ----
 
     def _close_nothing(self, position: i64) -> i64:
-        """A `)` where no bracket is open."""
-        if self.ended_early:  # it is the one that was missed
+        """Handle a `)` without an open bracket."""
+        if self.ended_early:  # it closes brackets that ended early
             self.ended_early -= 1
         elif position > self._stray_until:
             self._report("syntax-error", position, position + 1, "unexpected `)`: no bracket is open")
@@ -452,7 +457,9 @@ class Lexer(StrangeCharacters):
         return position + 1
 
     def _continue(self, position: i64) -> i64:
-        """Behind a line end in brackets: the next line, or `position` where the line ends the brackets early."""
+        """After a line end in brackets: go to the next line, or return `position` if that line ends the
+        brackets early.
+        """
         text = self.text
         start, at = line_opening(text, self.ink, position)
         blanks = self._line_blanks = text[start:at]
@@ -476,21 +483,21 @@ class Lexer(StrangeCharacters):
         return at if self._brackets else position
 
     def _at_top_column(self, blanks: str) -> bool:
-        """Whether an item may begin there; behind `Root (` without `)` that is any column of its block to be."""
+        """Whether an item may begin at this indentation; after `Root (` without `)`, at any that its block may have."""
         level = self._root_level
         if blanks == "" or (0 < level < len(self.columns) and blanks == self.columns[level]):
             return True
         return self._is_root_line() and extends(blanks, self.columns[-1], ())
 
     def _close_lost(self, start: int, end: int) -> None:
-        """Close the brackets whose `)` is lost in a string or comment that runs to the end of its line."""
+        """Close the brackets whose `)` is inside a string or comment that runs to the end of its line."""
         lost = self.text.count(")", start, end) - self.text.count("(", start, end)
         for _ in range(min(lost, len(self._brackets))):
             self._brackets.pop()
             self._add(CLOSE, end, end)
 
     def _end_brackets(self, count: int, position: int, because: int | None) -> None:
-        """Close `count` brackets where no `)` is, so that the parser sees them closed; report the outermost."""
+        """Close `count` brackets without a `)`, so that the parser sees them closed; report the outermost."""
         opened = self._brackets[-count][0]
         related: tuple[Related, ...] = ()
         if because is not None:
@@ -508,7 +515,7 @@ class Lexer(StrangeCharacters):
         self.problems.append(Diagnostic("unclosed-bracket", span, message, related=related, fixes=(fix,)))
 
     def _missed_at(self, opened: int) -> int:
-        """Where a `)` was probably forgotten: at the end of a line behind which no attribute begins."""
+        """Where a `)` was probably forgotten: at the end of a line after which no attribute begins."""
         end = opened
         for index in range(bisect_left(self.starts, opened), len(self.starts)):
             start, raw = self.starts[index], self.raws[index]
@@ -532,14 +539,14 @@ def _start_of(piece: tuple[int, int, str]) -> int:
 
 
 def _fill(found: list[Token], text: str, end: int, start: int, comments: list[tuple[int, int]], told: int) -> int:
-    """Add what the lexer passed over between two tokens: blanks, comments and characters that begin nothing.
+    """Add what the lexer skipped between two tokens: blanks, comments and invalid characters.
 
     Args:
-        told: how many of the comments were added before.
+        told: how many comments were added before.
 
     Returns:
-        How many are now.  (A function inside of `tokens` would hold all of these, compiled, until Python looks for
-        garbage.)
+        How many are added now.  (Not nested in `tokens`: a compiled closure would retain all of these until garbage
+        collection.)
     """
     while told < len(comments) and comments[told][0] < start:
         comment, behind = comments[told]
@@ -565,6 +572,6 @@ _COMMENT_SIGN: Final = re.compile(r"#|//|/\*")
 _SILENT: Final = (OPEN, CLOSE, NEWLINE)
 _TWO: Final = frozenset(("==", "!=", "<=", ">=", "::"))
 _COMMENT_SIGNS: Final = ("#", "//", "/*")
-_MANY: Final = 20  # wrong units on one line: who has so many needs no more to see what is wrong
+_MANY: Final = 20  # wrong units reported on one line: more would not help
 _IN_BRACKETS: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "description", ",", "(", ")", "="))
-_QUOTES: Final = ('"', "'", "{", "}")  # behind a word they mean that more went wrong than a missing quote
+_QUOTES: Final = ('"', "'", "{", "}")  # after a word they indicate more than a missing quote

@@ -1,8 +1,8 @@
-"""The parser: text to tree, one function a production of the grammar (docs/grammar.md), named as it.
+"""The parser: text to tree, one function for each production of the grammar (docs/grammar.md), named after it.
 
-One invariant: it takes every string and never raises; what it cannot understand is one diagnostic, and the next
-attribute, line or item is read as if nothing had happened.  It knows the shape of things, not their meaning: `Retry`
-and a misspelt `Rety` parse alike.  Here are the file, its items in turn and Root; all else is in `grammar`.
+One invariant: it accepts every string and never raises; each mistake is one diagnostic, after which parsing resumes at
+the next attribute, line or item.  It knows syntax, not meaning: `Retry` and a misspelt `Rety` parse alike.  This module
+has the productions for the file, its sequence of items, and Root; all others are in `grammar`.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from btq_lang.util.text import Span, changed
 if TYPE_CHECKING:
     from btq_lang.lexer import State
 
-# What an item begins in: the state of the lexer, the levels of the open Roots, and whether there was a Root.
+# The state at the start of an item: that of the lexer, the levels of the open Roots, and whether there was a Root.
 Start: TypeAlias = "tuple[State, tuple[int, ...], bool]"
 
 
@@ -53,9 +53,9 @@ class Parsed:
     """One file, parsed.
 
     Attributes:
-        text: the file.
+        text: of the file.
         entries: its items in order; those in the block of a `Root` follow their Root.
-        starts: for each entry, what the parser stood in when it began; None where it cannot begin again there.
+        starts: for each entry, the parser's state at its start; None if parsing cannot restart there.
     """
 
     __slots__ = ("_diagnostics", "_tokens", "entries", "starts", "text")
@@ -69,8 +69,8 @@ class Parsed:
 
     @property
     def tokens(self) -> tuple[Token, ...]:
-        """All tokens, blanks and comments included: joined, their texts are the file.  Made when first asked for."""
-        from btq_lang.lexer import tokens  # a check does not ask
+        """All tokens, blanks and comments included: joined, their texts are the file.  Computed on first use."""
+        from btq_lang.lexer import tokens  # a check does not need it
 
         if self._tokens is None:
             self._tokens = tokens(self.text)
@@ -78,7 +78,7 @@ class Parsed:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What is wrong with the syntax; spans count from the start of the file."""
+        """The syntax diagnostics; spans count from the start of the file."""
         if self._diagnostics is None:
             self._diagnostics = tuple(
                 shifted(problem, entry.start) for entry in self.entries for problem in entry.diagnostics
@@ -100,10 +100,10 @@ def parse(text: str) -> Parsed:
         ['Retry', 'Dock']
 
     Args:
-        text: any string at all.
+        text: any string.
 
     Returns:
-        The tree of what could be understood, with a diagnostic for every mistake.
+        The tree of all valid parts, with a diagnostic for every mistake.
     """
     with NotCollecting():
         parser = Parser(text)
@@ -111,10 +111,10 @@ def parse(text: str) -> Parsed:
 
 
 def reparse(before: Parsed, text: str, change: Span | None = None) -> Parsed:
-    """Parse a file after an edit: the same as `parse(text)`, but what the edit does not touch is taken over.
+    """Parse a file after an edit: equal to `parse(text)`, but reuses what the edit does not touch.
 
-    From the last item before the change that the parser can begin at, it reads until it comes to an item behind the
-    change as it came to it before; items that it did not read anew are the same objects.
+    Parsing restarts at the last possible item before the change and stops at an item after it that the earlier parse
+    reached in the same state; all other items are the same objects.
     """
     change = change or changed(before.text, text)
     if change is None:
@@ -140,8 +140,9 @@ def reparse(before: Parsed, text: str, change: Span | None = None) -> Parsed:
 
 
 def _first_touched(before: Parsed, change: int) -> int:
-    """The first entry that may be another after a change there: an item's first line says where the one before it
-    ends, so a change in that line touches both."""
+    """The first entry that a change may affect: an item's first line determines where the one before it ends, so a
+    change in that line affects both.
+    """
     first = bisect_right(before.entries, change, key=lambda entry: entry.start) - 1
     if first > 0:
         entry = before.entries[first]
@@ -157,7 +158,7 @@ class Parser(ItemParser):
 
     Attributes:
         begun: for each entry, the state that it began in.
-        has_met: it stands where an earlier parse stood in the same state, and need read no further.
+        has_met: it has reached a place and state of an earlier parse, and can stop.
     """
 
     def __init__(self, text: str) -> None:
@@ -166,8 +167,8 @@ class Parser(ItemParser):
         self.begun: list[Start | None] = []
         self.has_met = False
         self.has_root = False
-        self.roots: list[int] = []  # the levels of the Roots whose blocks are open, for more than one is a mistake
-        self.stray_level = -1  # the level of lines indented for no reason, reported once
+        self.roots: list[int] = []  # the levels of the Roots whose blocks are open; more than one is a mistake
+        self.stray_level = -1  # the level of wrongly indented lines, reported once
 
     # ---- file and items ----
 
@@ -175,7 +176,7 @@ class Parser(ItemParser):
         """File = { Item }
 
         Args:
-            meeting: where an earlier parse stood, by the start of the line, in which state.
+            meeting: the states of an earlier parse, by the start of the line.
         """
         self.more = self.lexer.open_line()
         while self.more:
@@ -187,22 +188,23 @@ class Parser(ItemParser):
                 return tuple(self.entries)
             self.begun.append(state)
             self.item(self.roots[-1] + 1 if self.roots else 0, bool(self.roots))
-        if self.problems or self.lexer.problems:  # behind the last item, or in a file without any
+        if self.problems or self.lexer.problems:  # after the last item, or in a file without any
             self.base = 0
             self.begun.append(None)
             self.entry(Skipped(len(self.text), len(self.text)), False)
         return tuple(self.entries)
 
     def state(self) -> Start | None:
-        """What the next item depends on besides its text; None where that is more than can be said in short: after
-        mistakes whose traces go on, and where the rest of the file was searched for the end of something."""
+        """What the next item depends on besides its text; None if that is not a small state: after mistakes with
+        lasting effects, and if the rest of the file was searched for the end of something.
+        """
         if self.problems or self.stray_level >= 0 or self.inside_out <= len(self.text) or self.is_in_wake():
             return None
         lexer = self.lexer.state()
         return None if lexer is None else (lexer, tuple(self.roots), self.has_root)
 
     def begin_at(self, start: int, state: Start | None) -> None:
-        """Go on from the start of a line, as a parser does that has come there in this state."""
+        """Continue from the start of a line in this state."""
         assert state is not None, "a parse begins again only where that can be said"
         lexer, roots, self.has_root = state
         self.roots = list(roots)
@@ -250,7 +252,7 @@ class Parser(ItemParser):
         self.entry(item, in_root)
 
     def item_word(self) -> str:
-        """The word that begins the item; a misspelt one is reported and mostly read as the word that was meant."""
+        """The word that begins the item; a misspelt one is reported, and usually read as the word that was meant."""
         if self.kind != NAME:
             return ""
         if self.raw in ITEM_WORDS:
@@ -270,14 +272,14 @@ class Parser(ItemParser):
         return read_as(self.raw)
 
     def begins_item(self) -> bool:
-        """Whether the open line looks like an item, wherever it stands; a node may look like a model."""
+        """Whether the open line looks like an item, wherever it is; a node may look like a model."""
         if not self.more:
             return False
         word = self.lexer.first_word()
         return word in ITEM_WORDS and word not in CATEGORIES and word != "xml"
 
     def entry(self, item: Item, in_root: bool) -> None:
-        """File the item with the problems found before the line now open; they count from the item's start."""
+        """Add the item, with the problems found before the open line; their offsets count from the item's start."""
         found = self.problems + self.lexer.problems
         self.problems = []
         self.lexer.problems = []
@@ -310,7 +312,7 @@ class Parser(ItemParser):
         self.roots.append(level)
 
     def skip_root_key(self) -> None:
-        """Report the attribute of XML before the name of the main tree, and pass over it: `Root ID = Main`."""
+        """Report and skip the XML attribute before the name of the main tree: `Root ID = Main`."""
         value = self.index + 2
         if not self.at_key() or self.kinds[value] not in (NAME, STRING):
             return
@@ -320,7 +322,7 @@ class Parser(ItemParser):
         self.go_to(value)
 
     def skipped(self, level: int) -> Skipped:
-        """Lines that begin no item: the first is reported, all of them and their blocks are passed over."""
+        """Skip lines that do not begin an item, with their blocks; report the first."""
         start = self.start()
         notes: tuple[str, ...] = ()
         if self.at_word("from") and "import" in self.raws[self.index + 2 : self.index + 3]:
@@ -351,7 +353,7 @@ class Parser(ItemParser):
         return Skipped(start, end)
 
     def other_item(self, meant: str) -> Fix:
-        """The fix for an item as another language writes it: `import stations`, `def main():`."""
+        """The fix for an item in the syntax of another language: `import stations`, `def main():`."""
         at = self.here()
         rest = Span(self.starts[self.index + 1], line_end(self.text, at.start))
         title = f"Replace `{self.raw}` with `{meant}`"
@@ -364,7 +366,7 @@ class Parser(ItemParser):
         return replace_fix(title, at, meant)
 
     def ends_skipping(self, level: int) -> bool:
-        """Whether the open line is an item again, or what is meant for one, or stands further left."""
+        """Whether the open line is an item, is probably meant as one, or has less indentation."""
         if self.lexer.level > level:
             return self.begins_item()
         word = self.lexer.first_word()
@@ -373,8 +375,8 @@ class Parser(ItemParser):
         return not word.startswith("<") and bool(item_word_meant(word))
 
 
-_ALONE: Final = ("BehaviorTree", "Root", "TreeNodesModel")  # items that may go without a name
-_OTHER_ITEMS: Final = {  # what people write for them, in small letters
+_ALONE: Final = ("BehaviorTree", "Root", "TreeNodesModel")  # items whose name is optional
+_OTHER_ITEMS: Final = {  # words of other languages, in lower case
     **dict.fromkeys(("import", "require", "use"), "include"),
     **dict.fromkeys(("requirement", "req", "qualityrequirement"), "QualityReq"),
     **dict.fromkeys(("mission", "tree", "behaviourtree", "bt", "def", "class"), "BehaviorTree"),
@@ -385,10 +387,10 @@ _PYTHON_HEAD: Final = re.compile(r"([^\W\d]\w*)[ \t]*(?:\([^()\r\n]*\))?[ \t]*:(
 
 
 def _root_causes(found: list[Diagnostic], inside_out: int) -> tuple[Diagnostic, ...]:
-    """Where a quote is missing, and what follows makes no sense, the string that lacks it is the one mistake.
+    """If a quote is missing and makes what follows invalid, only the string that lacks it is reported.
 
     Args:
-        inside_out: where the parser has noticed that.
+        inside_out: where the parser noticed that.
     """
     kept: list[Diagnostic] = []
     for index, problem in enumerate(found):
