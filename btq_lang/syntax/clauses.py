@@ -1,6 +1,6 @@
 """The clauses of requirements, their subjects and their conditions.
 
-One invariant: as in `tree`, whose classes these are part of: offsets count from the start of the item.
+One invariant: as in `tree`, to which these classes belong, offsets count from the start of the item.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from btq_lang.util.text import Span
 
 
 class Argument(Record):
-    """`limit = 0.1 m/s` behind a parameterised requirement."""
+    """`limit = 0.1 m/s` after a parameterised requirement."""
 
     name: Word
     value: Bounded | None
@@ -43,7 +43,7 @@ class Path(Record):
 
 
 class Amount(Record):
-    """A value of a bound: a quantity, a number, a parameter or a signal; `negative` where a sign stands apart."""
+    """A value of a bound: a quantity, a number, a parameter or a signal; `negative`: with a separate sign."""
 
     word: Word
     negative: bool = False
@@ -57,7 +57,7 @@ class Case(Record):
 
 
 class Table(Record):
-    """A value for each context.  otherwise: the value behind `else`."""
+    """A value for each context. otherwise: the value after `else`."""
 
     cases: tuple[Case, ...]
     otherwise: Amount | None = None
@@ -122,11 +122,11 @@ Subject: TypeAlias = Path | Mission | Every | Between | Sum
 
 
 class Claim(Record):
-    """What a requirement demands: a subject (None: the node it is attached to), a verb and what belongs to the verb.
+    """What a requirement demands: a subject (None: the node it is attached to), a verb and its operands.
 
     Attributes:
         verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends or follows.
-        bound: of takes, uses, tries, runs; of `within d` and `runs every d` as `<= d`.
+        bound: of takes, uses, tries, runs; for `within d` and `runs every d`, `<= d`.
         condition: of needs, keeps, never, leaves.
         resource: of uses: the signal.
         per: of tries: the path; of runs: the quantity.
@@ -156,7 +156,7 @@ class Scope(Record):
 
 
 class Odds(Record):
-    """`in at least 98 % of runs`, `with probability >= 98 %`.  experiments: None where not said."""
+    """`in at least 98 % of runs`, `with probability >= 98 %`. experiments: None if omitted."""
 
     start: int
     end: int
@@ -191,7 +191,7 @@ class OnViolation(Record):
 
 
 class Goal(Record):
-    """`goal 15 Wh`: what would be better than the bound."""
+    """`goal 15 Wh`: a value better than the bound."""
 
     start: int
     end: int

@@ -1,4 +1,4 @@
-"""Indentation: the blocks that are open around a line, and what a line is read as whose indentation fits none of them.
+"""Indentation: the open blocks around a line, and the level of lines whose indentation fits none of them.
 
 One invariant: each line has a level, whatever its blanks; one that fits no block is reported once, and its block has
 that column from then on.
@@ -17,13 +17,13 @@ class Indentation:
     """A line of a text, and the blocks around it.
 
     Attributes:
-        position: where the next thing is read.
+        position: where the next token is read.
         level: how many blocks are open around the line.
         line_start: where the line begins, its blanks included.
         blanks: the blanks it begins with.
         columns: the blanks of each open block.
-        adopted: other blanks were taken for those of an open block.
-        problems: what was wrong so far.
+        adopted: other blanks were accepted as those of an open block.
+        problems: diagnostics so far.
     """
 
     def __init__(self, text: str) -> None:
@@ -36,7 +36,7 @@ class Indentation:
         self.columns: list[str] = [""]
         self.adopted = False
         self.problems: list[Diagnostic] = []
-        self._aliases: list[tuple[str, ...]] = [()]  # other blanks taken for the same block, each reported once
+        self._aliases: list[tuple[str, ...]] = [()]  # other blanks accepted for the same block, each reported once
         self._root_level = -1  # the level of an open Root block's items
         self._cut_until = -1  # the end of the last line that ended its brackets early
 
@@ -45,7 +45,7 @@ class Indentation:
         columns, aliases = self.columns, self._aliases
         level = len(columns) - 1
         if not self.adopted and len(blanks) > len(columns[level]):
-            level = -1  # as below, for no column is longer
+            level = -1  # as below: no column is longer
         while level >= 0 and blanks != columns[level] and blanks not in aliases[level]:
             level -= 1
         if level < 0:
@@ -57,7 +57,7 @@ class Indentation:
             level = self._adopting_level(blanks)
             self.adopted = True
             if self._cut_until < 0 or self.text[self._cut_until : self.line_start].strip():
-                self._report_indentation(blanks, columns[level])  # else it is what is left of the brackets
+                self._report_indentation(blanks, columns[level])  # else it is the rest of the brackets
             if level == 0:
                 aliases[0] = (*aliases[0], blanks)[-_ALIASES:]
             else:
@@ -67,14 +67,15 @@ class Indentation:
             columns.pop()
             aliases.pop()
         if self.adopted and level <= max(self._root_level, 0) and not any(aliases):
-            self.adopted = False  # the blocks in which that was are closed
+            self.adopted = False  # the blocks concerned are closed
         self.level = level
         if level < self._root_level:
             self._root_level = -1
 
     def _adopting_level(self, blanks: str) -> int:
-        """The block that a line belongs to whose indentation fits none: for an item that of the items, else the nearer
-        of those between which it stands; of tabs in a file of blanks, each counts as a level."""
+        """The level of a line whose indentation fits no block: an item's is that of the items, any other's that of the
+        nearer of the two blocks around it; in a file of blanks, each tab counts as a level.
+        """
         columns = self.columns
         items = max(0, min(self._root_level, len(columns) - 1))  # a Root may have no block
         if TOP_LINE.match(self.text, self.position):
@@ -99,7 +100,7 @@ class Indentation:
 
 
 def extends(blanks: str, outer: str, aliases: tuple[str, ...]) -> bool:
-    """Whether a line with such blanks is in the block of a line with the outer ones, or with others taken for them."""
+    """Whether a line with these blanks is in the block of a line with the outer ones or an alias of them."""
     if len(blanks) > len(outer) and blanks.startswith(outer):
         return True
     return any(len(blanks) > len(column) and blanks.startswith(column) for column in aliases)
@@ -126,4 +127,4 @@ TOP_LINE: Final = re.compile(
           (?! [ \t]* = )
     """
 )
-_ALIASES: Final = 16  # columns taken for one block; more of them would only cost time
+_ALIASES: Final = 16  # columns accepted for one block; more would only cost time

@@ -1,7 +1,7 @@
-"""What stands at nodes about quality: satisfices, satisfies and tags, and what they list.
+"""The clauses of nodes: satisfices, satisfies and tags, and what they list.
 
-One invariant: as in `words`, they are plain classes without decorators, so that they may be compiled.  What a
-requirement demands is in `clauses`.
+One invariant: as in `words`, they are plain classes without decorators, so that they can be compiled.  The clauses of
+requirements are in `clauses`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class _Part:
-    """What all of them do alike: they are equal if their fields are."""
+    """The base of all: equal if all fields are."""
 
     __slots__ = ()
     __match_args__: ClassVar[tuple[str, ...]] = ()
@@ -38,7 +38,7 @@ class _Part:
 
 
 class QualityPath(_Part):
-    """`performance-efficiency.time-behaviour`, or as the paper prints it: `performance <time-behavior>`."""
+    """`performance-efficiency.time-behaviour`, or in the paper's form: `performance <time-behavior>`."""
 
     __slots__ = ("names",)
     __match_args__: ClassVar = ("names",)
@@ -75,7 +75,7 @@ class Satisfices(_Part):
 
 
 class ReqRef(_Part):
-    """A requirement named, not defined: `rq1`, `slow(limit = 0.1 m/s)`."""
+    """A reference to a requirement: `rq1`, `slow(limit = 0.1 m/s)`."""
 
     __slots__ = ("arguments", "name")
     __match_args__: ClassVar = ("name", "arguments")
@@ -110,10 +110,10 @@ class Tags(_Part):
 
 
 class Requirement(_Part):
-    """A requirement, defined in place, or at file level, where it is an item.
+    """A requirement, defined in place or, as an item, at file level.
 
     Attributes:
-        name: its ID; None where it is missing.
+        name: its ID; None if it is missing.
         classic: written `QualityReq ID = … description = …`.
         text: its title, or the classic description.
     """

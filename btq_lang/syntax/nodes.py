@@ -1,6 +1,6 @@
-"""Nodes, of which a tree has thousands, and the XML that stands among them as it is.
+"""Nodes, of which a tree has thousands, and verbatim XML among them.
 
-One invariant: a node is a plain class, as words are, so that it may be compiled.
+One invariant: a node is a plain class, as words are, so that it can be compiled.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ class Node:
 
     Attributes:
         start, end: its own line (or lines, when brackets run over several), without children.
-        category: `Action`, `Condition`, `Control`, `Decorator`, `SubTree` where written in front of the kind.
+        category: `Action`, `Condition`, `Control`, `Decorator`, `SubTree` if written before the kind.
         kind: a symbol or the node's ID; None in `SubTree (ID = PickPlace)`, where the ID is an attribute.
-        label: the instance name where written behind the kind; `name` says it wherever it stands.
+        label: the instance name if written after the kind; `name` has it in either form.
         attributes: the pairs in brackets, in order.
         clauses: satisfices, satisfies and tags, in brackets, on the line and in the block, in order.
         children: nodes and verbatim XML, in order.
@@ -50,7 +50,7 @@ class Node:
         self.kind: Final = kind
         self.label: Final = label
         self.attributes: Final = attributes
-        self.clauses = clauses  # this and the next: set once more, by the parser, when the node's block ends
+        self.clauses = clauses  # this and the next: set again by the parser when the node's block ends
         self.children = children
 
     @property
@@ -60,7 +60,7 @@ class Node:
 
     @property
     def block_end(self) -> i64:
-        """Where the last line of its block ends."""
+        """The end of the last line of its block."""
         end = 0
         last: Node | Verbatim | None = self
         while isinstance(last, Node):
@@ -75,7 +75,7 @@ class Node:
 
     @property
     def head(self) -> Word:
-        """The word to point at: the kind, the ID in brackets, or else the category."""
+        """The word for diagnostics: the kind, the ID in brackets, or else the category."""
         head = self.id or self.category
         assert head is not None, "a node has a kind or a category"
         return head
@@ -109,7 +109,7 @@ class Node:
                 stack += [child for child in reversed(node.children) if isinstance(child, Node)]
 
     def __eq__(self, other: object) -> bool:
-        """Equal in everything, compared without recursion: trees are deep."""
+        """Whether all fields are equal, compared without recursion: trees are deep."""
         pairs: list[tuple[object, object]] = [(self, other)]
         while pairs:
             mine, others = pairs.pop()
@@ -133,7 +133,7 @@ class Node:
 
 
 class Verbatim(Record):
-    """`xml "<element/>"`: one XML element as it is."""
+    """`xml "<element/>"`: one verbatim XML element."""
 
     start: int
     end: int

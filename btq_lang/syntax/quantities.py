@@ -1,4 +1,4 @@
-"""Quantities: a number and its unit, as a file writes them."""
+"""Quantities in a file: a number and its unit."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _QUANTITY = re.compile(r"(-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)[ \t]*(\S+)"
 
 
 def parse_quantity(text: str) -> tuple[float, Unit, str] | None:
-    """The number, the unit and the unit's text of a quantity such as `30 s`; None where it is none."""
+    """The number, the unit and the unit's text of a quantity such as `30 s`; None if it is not one."""
     number, _, word = text.partition(" ")
     if not _is_usual(number, word):
         match = _QUANTITY.fullmatch(text)
@@ -22,7 +22,8 @@ def parse_quantity(text: str) -> tuple[float, Unit, str] | None:
 
 
 def _is_usual(number: str, word: str) -> bool:
-    """Digits, perhaps a point among them, a blank and a word: nearly all are written so, and to compile the pattern
-    takes as long as to parse four nodes."""
+    """Whether it is digits, perhaps with a point, a blank and a word, as nearly all are: compiling the pattern takes as
+    long as parsing four nodes.
+    """
     digits = number.removeprefix("-").split(".", 1)
     return number.isascii() and all(part.isdecimal() for part in digits) and word.split() == [word]

@@ -1,7 +1,7 @@
-"""Scanning: where the word, string, number or unit that begins at a place ends.
+"""Scanning: the end of the word, string, number or unit that begins at an offset.
 
-One invariant: a function looks only at the text from where it starts, so all who read words agree on them.  It knows
-no lines, no brackets and no grammar, and reports nothing.
+One invariant: a function depends only on the text from its start on, so all callers agree on words.  Lines, brackets
+and grammar are unknown here, and nothing is reported.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from btq_lang.syntax.tokens import ERROR, NUMBER, QUANTITY, SYMBOLS
 if TYPE_CHECKING:
     from mypy_extensions import i64
 
-# Characters as numbers: `ord(text[at])` compared with these costs the compiled parser nothing, a string a call.
+# Characters as numbers: comparing `ord(text[at])` with these is free in the compiled parser; comparing strings is a
+# call.
 TAB: Final = 0x09
 LINE_FEED: Final = 0x0A
 RETURN: Final = 0x0D
@@ -42,17 +43,18 @@ SMALL_A: Final = 0x61
 SMALL_Z: Final = 0x7A
 LEFT_BRACE: Final = 0x7B
 RIGHT_BRACE: Final = 0x7D
-ASCII: Final = 0x80  # the first that is none
+ASCII: Final = 0x80  # the first character that is not ASCII
 
 
 def word_map(text: str) -> str:
-    """A text as long with a NUL for each character but letters, digits and `_` of ASCII, which are as they were: where
-    a word ends is found there in one step.  It takes a thousandth of a second for a million characters."""
+    """The text with a NUL for each character but ASCII letters, digits and `_`: the end of a word is found there in one
+    step.  It takes 1 ms for a million characters.
+    """
     return text.encode("ascii", "replace").translate(_WORDS).decode("ascii")
 
 
 def ink_map(text: str) -> str:
-    """A text as long with a NUL for each blank and tab, and `x` for all else: where blanks end."""
+    """The text with a NUL for each blank and tab, and `x` for all else, to find where blanks end."""
     return text.encode("ascii", "replace").translate(_INK).decode("ascii")
 
 
@@ -87,21 +89,21 @@ def is_name(text: str) -> bool:
 
 
 def begins_name(code: i64) -> bool:
-    """A letter or `_`"""
+    """Whether it is a letter or `_`."""
     if code < ASCII:
         return 0x61 <= code <= 0x7A or 0x41 <= code <= 0x5A or code == UNDERSCORE
     return chr(code).isalpha()
 
 
 def goes_on(code: i64) -> bool:
-    """A letter, a digit or `_`, as `\\w` has it."""
+    """Whether it is a letter, a digit or `_`, as in `\\w`."""
     if code < ASCII:
         return 0x61 <= code <= 0x7A or 0x30 <= code <= 0x39 or 0x41 <= code <= 0x5A or code == UNDERSCORE
     return chr(code).isalnum()
 
 
 def blanks_end(text: str, start: i64, size: i64) -> i64:
-    """Behind blanks and tabs."""
+    """The end of blanks and tabs."""
     while start < size:
         code: i64 = ord(text[start])
         if code != SPACE and code != TAB:
@@ -111,8 +113,8 @@ def blanks_end(text: str, start: i64, size: i64) -> i64:
 
 
 def line_opening(text: str, ink: str, start: i64) -> tuple[i64, i64]:
-    """Over blank lines: where the line begins whose first word or comment comes next (`start`, if it is the same
-    line), and where its blanks end.
+    """Skip blank lines; returns where the line of the next word or comment begins (`start`, if it is the same line),
+    and where its blanks end.
 
     Args:
         ink: the `ink_map` of the text.
@@ -128,9 +130,9 @@ def line_opening(text: str, ink: str, start: i64) -> tuple[i64, i64]:
 
 
 def line_end(text: str, start: i64) -> i64:
-    """Where the line of text ends."""
+    """The end of the physical line."""
     size: i64 = len(text)
-    near: i64 = text.find("\n", start, start + _USUAL_LINE)  # no further: the next may be anywhere
+    near: i64 = text.find("\n", start, start + _USUAL_LINE)  # bounded: the next one may be far away
     if near >= 0 and text.find("\r", start, near) < 0:
         return near
     while start < size:
@@ -142,17 +144,17 @@ def line_end(text: str, start: i64) -> i64:
 
 
 def line_start(text: str, lower: i64, position: i64) -> i64:
-    """Where the line of text begins, at least `lower`."""
+    """The start of the physical line, at least `lower`."""
     return max(text.rfind("\n", lower, position) + 1, text.rfind("\r", lower, position) + 1, lower)
 
 
 def path_end(text: str, start: i64) -> i64:
-    """Behind what somebody probably wrote as a path: up to a blank, a bracket or a quote."""
-    return _PATH.match(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
+    """The end of what is probably meant as a path: up to a blank, a bracket or a quote."""
+    return _PATH.match(text, start).end()  # type: ignore[union-attr]  # it matches at least the empty string
 
 
 def symbol_end(text: str, start: i64) -> i64:
-    """Behind the longest symbol that begins at `start`; `start` where none does."""
+    """The end of the longest symbol that begins at `start`; `start` if none does."""
     for symbol in _BY_FIRST.get(text[start], ()):
         if text.startswith(symbol, start):
             return start + len(symbol)
@@ -160,7 +162,7 @@ def symbol_end(text: str, start: i64) -> i64:
 
 
 def string_end(text: str, start: i64, quote: str) -> i64:
-    """Behind the closing quote of the string whose text begins at `start`; -1 where there is none."""
+    """The end of the string whose text begins at `start`, after its closing quote; -1 if it has none."""
     end = text.find(quote, start)
     while end >= 0:
         backslash = text.find("\\", start, end)
@@ -173,7 +175,7 @@ def string_end(text: str, start: i64, quote: str) -> i64:
 
 
 def braced_end(text: str, start: i64) -> i64:
-    """Behind the BRACED that begins at `start`; `start` where none does."""
+    """The end of the BRACED that begins at `start`; `start` if none does."""
     size: i64 = len(text)
     if start == size or ord(text[start]) != LEFT_BRACE:
         return start
@@ -189,11 +191,11 @@ def braced_end(text: str, start: i64) -> i64:
 
 
 def number_at(text: str, start: i64) -> tuple[i64, i64]:
-    """What begins at `start`, a digit or a `-` and a digit, and where it ends.
+    """The kind and end of the number or quantity that begins at `start` with a digit, or a `-` and a digit.
 
     Returns:
-        NUMBER or QUANTITY and the end, or ERROR and the end of the number where a word that is no unit is glued to it
-        or units follow it that make none together.
+        NUMBER or QUANTITY and the end, or ERROR and the end of the number if a word other than a unit directly follows
+        it, or units that do not combine to one.
     """
     size: i64 = len(text)
     end = number_end(text, start)
@@ -212,7 +214,7 @@ def number_at(text: str, start: i64) -> tuple[i64, i64]:
 
 
 def number_end(text: str, start: i64) -> i64:
-    """Behind the number that begins at `start`, a digit or a `-` and a digit; its unit does not count."""
+    """The end of the number, without unit, that begins at `start` with a digit, or a `-` and a digit."""
     size: i64 = len(text)
     end = _digits_end(text, start + 1)
     if end < size and ord(text[end]) == DOT:
@@ -233,7 +235,7 @@ def _digits_end(text: str, start: i64) -> i64:
 
 
 def unit_at(text: str, start: i64) -> i64:
-    """The end of the UNIT that begins at `start`, or `start` where none does."""
+    """The end of the UNIT that begins at `start`; `start` if none does."""
     word, end = _factor(text, start)
     if word == "1":
         if not text.startswith("/", end):
@@ -249,9 +251,9 @@ def unit_at(text: str, start: i64) -> i64:
 
 
 def _factor(text: str, start: i64) -> tuple[str, i64]:
-    """The word of a unit's factor, empty where there is none, and the end of the factor: behind its exponent.
+    """The word of a unit's factor, empty if there is none, and the end of the factor, after its exponent.
 
-    It is a whole word: in `6 m-base` and `6 m!` there is none.
+    It is a whole word: `6 m-base` and `6 m!` have none.
     """
     size: i64 = len(text)
     end = start
@@ -286,7 +288,7 @@ def is_unit(word: str) -> bool:
 
 
 def unit_run(text: str, start: i64) -> i64:
-    """The end of what somebody probably wrote as a unit, right or wrong."""
+    """The end of what is probably meant as a unit, valid or not."""
     end = start
     while end < len(text):
         if text[end] in "*/":
@@ -303,7 +305,7 @@ def unit_run(text: str, start: i64) -> i64:
 
 _WORDS: Final = bytes(code if code < ASCII and goes_on(code) else 0 for code in range(256))
 _INK: Final = bytes(0 if code in (SPACE, TAB) else ord("x") for code in range(256))
-_USUAL_LINE: Final = 200  # characters that a comment seldom has
+_USUAL_LINE: Final = 200  # characters; comments are seldom longer
 _PATH: Final = re.compile(r"[^\s()\"']*")
 _BY_FIRST: Final = {
     first: tuple(sorted((symbol for symbol in SYMBOLS if symbol[0] == first), key=len, reverse=True))

@@ -1,6 +1,6 @@
-"""Characters that begin no token: what they are probably meant for is reported, and mostly they are left out.
+"""Invalid characters: reports what they are probably meant to be, and usually skips them.
 
-One invariant: reading goes on behind each of them, whatever it is.
+One invariant: lexing continues after each of them.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 
 class StrangeCharacters(Indentation):
-    """The tokens of a logical line so far, to which characters are added or not that begin none.
+    """The tokens of a logical line so far, with the handling of invalid characters.
 
     Attributes:
-        ink: the map of the text that says where blanks end (`ink_map`).
-        kinds, starts, raws: the tokens; when the line is read, the last one is always a NEWLINE.
+        ink: the map of the text that shows where blanks end (`ink_map`).
+        kinds, starts, raws: the tokens; after the line is scanned, the last is always a NEWLINE.
     """
 
     def __init__(self, text: str) -> None:
@@ -33,12 +33,12 @@ class StrangeCharacters(Indentation):
         self.kinds: list[int] = []
         self.starts: list[int] = []
         self.raws: list[str] = []
-        self._brackets: list[tuple[int, str]] = []  # where each was opened, and the blanks of that line
-        self._block_ends: set[int] = set()  # where braces close blocks whose opening ones are reported
-        self._strange = False  # a character that begins nothing was reported on this line
+        self._brackets: list[tuple[int, str]] = []  # where each was opened, and that line's blanks
+        self._block_ends: set[int] = set()  # closing braces of blocks whose opening ones were reported
+        self._strange = False  # an invalid character was reported on this line
 
     def _nothing(self, start: i64, character: str) -> i64:
-        """What begins nothing, reported once a line; mostly it is left out."""
+        """Handle an invalid character: report once a line, and usually skip it."""
         text = self.text
         if character == "]" and self._brackets and text.find("[", self._brackets[-1][0], start) < 0:
             return self._close_square(start)
@@ -64,7 +64,7 @@ class StrangeCharacters(Indentation):
         if character == "{" or character == "}":
             return self._half_braced(start, character)
         if self.kinds and self.kinds[-1] == STRING and has_line_end(text, self.starts[-1], start):
-            return self._add(ERROR, start, start + 1)  # the parser sees that a quote was lost
+            return self._add(ERROR, start, start + 1)  # shows the parser that a quote is missing
         end = start + 1
         while end < self.size and text[end] == character:
             end += 1
@@ -74,13 +74,13 @@ class StrangeCharacters(Indentation):
         return end
 
     def _separates(self, start: int) -> bool:
-        """Whether a sign here is between two attributes, as `,` may be."""
+        """Whether a sign here separates two attributes, as `,` may."""
         if not self._brackets or self._strange or self.raws[-1] in ("=", ",", "("):
             return False
         return _KEY.match(self.text, start + 1) is not None
 
     def _shell_entry(self, start: int, end: int) -> int:
-        """A blackboard entry as shells write a variable: `$key` or `${key}`."""
+        """Handle a blackboard entry in the syntax of shell variables: `$key` or `${key}`."""
         written = f"{{{self.text[start:end].strip('${}')}}}"
         fix = replace_fix(f"Write `{written}`", Span(start, end), written)
         self._strange = True
@@ -89,10 +89,10 @@ class StrangeCharacters(Indentation):
         return self._add(NAME, start, end)
 
     def _block_sign(self, start: int, character: str) -> int:
-        """The brace or bracket of somebody's block, at the end of a line or alone on it; both are one mistake.
+        """Handle the brace or bracket of a block, at the end of a line or alone on it; the pair is one mistake.
 
         Returns:
-            Where it ends, or `start` where it is none.
+            Where it ends, or `start` if it is none.
         """
         behind = blanks_end(self.text, start + 1, self.size)
         ends_line = behind == self.size or self.text[behind] in "\r\n"
@@ -119,8 +119,9 @@ class StrangeCharacters(Indentation):
         return start + 1
 
     def _block_end(self, start: int, sign: str) -> int:
-        """Where the sign that closes a block is alone on the first line that is no deeper than the one at hand; else
-        -1."""
+        """The place of the sign that closes a block, if it is alone on the first line not deeper than the current one;
+        else -1.
+        """
         text = self.text
         at = line_end(text, start)
         while at < self.size:
@@ -133,7 +134,7 @@ class StrangeCharacters(Indentation):
         return -1
 
     def _half_braced(self, start: int, character: str) -> int:
-        """A brace without the other one: `{key` or `key}`; the key is left as a word."""
+        """Handle an unpaired brace: `{key` or `key}`; the key remains as a word."""
         if character == "{" and (twice := _TWICE_BRACED.match(self.text, start)):
             fix = replace_fix(f"Write `{twice[1]}`", Span(start, twice.end()), twice[1], safe=True)
             message = "a blackboard entry has one pair of braces"
@@ -167,9 +168,9 @@ class StrangeCharacters(Indentation):
         return self._add(CLOSE, position, position + 1)
 
     def _quote_value(self, at: int) -> int:
-        """A character that begins nothing, inside a value: `a = 1;2`."""
+        """Report an invalid character inside a value: `a = 1;2`."""
         start, end = self._whole_word(at)
-        self._strange = True  # more of it may follow
+        self._strange = True  # more of the value may follow
         fixes: tuple[Fix, ...] = ()
         if _VALUE_END.match(self.text, end):
             fixes = (value_meant(self.text, start, end, safe=self._takes_strings()),)
@@ -177,11 +178,11 @@ class StrangeCharacters(Indentation):
         return self._add(NAME, start, end)
 
     def _takes_strings(self) -> bool:
-        """Whether a value may surely be a string: those of a requirement's parameters may not."""
+        """Whether values may be strings here: those of a requirement's parameters may not."""
         return not _WITH_PARAMETERS.intersection(self.raws)
 
     def _in_value(self, at: int) -> bool:
-        """Whether what begins at `at` stands behind `key =`, or without a blank behind a word that does."""
+        """Whether `at` directly follows `key =`, or a word that follows it."""
         last = len(self.raws) - 1
         while last > 0 and self._joins(last, at):
             at = self.starts[last]
@@ -189,7 +190,7 @@ class StrangeCharacters(Indentation):
         return last >= 0 and self.raws[last] == "="
 
     def _whole_word(self, at: int) -> tuple[int, int]:
-        """Where the word around `at` begins and ends; the tokens already made of it are taken back."""
+        """The range of the word around `at`; removes the tokens already made of it."""
         word = _WHOLE_WORD.match(self.text, at)
         assert word is not None, "a word or a sign begins here"
         while self.raws and self._joins(len(self.raws) - 1, at):
@@ -199,7 +200,7 @@ class StrangeCharacters(Indentation):
         return at, word.end()
 
     def _joins(self, index: int, at: int) -> bool:
-        """Whether a token makes one word with what begins at `at`: there is no blank between, and it is no `=`."""
+        """Whether a token forms one word with what begins at `at`: without a blank between them, and not `=`."""
         kind, raw = self.kinds[index], self.raws[index]
         if kind not in (NAME, NUMBER, QUANTITY, OPERATOR) or raw == "=" or raw == ",":
             return False
@@ -213,7 +214,7 @@ class StrangeCharacters(Indentation):
 
 
 def has_line_end(text: str, start: int, end: int) -> bool:
-    """Whether a piece of a text runs over several lines."""
+    """Whether a piece of a text contains a line end."""
     return text.find("\n", start, end) >= 0 or text.find("\r", start, end) >= 0
 
 

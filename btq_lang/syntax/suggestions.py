@@ -1,6 +1,6 @@
-"""What was probably meant by a string, value, unit or character that is wrong, as diagnostics and fixes.
+"""Diagnostics and fixes for wrong strings, values, units and characters: what was probably meant.
 
-One invariant: it looks at the text around a place and nothing else: who asks knows what is wrong there.
+One invariant: it looks only at the text around a place; the caller knows what is wrong there.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from btq_lang.util.text import Span
 
 
 def close_string(text: str, start: int) -> Fix:
-    """Close the string that begins at `start` on its line, before what is probably no part of it."""
+    """Close the string that begins at `start` on its line, before what is probably not part of it."""
     end = line_end(text, start)
     said = start + 1 + len(text[start + 1 : end].rstrip(" \t,"))
     depth = 0
@@ -31,10 +31,10 @@ def close_string(text: str, start: int) -> Fix:
 
 
 def value_meant(text: str, start: int, end: int, *, safe: bool) -> Fix:
-    """What is probably meant by a word that is no value: an entry, a number without its sign, a text.
+    """The fix for a word that is not a value, probably meant as an entry, a number without its sign, or a text.
 
     Args:
-        safe: whether a text may stand there, and nothing else went wrong.
+        safe: whether a text is allowed there, and nothing else is wrong.
     """
     word = text[start:end]
     if word[0] == "@":
@@ -45,7 +45,7 @@ def value_meant(text: str, start: int, end: int, *, safe: bool) -> Fix:
 
 
 def unknown_unit(text: str, start: int, end: int) -> Diagnostic:
-    """What stands there is no unit; the fixes replace it by what was probably meant."""
+    """An unknown unit; the fixes replace it by what was probably meant."""
     word = text[start:end]
     glued = start > 0 and text[start - 1].isdigit()
     wanted = measured(_WORD.findall(text[line_start(text, 0, start) : start]))
@@ -64,11 +64,11 @@ def unknown_unit(text: str, start: int, end: int) -> Diagnostic:
 
 
 def unknown_escapes(start: int, raw: str) -> tuple[Diagnostic, ...]:
-    """One hint a string, whose fix mends all of it.
+    """At most one hint, for the whole string; its fix mends all escapes.
 
     Args:
         start: where the string begins.
-        raw: how it is written, quotes included.
+        raw: its source, quotes included.
     """
     unknown = [escape for escape in _ESCAPE.finditer(raw) if escape[1] not in "\"'\\nt"]
     if not unknown:
@@ -83,10 +83,10 @@ def unknown_escapes(start: int, raw: str) -> tuple[Diagnostic, ...]:
 
 
 def no_token(text: str, start: int, end: int, *, of_signal: bool) -> Diagnostic:
-    """A character that begins nothing, once or several times.
+    """An invalid character, once or repeated.
 
     Args:
-        of_signal: whether it stands in the line of a signal.
+        of_signal: whether it is in the line of a signal.
     """
     character = text[start]
     instead = _NO_END_SIGN if character == ";" else INSTEAD.get(character)
@@ -100,7 +100,7 @@ def no_token(text: str, start: int, end: int, *, of_signal: bool) -> Diagnostic:
 
 
 def _square_brackets(text: str, start: int) -> tuple[str, tuple[Fix, ...]]:
-    """What square brackets are probably meant for, and the fix: attributes, a list of requirements, or children."""
+    """What square brackets are probably meant to be, and the fix: attributes, a list of requirements, or children."""
     closing = text.find("]", start, line_end(text, start))
     if closing < 0:
         return ATTRIBUTES, ()
@@ -123,11 +123,11 @@ def attributes_in_braces(text: str, start: int) -> Fix | None:
 
 
 def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
-    """The fix for characters that only look like others, all of them in the line: `≤`, `“`, a no-break space."""
+    """The fix for look-alike characters, all of those in the line: `≤`, `“`, a no-break space."""
     if text[start] == "°":
         degrees = "degC" if text[start + 1 : start + 2] == "C" else "deg"
         return (replace_fix(f"Write `{degrees}`", Span(start, start + len(degrees) // 2), degrees),)
-    from unicodedata import normalize  # few files have any
+    from unicodedata import normalize  # few files need it
 
     is_quote = text[start] in _OTHER_QUOTES
     changes: list[Change] = []
@@ -135,7 +135,7 @@ def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
         other = text[at]
         in_text = is_quote and len(changes) % 2 == 1
         if (not is_quote and other in "\"'") or (not in_text and text.startswith(("#", "//", "/*"), at)):
-            break  # texts and comments have the characters that they have
+            break  # texts and comments may contain any character
         plain = _LOOKS_LIKE.get(other) or normalize("NFKC", other)
         if plain != other and plain.isascii() and (other in _OTHER_QUOTES) == is_quote:
             changes.append(Change(Place(Span(at, at + 1)), plain))
@@ -146,7 +146,7 @@ _WORD: Final = re.compile(r"\w+|,")
 _BRACED_ATTRIBUTES: Final = re.compile(
     r"""\{[ \t]*[\w-]+[ \t]*=(?:[^{}"'\r\n]|"[^"\r\n]*"|'[^'\r\n]*'|\{[^{}"'\r\n]*\})*\}"""
 )
-_nearest_units: Final = lru_cache(256)(nearest_units)  # the same mistake is often made again
+_nearest_units: Final = lru_cache(256)(nearest_units)  # the same mistake is often repeated
 _ESCAPE: Final = re.compile(r"(?s)\\(.)")
 _OTHER_QUOTES: Final = "“”„‟«»‘’"
 _LOOKS_LIKE: Final = {
@@ -158,7 +158,7 @@ CHILDREN: Final = "children go on lines of their own below their parent, indente
 ATTRIBUTES: Final = "attributes go in round brackets: `(key = value)`"
 _NO_END_SIGN: Final = "a line needs no sign at its end; comments begin with `#`"
 _UNITS_OF_SIGNALS: Final = "a signal's unit goes after `:`: `signal distance : m`"
-# What to write instead of characters that are part of no value either.
+# What to write instead of characters that cannot be part of a value either.
 INSTEAD: Final = {
     "&": "write `and`",
     "|": "write `or`; `||` is the symbol of Parallel",

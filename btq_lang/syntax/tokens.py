@@ -1,6 +1,6 @@
-"""The kinds of tokens: plain integers, so that comparing them costs nothing.
+"""The kinds of tokens: plain integers, which are cheap to compare.
 
-`Token` is what tools see; the parser works on the lexer's flat lists and makes none.
+`Token` is for tools; the parser works on the lexer's flat lists and creates none.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ NUMBER: Final = 2  # 6, -1, 0.25, 1e3
 QUANTITY: Final = 3  # 30 s: a number and its unit
 BRACED: Final = 4  # {goal}
 SYMBOL: Final = 5  # ->, ?, ||, R->, …: the control nodes
-# Punctuation: the raw text says which.
+# Punctuation: the raw text tells which.
 OPERATOR: Final = 6  # = : :: . / * + - < > <= >= == != % ^ ,
 OPEN: Final = 7  # (
 CLOSE: Final = 8  # )
 NEWLINE: Final = 9  # the end of a logical line
-ERROR: Final = 10  # a character that begins nothing
-# Only in the full list of tokens, never in front of the parser.
-BLANK: Final = 11  # blanks, and line ends that mean nothing
+ERROR: Final = 10  # an invalid character
+# Only in the full list of tokens; the parser never sees them.
+BLANK: Final = 11  # blanks, and line ends without meaning
 COMMENT: Final = 12
 INDENT: Final = 13  # zero characters long
 DEDENT: Final = 14  # zero characters long
@@ -35,7 +35,7 @@ NAMES: Final = (
 
 SYMBOLS: Final = ("->", "?", "||", "All||", "R->", "R?", "M->", "A->", "A?", "→", "⇉", "R→", "M→", "A→", "All⇉")
 
-# Words that the grammar of a tree knows by their place.
+# Words with a meaning only in certain places of the grammar.
 CATEGORIES: Final = frozenset(("Action", "Condition", "Control", "Decorator", "SubTree"))
 NODE_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags"))
 DIRECTIONS: Final = frozenset(("input", "output", "inout"))

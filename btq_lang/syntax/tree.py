@@ -1,8 +1,8 @@
 """The tree of one file: frozen classes named after the productions of the grammar.
 
-One invariant: an offset counts from the start of the item it stands in (`Entry.start` says where that is), so that an
-item that did not change is the same object wherever edits elsewhere have moved it.  The tree knows words, not
-meanings: `Retry` and a misspelt `Rety` look alike.  `X | None` means "may be missing, in broken code too".
+One invariant: an offset counts from the start of its item (`Entry.start`), so that an unchanged item is the same object
+wherever edits elsewhere have moved it.  The tree has words, not meanings: `Retry` and a misspelt `Rety` look alike.  `X
+| None` means "may be missing, in broken code too".
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class Include(Record):
 
 
 class Qualities(Record):
-    """`qualities iso25010-2023`: the edition that names are looked up in."""
+    """`qualities iso25010-2023`: the edition in which names are looked up."""
 
     start: int
     end: int
@@ -85,7 +85,7 @@ class Qualities(Record):
 
 
 class QualityDecl(Record):
-    """`quality gentleness : safety "…"`: a quality of one's own."""
+    """`quality gentleness : safety "…"`: a user-defined quality."""
 
     start: int
     end: int
@@ -95,7 +95,7 @@ class QualityDecl(Record):
 
 
 class Port(Record):
-    """`input station : string = "charger" "where to go"`; type: its words as one."""
+    """`input station : string = "charger" "where to go"`; type: as one word."""
 
     start: int
     end: int
@@ -132,7 +132,7 @@ class Model(Record):
 
 
 class Models(Record):
-    """`TreeNodesModel`: models in the place where the XML element stands."""
+    """`TreeNodesModel`: models, as in the XML element."""
 
     start: int
     end: int
@@ -165,7 +165,7 @@ class Selector(Record):
     """`every MoveBase under PickPlace`, `every node tagged heavy`, or a path.
 
     Attributes:
-        every: the ID or kind after `every`; None where a path or a tag says it.
+        every: the ID or kind after `every`; None with a path or a tag.
     """
 
     start: int
@@ -186,7 +186,9 @@ class Apply(Record):
 
 
 class Root(Record):
-    """`Root mainTree`: the main tree's name; `bracketed`: its attributes are written exactly as given, even none."""
+    """`Root mainTree`: the main tree's name; `bracketed`: its attributes are written to XML exactly as given, even if
+    there are none.
+    """
 
     start: int
     end: int
@@ -196,7 +198,7 @@ class Root(Record):
 
 
 class Tree(Record):
-    """`BehaviorTree PickPlace`: body as a node's; more or fewer than one node is a diagnostic."""
+    """`BehaviorTree PickPlace`: body as for a node; more or fewer than one node is a diagnostic."""
 
     start: int
     end: int
@@ -221,7 +223,7 @@ class Tree(Record):
 
 
 class Skipped(Record):
-    """Lines that are no item; a diagnostic says what is wrong with them."""
+    """Lines that do not form an item; a diagnostic says what is wrong with them."""
 
     start: int
     end: int
@@ -245,12 +247,12 @@ Item: TypeAlias = (
 
 
 class Entry(Record):
-    """An item and where it stands.
+    """An item and its place.
 
     Attributes:
-        start: the offset in the file that the item's offsets count from: the start of its first line.
-        in_root: it stands in the block of a `Root`.
-        diagnostics: what is wrong with its syntax; spans count from `start`.
+        start: the offset in the file from which the item's offsets count: the start of its first line.
+        in_root: it is in the block of a `Root`.
+        diagnostics: of its syntax; spans count from `start`.
     """
 
     start: int
@@ -265,17 +267,17 @@ def moved_by(entry: Entry, by: int) -> Entry:
 
 
 def quote(text: str) -> str:
-    """A STRING that says `text`."""
+    """A STRING whose value is `text`."""
     for character, escape in (("\\", "\\\\"), ('"', '\\"'), ("\t", "\\t")):
         text = text.replace(character, escape)
     return f'"{text}"'
 
 
 def shape(part: object, of_quantity: Callable[[Word], object] | None = None) -> object:
-    """A part of the tree without its offsets: two parts with one shape say the same.
+    """A part of the tree without its offsets: parts with equal shapes have the same meaning.
 
     Args:
-        of_quantity: what two quantities that are the same have in common; else how they are written, without blanks.
+        of_quantity: maps equal quantities to one value; without it, quantities compare by their text, without blanks.
     """
     if isinstance(part, Node):  # in document order, each with its number of children: no recursion, trees are deep
         return "Node", *(_shape_of_one(node) for node in _in_order(part))
@@ -297,7 +299,7 @@ _OFFSETS = ("start", "end")
 
 
 def walk(part: object) -> list[object]:
-    """A part of the tree and all that is in it, in document order."""
+    """A part of the tree and all its parts, in document order."""
     found: list[object] = []
     stack = [part]
     while stack:

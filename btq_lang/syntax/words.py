@@ -1,7 +1,7 @@
 """Words of the source and pairs of them, of which a tree has thousands.
 
-One invariant: they are plain classes without decorators, so that they may be compiled (hatch_build.py).
-`__match_args__` names their fields, as it does those of a record: a compiled class has no `__slots__`.
+One invariant: they are plain classes without decorators, so that they can be compiled (hatch_build.py).
+`__match_args__` names their fields, as in a record: a compiled class has no `__slots__`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class Word:
     Attributes:
         kind: its token kind: NAME, STRING, NUMBER, QUANTITY, BRACED or SYMBOL.
         start: where it begins.
-        raw: as it stands in the source, quotes included.
+        raw: its source, quotes included.
     """
 
     __slots__ = ("kind", "raw", "start")
@@ -47,7 +47,7 @@ class Word:
 
     @property
     def text(self) -> str:
-        """What it says: a string without its quotes and escapes, anything else as it stands."""
+        """Its value: a string without its quotes and escapes, anything else verbatim."""
         return self.raw if self.kind != STRING else unquote(self.raw)
 
     def __eq__(self, other: object) -> bool:
@@ -69,7 +69,7 @@ class TypeWord(Word):
 
     @property
     def text(self) -> str:
-        """What it says: without blanks and comments."""
+        """The type without blanks and comments."""
         return _GAPS.sub("", self.raw)
 
 
@@ -98,7 +98,7 @@ class Pair:
 
 
 def unquote(raw: str) -> str:
-    """What a STRING says (docs/language.md): quotes off, `\\" \\' \\\\ \\n \\t` decoded, line ends as `\\n`."""
+    """The value of a STRING (docs/language.md): quotes removed, `\\" \\' \\\\ \\n \\t` decoded, line ends as `\\n`."""
     text = raw[1:-1] if len(raw) > 1 and raw[-1] == raw[0] and _closes(raw) else raw[1:]
     if "\r" in text:
         text = text.replace("\r\n", "\n").replace("\r", "\n")

@@ -1,15 +1,14 @@
-"""The scripting language of BehaviorTree.CPP, as it stands in `code`, `if`, `_skipIf`, `_onSuccess` and the like.
+"""The scripting language of BehaviorTree.CPP, used in `code`, `if`, `_skipIf`, `_onSuccess` and similar attributes.
 
-One invariant: every string parses, in linear time and without an exception, and all offsets count from the start of
-the script.  What the newest engine refuses, or loads only to fail at it, is a `script-error`; what the engines before
-it refuse or read in another way is a `script-version`.  Not known here: where a script stands, which keys exist, and
-what they hold.
+One invariant: every string parses, in linear time and without an exception, and all offsets count from the start of the
+script.  What the newest engine refuses, or loads but fails to run, is a `script-error`; what older engines refuse or
+read differently is a `script-version`.  Where a script is used, which keys exist and what they hold is unknown here.
 
-    tree.py      what a script is: frozen records, the variables in them, and back to text
-    tokens.py    text to tokens; common slips are read as what they mean
+    tree.py      a script as frozen records, its variables, and back to text
+    tokens.py    text to tokens; common mistakes are read as what they mean
     parser.py    tokens to tree, by the grammar of the newest engine
-    mistakes.py  what is said about a script that the newest engine refuses
-    versions.py  what older engines refuse, or read in another way
+    mistakes.py  diagnostics for scripts that the newest engine refuses
+    versions.py  what older engines refuse, or read differently
     check.py     all problems of a script for given versions
 """
 

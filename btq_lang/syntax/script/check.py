@@ -1,7 +1,7 @@
-"""All problems of a script, for the versions of the engine that it must hold for.
+"""All problems of a script, for the versions of the engine that it must support.
 
-One invariant: what is reported depends on the script, the versions and whether a value is expected, and on nothing
-else; in particular no key is known here, so that a key that nobody writes is another rule's business.
+One invariant: diagnostics depend only on the script, the versions and whether a value is expected; keys are unknown
+here, so other rules report those that are never written.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from btq_lang.util.text import Span
 def check_script(
     script: Script, *, versions: tuple[str, ...] = VERSIONS, expects_value: bool = False
 ) -> tuple[Diagnostic, ...]:
-    """What is wrong with a script, in the order of the text; spans and fixes count from its start.
+    """The diagnostics of a script, in the order of the text; spans and fixes count from its start.
 
     Args:
-        versions: the engines that it must hold for, such as `4.8` or `4.6.2`.  `script-version` says which of them
-            refuse the script or read it otherwise than 4.9 and later do; for those alone it has nothing to say.
-        expects_value: it stands where the engine wants a condition: `_skipIf`, the code of a ScriptCondition.
+        versions: the engines that it must support, such as `4.8` or `4.6.2`.  `script-version` names those that refuse
+            the script or read it differently from 4.9 and later.
+        expects_value: the engine uses it as a condition: `_skipIf`, the code of a ScriptCondition.
 
     Raises:
-        ValueError: a version is not made of numbers and points.
+        ValueError: a version is not numbers separated by points.
     """
     found = [*script.problems]
     if script.complete:
@@ -37,7 +37,7 @@ def check_script(
 
 
 def _value_problems(node: Expression, text: str) -> list[Diagnostic]:
-    """The last statement gives the value, and the engine takes none for a condition but 0 and 1."""
+    """Check the last statement, which gives the value: for a condition the engine accepts only 0 and 1."""
     node = ungrouped(node)
     if isinstance(node, Ternary):
         return _value_problems(node.then, text) + _value_problems(node.otherwise, text)

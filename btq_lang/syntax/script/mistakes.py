@@ -1,7 +1,7 @@
-"""What is said about a script that the newest engine refuses, or that it loads only to fail at the first tick.
+"""The diagnostics for scripts that the newest engine refuses, or loads but fails to run.
 
-One invariant: a fix marked safe leaves a script in which this mistake is mended and no other one is new.  Where a
-mistake is seen is the business of `tokens` and `parser`; here is what to tell, and what to write instead.
+One invariant: a safe fix mends its mistake and adds no other.  `tokens` and `parser` detect mistakes; this module has
+the messages and fixes.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ MEANT: Final = {
     "−": "-",
 }
 
-# What has no counterpart, and what to do.
+# What has no counterpart here, and what to do instead.
 _NO_SUCH: Final = {
     "**": "scripts have no power operator; multiply instead",
     "//": "scripts have neither comments nor integer division; `/` divides",
@@ -77,10 +77,10 @@ def empty(text: str) -> Diagnostic:
 
 
 def misspelt(text: str, span: Span) -> Diagnostic:
-    """A spelling of `MEANT`, or a `not` with the blanks behind it."""
+    """A spelling of `MEANT`, or a `not` with the blanks after it."""
     raw = text[span.start : span.end].rstrip()
     meant = MEANT[raw.lower()]
-    # A blank on the side of another operator, so that the two do not become one.
+    # Insert a blank next to another operator, so that the two do not become one.
     before = " " if text[span.start - 1 : span.start] in _OPERATOR_CHARACTERS else ""
     behind = " " if text[span.end : span.end + 1] in _OPERATOR_CHARACTERS else ""
     return error(span, f"`{raw}` is written `{meant}` in a script", _write(meant, span, before, behind))
@@ -90,7 +90,7 @@ def wrong_quotes(span: Span, content: str) -> Diagnostic:
     message = "strings in scripts go in single quotes: '…'"
     if "'" in content:
         return error(span, f"{message}; a string cannot contain a single quote")
-    if "\n" in content or "\r" in content:  # it may well be the quotes of the attribute that are lost
+    if "\n" in content or "\r" in content:  # perhaps the quotes of the attribute are missing
         return error(span, message)
     return error(span, message, _write(f"'{content}'", span))
 
@@ -100,7 +100,7 @@ def braced(text: str, span: Span, name: str) -> Diagnostic:
     beside = text[span.start - 1 : span.start] + text[span.end : span.end + 1]
     if any(
         character.isalnum() or character in "_@{}." for character in beside
-    ):  # without braces they would be one word
+    ):  # without the braces they would join the word
         return error(span, message)
     return error(span, message, _write(name, span))
 
@@ -116,7 +116,7 @@ def foreign_name(span: Span, name: str) -> Diagnostic:
 
 
 def number(span: Span, raw: str, meant: str | None) -> Diagnostic:
-    """A number written as the engine does not read it."""
+    """A number in a form that the engine does not read."""
     if meant is not None:
         return error(span, f"the engine does not read `{raw}` as a number; write `{meant}`", _write(meant, span))
     note = "scripts have no units, and no name begins with a digit"
@@ -143,7 +143,7 @@ def glued_hexadecimal(span: Span) -> Diagnostic:
 
 
 def no_such(text: str, span: Span) -> Diagnostic:
-    """A token that means nothing; an open quote reaches to the end of the text."""
+    """An invalid token; an open quote extends to the end of the text."""
     raw = text[span.start : span.end]
     message = _NO_SUCH.get(raw[0] if raw[0] in "'\"" else raw.lower())
     return error(span, message or f"unexpected `{raw}` in a script")
@@ -153,7 +153,7 @@ def no_such(text: str, span: Span) -> Diagnostic:
 
 
 def missing_operand(text: str, before: Span | None, at: Span) -> Diagnostic:
-    """No operand at `at`; `before` is the operator that waits for it, None at the start of a statement."""
+    """A missing operand at `at`; `before`: the operator that needs it, None at the start of a statement."""
     here = text[at.start : at.end]
     if before is None:
         return error(at, f"missing operand before `{here}`")
@@ -204,7 +204,7 @@ def assignment_behind_ternary(span: Span) -> Diagnostic:
 
 
 def not_assignable(operator: Span, is_equals: bool) -> Diagnostic:
-    """An assignment to something other than an entry."""
+    """An assignment to something other than a blackboard entry."""
     message = "only an entry can be assigned to: the engine loads this and fails at the tick"
     if not is_equals:
         return error(operator, message)
@@ -217,7 +217,7 @@ def too_deep(span: Span, limit: int) -> Diagnostic:
 
 
 def prose(text: str, start: int) -> Diagnostic:
-    """Words; from `start` on there is no operator for a while."""
+    """Prose instead of a script: words without operators from `start` on."""
     whole = Span(len(text) - len(text.lstrip()), len(text.rstrip()))
     words = " ".join(text[start:].split()[:3])
     note = "since 4.9 the engine may load it and fail at the first tick, when it looks for variables of these names"

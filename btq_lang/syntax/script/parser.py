@@ -2,7 +2,7 @@
 
 One invariant: what this accepts without a problem the newest engine loads (BehaviorTree.CPP 4.10,
 src/script_parser.cpp), with the same tree; what it reports, the engine refuses or fails at when it ticks the node.
-The first error that no certain reading mends ends the reading, as it does in the engine.
+Parsing stops at the first error without a certain correction, as it does in the engine.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ from btq_lang.util.text import Span
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Diagnostic
 
-# Operators within each other, needless brackets counted too.  The engine has no limit and a stack; the engines up to
-# 4.8 refuse more than 256 operators, and nobody reads a tenth of them.
+# Nested operators, redundant brackets included.  The engine has no limit except its stack; the engines up to 4.8 refuse
+# more than 256 operators.
 MAX_DEPTH: Final = 100
 
 
 def parse_script(text: str) -> Script:
-    """Read a script; never raises.  What is wrong for the newest engine is in `problems`, in the order of the text."""
+    """Parse a script; never raises.  Errors for the newest engine are in `problems`, in the order of the text."""
     if not text.replace(";", " ").strip():
         return Script(text, (), (mistakes.empty(text),))
     parser = _Parser(text)
@@ -55,7 +55,7 @@ def parse_script(text: str) -> Script:
 
 
 class _Stop(Exception):
-    """The reading cannot go on; why is among the problems."""
+    """Parsing cannot continue; the reason is among the problems."""
 
 
 class _Parser:
@@ -64,7 +64,7 @@ class _Parser:
     Attributes:
         at: the index of the next token.
         depth: how many expressions are open.
-        height: how many operators are within each other in the expression read last.
+        height: how many operators are nested in the expression read last.
     """
 
     def __init__(self, text: str) -> None:
@@ -80,7 +80,7 @@ class _Parser:
         self.height = 0
 
     def script(self, statements: list[Expression]) -> None:
-        """`x := 1; y := 2`: statements, of which the newest engine does not ask to be separated."""
+        """`x := 1; y := 2`: statements, for which the newest engine does not require separators."""
         self.leading_semicolons()
         while self.kinds[self.at] != END:
             statement = self.expression(0)
@@ -98,10 +98,10 @@ class _Parser:
             self.problems.append(mistakes.leading_semicolon(Span(self.starts[0], self.ends[self.at - 1])))
 
     def statement_boundary(self, statement: Expression) -> None:
-        """Something follows a statement without `;`: another statement, or a slip?
+        """Decide whether what follows a statement without `;` is another statement or a mistake.
 
-        The newest engine takes it for a statement.  Where the one before does nothing (it assigns nothing), or the
-        next is a mere number, text or unit, an operator is missing rather than a `;`.
+        The newest engine takes it for a statement.  If the previous one has no effect (it assigns nothing), or the next
+        is a mere number, text or unit, an operator is missing rather than a `;`.
         """
         kind = self.kinds[self.at]
         if kind not in BEGINS:
@@ -111,7 +111,7 @@ class _Parser:
             self.two_operands()
 
     def expression(self, least: int) -> Expression:
-        """Operators that bind at least so tightly, and their operands: precedence climbing, as the engine does it."""
+        """Operators that bind at least this tightly, and their operands: precedence climbing, as in the engine."""
         self.depth += 1
         if self.depth > 2 * MAX_DEPTH + 1:
             self.stop(mistakes.too_deep(self.span(self.at), MAX_DEPTH))
@@ -196,7 +196,7 @@ class _Parser:
             if self.kinds[self.at] != ")":
                 self.unclosed(mistakes.unclosed_bracket(self.text, Span(start, end), self.span(self.at)))
             self.at += 1
-            # Brackets round an operator are free, or adding the needed ones could pass the limit.
+            # Brackets around an operator are not counted, or adding required ones could exceed the limit.
             self.height += not isinstance(inner, Unary | Binary | Comparison | Ternary | Assign)
             if self.height > MAX_DEPTH:
                 self.stop(mistakes.too_deep(Span(start, end), MAX_DEPTH))
@@ -209,7 +209,7 @@ class _Parser:
         self.no_operand()
 
     def prefixed(self) -> Expression:
-        """`-x`, `~x`, `!x`; a `+` was reported and counts for nothing."""
+        """`-x`, `~x`, `!x`; a `+` was reported and is ignored."""
         at = self.at
         self.depth += 1
         if self.depth > 2 * MAX_DEPTH + 1:
@@ -224,10 +224,10 @@ class _Parser:
             self.stop(mistakes.too_deep(self.span(at), MAX_DEPTH))
         return Unary(self.kinds[at], operand, self.starts[at], operand.end)
 
-    # ---- what goes wrong ----
+    # ---- errors ----
 
     def no_operand(self) -> NoReturn:
-        """An operand must begin here, and none does."""
+        """Report a missing operand."""
         at = self.at
         kind, before = self.kinds[at], self.kinds[at - 1] if at else ";"
         if kind == ERROR:
@@ -240,13 +240,13 @@ class _Parser:
         self.stop(mistakes.missing_operand(self.text, waiting, self.span(at)))
 
     def unexpected(self, statement: Expression) -> NoReturn:
-        """A statement has ended, and what follows neither separates nor begins one."""
+        """Report that what follows a statement neither separates nor begins one."""
         if RANK.get(self.kinds[self.at]) == ASSIGNMENT and isinstance(statement, Ternary):
             self.stop(mistakes.assignment_behind_ternary(self.span(self.at)))
         self.no_operand()
 
     def unclosed(self, problem: Diagnostic) -> NoReturn:
-        """A `(` or a `?` waits for more, and something else follows."""
+        """Report a `(` or a `?` that is not completed."""
         if self.kinds[self.at] in BEGINS:
             self.two_operands()
         if self.kinds[self.at] == ERROR:
@@ -254,7 +254,7 @@ class _Parser:
         self.stop(problem)
 
     def two_operands(self) -> NoReturn:
-        """Two operands without an operator between them; three words in a row are prose, and nothing else matters."""
+        """Report two operands without an operator between them; three words in a row are reported as prose."""
         first, last = self.at - 1, self.at
         while first and self.is_word(first) and self.is_word(first - 1):
             first -= 1
@@ -270,16 +270,16 @@ class _Parser:
         self.stop(mistakes.two_operands(self.text, left, right))
 
     def is_word(self, index: int) -> bool:
-        """Whether a token can stand in prose, the words that were read as operators among them."""
+        """Whether a token can be part of prose, including words that were read as operators."""
         return self.kinds[index] in OPERANDS or self.text[self.starts[index] : self.ends[index]].isalpha()
 
     def is_call(self) -> bool:
-        """`f(` without a blank"""
+        """Whether it is `f(` without a blank"""
         before = self.at - 1
         return self.kinds[self.at] == "(" and self.kinds[before] == NAME and self.ends[before] == self.starts[self.at]
 
     def is_unit(self) -> bool:
-        """`30 sec` and no operator behind it"""
+        """Whether it is `30 sec` without an operator after it"""
         kinds, at = self.kinds, self.at
         return kinds[at] == NAME and kinds[at - 1] == NUMBER and kinds[at + 1] not in RANK
 

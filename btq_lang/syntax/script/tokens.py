@@ -1,8 +1,8 @@
 """Text to tokens of a script.
 
-One invariant: every character but a blank is in exactly one token, in order.  A slip whose meaning is certain (`and`,
-`"text"`, `.5`, `&lt;`) becomes the token it means and a problem with its fix, so that the parser goes on as if it
-were mended; anything else that begins no token is an ERROR token, of which the parser speaks if it comes so far.
+One invariant: every character but a blank is in exactly one token, in order.  A mistake with a certain correction
+(`and`, `"text"`, `.5`, `&lt;`) becomes the intended token and a problem with its fix, so that the parser continues as
+if it were corrected; any other invalid text is an ERROR token, which the parser reports if it reaches it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from btq_lang.diagnostics.model import Diagnostic
 
-# A token's kind is one of these; an operator's is the operator itself, or what a misspelt one means.
+# A token's kind is one of these; an operator's is the operator itself, corrected if misspelt.
 NAME: Final = "name"
 NUMBER: Final = "number"
 TEXT: Final = "text"
@@ -31,9 +31,9 @@ OPERANDS: Final = frozenset((NAME, NUMBER, TEXT, BOOL))
 # What may begin an operand, besides a `-`, which may also be an operator between two.
 BEGINS: Final = OPERANDS | {"(", "!", "~"}
 
-# Names to look at twice; as the engine reads them, the operators of other languages are keys like any other.
+# Names with a special reading; to the engine, the operators of other languages are ordinary keys.
 _WORDS: Final = {"true": BOOL, "false": BOOL, **dict.fromkeys(("and", "AND", "or", "OR", "not", "NOT"), NAME)}
-# Where they stand alone; glued together, some of them are something else.
+# Only as separate tokens; joined, some of them mean something else.
 _OPERATORS: Final = frozenset(
     (":=", "==", "!=", "<=", ">=", "+=", "*=", "/=", "-=", "&&", "||", "..", *"-+*/&|^~!<>=?:();")
 )
@@ -46,8 +46,8 @@ class Tokens:
 
     Attributes:
         kinds, starts, ends: one entry a token.
-        meant: by index, what a name, a number or a text says that is not written as the engine wants it.
-        problems: the slips that were read as what they mean.
+        meant: by index, the corrected form of a name, number or text that the engine does not accept.
+        problems: the mistakes that were read as what they mean.
     """
 
     __slots__ = ("ends", "kinds", "meant", "problems", "starts")
@@ -66,7 +66,7 @@ def tokenize(text: str) -> Tokens:
 
 
 def _spaced(text: str) -> Tokens | None:
-    """The tokens of a script that is nothing but usual words with blanks between them, as most are; None for others.
+    """The tokens of a script that consists of usual words separated by blanks, as most do; None for others.
 
     It saves compiling the pattern, which takes longer than reading a hundred of them.
     """
@@ -127,7 +127,7 @@ def _matched(text: str) -> Tokens:
         kinds.append(kind)
         starts.append(start)
         ends.append(end)
-        if kind == ERROR and text[start] in "'\"":  # what follows an open quote cannot be told
+        if kind == ERROR and text[start] in "'\"":  # tokens after an open quote are unknown
             ends[-1] = len(text)
             break
     kinds.append(END)
@@ -171,7 +171,7 @@ def _check_number(tokens: Tokens, text: str, match: re.Match[str]) -> None:
 
 
 def _mended_number(raw: str) -> str | None:
-    """`.5`, `1.` and `1_000` as the engine reads them."""
+    """`.5`, `1.` and `1_000` in the engine's form."""
     if not raw.isascii():
         return None
     meant = f"0{raw}" if raw[0] == "." else f"{raw}0" if raw[-1] == "." else raw
@@ -181,18 +181,20 @@ def _mended_number(raw: str) -> str | None:
 
 
 def _fits(raw: str) -> bool:
-    """Whether the engine can hold a number: 64 bits if it is whole, else a double, neither 0 nor infinity."""
+    """Whether the engine can represent a number: an integer in 64 bits, any other in a double without becoming 0 or
+    infinity.
+    """
     hexadecimal = raw[:2] in _HEXADECIMAL
     if hexadecimal or raw.isdecimal():
         digits = (raw[2:] if hexadecimal else raw).lstrip("0")
-        # The length first: Python refuses to read whole numbers of thousands of digits.
+        # The length first: Python refuses to parse integers of thousands of digits.
         return len(digits) < 16 or (len(digits) < 20 and int(digits, 16 if hexadecimal else 10) <= _LARGEST)
     value = float(raw)
     return value != float("inf") and (value != 0 or not raw.lower().partition("e")[0].strip("0."))
 
 
 def _slip(tokens: Tokens, text: str, match: re.Match[str]) -> str:
-    """The kind of what is no token of the engine; ERROR where nothing certain is meant."""
+    """The kind of text that is not a token of the engine; ERROR if it has no certain correction."""
     kind, raw, span = match.lastgroup, match[0], Span(*match.span())
     index = len(tokens.kinds)
     if kind == "misspelt":
@@ -214,7 +216,7 @@ def _slip(tokens: Tokens, text: str, match: re.Match[str]) -> str:
         tokens.meant[index] = name
         return NAME
     glued = index > 0 and tokens.ends[-1] == span.start and tokens.kinds[-1] in OPERANDS | {ERROR}
-    if kind == "fraction" and not glued:  # `a.5` is no number behind a name
+    if kind == "fraction" and not glued:  # `a.5` is not a number after a name
         meant = _mended_number(raw)
         tokens.problems.append(mistakes.number(span, raw, meant))
         tokens.meant[index] = meant or "0"
@@ -223,7 +225,7 @@ def _slip(tokens: Tokens, text: str, match: re.Match[str]) -> str:
 
 
 def _read_words(tokens: Tokens, text: str) -> None:
-    """`and`, `or`, `not` become operators where an operator must stand: as names they are as good as any other."""
+    """Turn `and`, `or`, `not` into operators where an operator must be; elsewhere they are ordinary names."""
     kinds, starts, ends = tokens.kinds, tokens.starts, tokens.ends
     closing = _closing_brackets(kinds)
     for index, kind in enumerate(kinds):
@@ -238,7 +240,7 @@ def _read_words(tokens: Tokens, text: str) -> None:
                 if _ends_condition(kinds[end_of_operand], text[starts[end_of_operand] : ends[end_of_operand]]):
                     kinds[index] = "!"
                     tokens.problems.append(mistakes.misspelt(text, Span(span.start, starts[index + 1])))
-                else:  # `not a == b` denies the comparison, and `!a == b` compares `!a`
+                else:  # `not a == b` negates the comparison, but `!a == b` compares `!a`
                     kinds[index] = ERROR
         elif after_operand and behind != ERROR and RANK.get(behind) != ASSIGNMENT:
             kinds[index] = mistakes.MEANT[word.lower()]
@@ -246,7 +248,7 @@ def _read_words(tokens: Tokens, text: str) -> None:
 
 
 def _closing_brackets(kinds: list[str]) -> dict[int, int]:
-    """By the index of each `(`, that of its `)`."""
+    """The index of the `)` for that of each `(`."""
     opened: list[int] = []
     closing: dict[int, int] = {}
     for index, kind in enumerate(kinds):

@@ -1,7 +1,7 @@
-"""What a script is: statements of nested expressions, and the way back to text.
+"""The tree of a script: statements of nested expressions, and the way back to text.
 
-One invariant: `start` and `end` of a record are its place in the script's text, the brackets around it not included (a
-`Group` has them); a tree that was not read from a text has zeros there.  Nothing here knows versions of the engine.
+One invariant: `start` and `end` of a record are its place in the script's text, without the brackets around it (a
+`Group` has them); a tree that was not parsed from a text has zeros there.  Versions of the engine are unknown here.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 
 class Script(Record):
-    """A script that was read.
+    """A parsed script.
 
     Attributes:
-        text: the script as it was written; every offset counts in it.
-        statements: what was understood, in order.
-        problems: what the newest engine refuses, or would fail at: `script-error` and `empty-script`.
-        complete: False where the reading stopped at an error, so that the statements are those before it.
+        text: the source of the script; all offsets refer to it.
+        statements: the valid ones, in order.
+        problems: what the newest engine refuses, or fails to run: `script-error` and `empty-script`.
+        complete: False if parsing stopped at an error, so that the statements are those before it.
     """
 
     text: str
@@ -33,7 +33,7 @@ class Script(Record):
 
 
 class Number(Record):
-    """`30`, `0x1F`, `2.5e-3`; `raw` is how it is written.  A sign is a `Unary` around it."""
+    """`30`, `0x1F`, `2.5e-3`; `raw` is its source.  A sign is a `Unary` around it."""
 
     raw: str
     start: int = 0
@@ -41,15 +41,15 @@ class Number(Record):
 
     @property
     def value(self) -> float:
-        """What it is worth; a whole number is an int."""
+        """Its value; an integer is an int."""
         if self.raw[:2] in ("0x", "0X"):
             return int(self.raw, 16)
-        # Python itself refuses to read whole numbers of thousands of digits; such a number is a problem anyway.
+        # Python refuses to parse integers of thousands of digits; such a number is a problem anyway.
         return int(self.raw) if self.raw.isdecimal() and len(self.raw) < 400 else float(self.raw)
 
 
 class Text(Record):
-    """`'charger'`; `value` is what stands between the quotes, for there are no escapes."""
+    """`'charger'`; `value` is the text between the quotes: there are no escapes."""
 
     value: str
     start: int = 0
@@ -73,7 +73,7 @@ class Name(Record):
 
 
 class Group(Record):
-    """`( inner )`: kept, because older engines need more brackets than the newest one."""
+    """`( inner )`: kept because older engines need more brackets than the newest one."""
 
     inner: Expression
     start: int = 0
@@ -119,7 +119,7 @@ class Ternary(Record):
 
 
 class Assign(Record):
-    """`target := value`, and `=`, `+=`, `-=`, `*=`, `/=`.  A target that is no `Name` is a problem of the script."""
+    """`target := value`, and `=`, `+=`, `-=`, `*=`, `/=`.  A target other than a `Name` is a problem of the script."""
 
     operator: str
     target: Expression
@@ -154,13 +154,13 @@ ATOM: Final = 22
 
 
 class Variable(Record):
-    """A name in a script, where it stands and what happens to it there.
+    """A name in a script, with its place and use.
 
     Attributes:
-        name: as it is written, with the `@` of the root blackboard.
+        name: as written, with the `@` of the root blackboard.
         reads: its value is needed; `x += 1` reads and writes.
         writes: it is given a value.
-        creates: the entry need not exist before: the operator is `:=`.
+        creates: the entry need not exist: the operator is `:=`.
     """
 
     name: str
@@ -171,9 +171,9 @@ class Variable(Record):
 
 
 def variables(script: Script) -> tuple[Variable, ...]:
-    """The names of a script in the order of the text, each place for itself; of a broken script those before the error.
+    """All occurrences of names in a script, in the order of the text; in a broken script those before the error.
 
-    The names of an enumeration, which only the robot's own code can register, are among them.
+    They include the names of enumerations, which only the robot's own code can register.
     """
     found: list[Variable] = []
     stack: list[Expression] = list(reversed(script.statements))
@@ -209,7 +209,7 @@ def children(node: Expression) -> tuple[Expression, ...]:
 
 
 def walk(nodes: tuple[Expression, ...]) -> Iterator[Expression]:
-    """Every expression in these and below, in no promised order."""
+    """All expressions in these and below, in no particular order."""
     stack = list(nodes)
     while stack:
         node = stack.pop()
@@ -228,8 +228,8 @@ def unparse(tree: Script | Expression, *, fully_parenthesised: bool = True) -> s
     """A script or an expression as text: `; ` between statements, text in single quotes.
 
     Args:
-        fully_parenthesised: brackets round every operator and its operands, the form that all versions of the engine
-            read alike; otherwise as few as the newest version needs.  Brackets of the source do not count.
+        fully_parenthesised: brackets around every operator and its operands, the form that all versions of the engine
+            read alike; otherwise as few as the newest version needs.  Brackets of the source are not kept.
     """
     statements = tree.statements if isinstance(tree, Script) else (tree,)
     full = fully_parenthesised
@@ -240,7 +240,7 @@ def unparse(tree: Script | Expression, *, fully_parenthesised: bool = True) -> s
 
 
 def _write(node: Expression, least: int, full: bool) -> str:
-    """`node`, in brackets where it binds less tightly than `least`."""
+    """`node`, in brackets if it binds less tightly than `least`."""
 
     def inside(child: Expression, rank: int) -> str:
         return _write(child, ATOM if full else rank, full)
@@ -253,7 +253,7 @@ def _write(node: Expression, least: int, full: bool) -> str:
     if isinstance(node, Bool):
         return "true" if node.value else "false"
     if isinstance(node, Text):
-        # No escapes: text with a single quote in it cannot be said to the newest engine, but older ones read this.
+        # There are no escapes: the newest engine cannot express text with a single quote, but older ones read this.
         return f"'{node.value}'" if "'" not in node.value else f'"{node.value}"'
 
     if isinstance(node, Unary):

@@ -1,10 +1,10 @@
-"""What engines before 4.9 refuse, or read in another way than 4.9 and later do.
+"""What engines before 4.9 refuse, or read differently from 4.9 and later.
 
 One invariant: a script without problems here is read alike by all the given versions, and a fix adds brackets,
 blanks or `;` only, so that the newest engine reads the script as before.
 
 Source: BehaviorTree.CPP 4.6.2 and 4.8.4, include/behaviortree_cpp/scripting/operators.hpp, an operator grammar whose
-groups "cannot be mixed", and the accidents of its ranks, which were found by running it.  4.9.0 replaced it.
+groups "cannot be mixed", and quirks of its ranks, which were found by running it. 4.9.0 replaced it.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from btq_lang.util.text import Span
 
 
 def version_problems(script: Script, versions: Iterable[str]) -> list[Diagnostic]:
-    """What is not the same in `versions`, statement by statement."""
+    """The differences between `versions`, statement by statement."""
     targets = _targets(versions)
     if not targets.old:
         return []
@@ -51,12 +51,12 @@ def version_problems(script: Script, versions: Iterable[str]) -> list[Diagnostic
 
 
 class _Targets(Record):
-    """The versions to hold for, by the grammar they have."""
+    """The versions to support, by their grammar."""
 
     early: tuple[str, ...]  # before 4.7
     middle: tuple[str, ...]  # 4.7 and 4.8
     old: tuple[str, ...]  # both
-    total: int  # how many there are, the newest too
+    total: int  # how many versions, the newest included
 
 
 def _targets(versions: Iterable[str]) -> _Targets:
@@ -67,7 +67,7 @@ def _targets(versions: Iterable[str]) -> _Targets:
 
 
 def _node(node: Expression, parent: Expression | None, text: str, targets: _Targets) -> Iterable[Diagnostic]:
-    """What is peculiar to one operator or name."""
+    """The problems of a single operator or name."""
     if isinstance(node, Binary):
         rank = RANK[node.operator]
         if node.operator == "||" and isinstance(node.right, Binary) and node.right.operator == "&&":
@@ -88,11 +88,11 @@ def _node(node: Expression, parent: Expression | None, text: str, targets: _Targ
         yield _refused(None, node, "a string with characters outside ASCII", targets.old, targets)
 
 
-# ---- operators that older engines rank in another way ----
+# ---- operators with another precedence in older engines ----
 
 
 def _one_rank(node: Binary, conjunction: Binary, text: str, targets: _Targets) -> Diagnostic:
-    """`a || b && c`: the two have one rank up to 4.8, and are read from left to right."""
+    """`a || b && c`: the two have equal precedence up to 4.8, and are read from left to right."""
     first: Expression = conjunction
     while isinstance(first, Binary) and first.operator == "&&":
         first = first.left
@@ -136,9 +136,9 @@ _Members = list[tuple[Expression, Expression | None]]
 
 
 def _scope(root: Expression, scopes: list[Expression]) -> _Members:
-    """The expressions that no brackets separate, each with what it stands in; what is separated goes to `scopes`.
+    """The expressions not separated by brackets, each with its parent; separated ones are added to `scopes`.
 
-    The middle of `a ? b : c` is as separate as if it stood in brackets.
+    The middle of `a ? b : c` is separate, as if it were in brackets.
     """
     members: _Members = []
     stack: _Members = [(root, None)]
@@ -157,7 +157,7 @@ def _scope(root: Expression, scopes: list[Expression]) -> _Members:
 
 
 def _mixed(members: _Members, text: str, targets: _Targets) -> Iterable[Diagnostic]:
-    """`a + b == c`, `!a && b == c`: operators of two groups; only `&&`, `||`, `?:` and assignments go with all."""
+    """`a + b == c`, `!a && b == c`: operators of two groups; only `&&`, `||`, `?:` and assignments combine with all."""
     firsts = {group: node for node, _ in reversed(members) if (group := _group(node))}
     if len(firsts) < 2:
         return
@@ -182,7 +182,7 @@ def _group(node: Expression | None) -> str | None:
 
 
 def _to_separate(members: _Members) -> list[Expression]:
-    """The operators to put in brackets so that one group is left: comparisons, if there are any."""
+    """The operators to put in brackets so that one group is left: the comparisons, if there are any."""
     groups = [(node, group, _group(parent)) for node, parent in members if (group := _group(node))]
     outermost = {group for _, group, above in groups if not above}
     kept = outermost if len(outermost) == 1 else {_COMPARISON}
@@ -196,7 +196,7 @@ def _symbol(node: Expression) -> str:
 
 
 def _place(node: Expression) -> int:
-    """Where its operator stands, more or less: behind its first operand."""
+    """The approximate place of its operator: after its first operand."""
     return node.start if isinstance(node, Unary) else children(node)[0].end
 
 
@@ -204,7 +204,7 @@ def _place(node: Expression) -> int:
 
 
 def _separators(script: Script, targets: _Targets) -> list[Diagnostic]:
-    """Up to 4.8 exactly one `;` stands between two statements and none behind the last; later any number."""
+    """Check separators: up to 4.8, exactly one `;` between two statements and none after the last; later any number."""
     found: list[Diagnostic] = []
     text, statements = script.text, script.statements
     for before, behind in zip_longest(statements, statements[1:]):
@@ -225,7 +225,7 @@ def _separators(script: Script, targets: _Targets) -> list[Diagnostic]:
 
 
 def _glued_number(node: Binary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
-    """`2..'x'`, which older engines take for a number that goes wrong."""
+    """`2..'x'`, which older engines read as an invalid number."""
     last = node.left
     while not isinstance(last, Group) and (inside := children(last)):
         last = inside[-1]
@@ -240,7 +240,7 @@ def _glued_number(node: Binary, text: str, targets: _Targets) -> Iterable[Diagno
 def _refused(
     fix: Fix | None, place: Expression | Span, what: str, refusing: tuple[str, ...], targets: _Targets
 ) -> Diagnostic:
-    severity = Severity.ERROR if len(refusing) == targets.total else None  # no engine that counts would load it
+    severity = Severity.ERROR if len(refusing) == targets.total else None  # no supported engine would load it
     message = f"{_listed(refusing)} {'refuses' if len(refusing) == 1 else 'refuse'} {what}"
     fixes = () if fix is None else (fix,)
     return Diagnostic("script-version", Span(place.start, place.end), message, fixes=fixes, severity=severity)
@@ -254,7 +254,7 @@ def _misread(fix: Fix, node: Expression, other: str, misreading: tuple[str, ...]
 
 
 def _brackets(nodes: Iterable[Expression]) -> Fix:
-    """Put each of these in brackets; they may lie within each other."""
+    """Put each of these in brackets; they may be nested."""
     inserted: dict[int, str] = {}
     for node in nodes:
         inserted[node.start] = inserted.get(node.start, "") + "("
