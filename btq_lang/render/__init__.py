@@ -1,8 +1,8 @@
 """Diagnostics as text: for people at a terminal, for programs, for code hosts and for CI servers.
 
-One invariant: a renderer answers for every report, whatever characters its texts and messages hold and wherever its
-spans point; what it prints is safe for a terminal and well formed for a program.  Lines and columns count from 1,
-columns in code points.  Not known here: which findings to show, where the output goes and what the exit code is.
+One invariant: a renderer accepts every report, whatever characters its texts and messages contain and wherever its
+spans point; its output is safe for a terminal and well formed for a program.  Lines and columns count from 1, columns
+in code points.  Unknown here: which findings to show, where the output goes and what the exit code is.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ FORMATS = ("full", "concise", "json", "sarif", "github", "junit")
 
 
 def render(form: str, report: Report, *, colour: bool = False, width: int = 120) -> Iterator[str]:
-    """The report in one of FORMATS: pieces that make the whole output when joined, the last one ending with a newline.
+    """The report in one of FORMATS, in pieces, the last one ending with a newline.
 
     Args:
-        colour: ANSI colours, for `full` and `concise`; the others have none.
-        width: the columns of the terminal, for `full`; longer source lines are cut around what they show.
+        colour: ANSI colours, for `full` and `concise`; other formats have none.
+        width: the columns of the terminal, for `full`; longer source lines are cut around the span.
 
     Raises:
         ValueError: there is no such format.
     """
-    # A run imports the one renderer that it uses: `json` alone would cost more than the whole of `full`.
+    # A run imports only the renderer that it uses: importing `json` takes longer than all of `full`.
     if form in ("full", "concise") and not report.findings:
         from btq_lang.render.summary import summary
 
@@ -61,7 +61,7 @@ def render(form: str, report: Report, *, colour: bool = False, width: int = 120)
 
 
 def with_paths(report: Report, shown: Callable[[str], str]) -> Report:
-    """The same report with every path as `shown` writes it, for people read relative paths."""
+    """The report with every path as `shown` writes it: people read relative paths."""
 
     def place(old: Place) -> Place:
         return old if old.path is None else replace(old, path=shown(old.path))

@@ -1,8 +1,8 @@
-"""What characters look like on a terminal: which are safe to print, and how many cells each takes.
+"""Characters on a terminal: which are safe to print, and how many cells each takes.
 
-Invariant: what comes out holds no control character of what went in: no escape sequence, no line end, no reordering of
-the text (Trojan Source, CVE-2021-42574).  Cells are counted a code point at a time, by Unicode's East Asian Width;
-emoji joined by U+200D count as their parts, for terminals do not agree on them.
+Invariant: the result contains no control character of the input: no escape sequence, no line end, no reordering of the
+text (Trojan Source, CVE-2021-42574).  Cells are counted by code point, using Unicode's East Asian Width; emoji joined
+by U+200D count as their parts, because terminals disagree on them.
 """
 
 from __future__ import annotations
@@ -18,14 +18,16 @@ _REPLACEMENT = "\ufffd"
 
 
 def printable(text: str) -> str:
-    """The text with a visible sign (`␛`, `�`) for each character that a terminal would obey or could not encode."""
+    """The text with a visible sign (`␛`, `�`) for each character that a terminal would interpret or could not
+    encode.
+    """
     return text if text.isprintable() else "".join(map(_sign, text))
 
 
 def cut(line: str, left: int, room: int) -> str:
-    """The cells from `left` on, at most `room` of them, with `…` beside them where something was cut off.
+    """The cells from `left` on, at most `room` of them, with `…` where text was cut off.
 
-    A sign for the cut on the left takes a cell of its own, before the cell `left`.
+    The sign on the left takes an extra cell, before the cell `left`.
     """
     pieces, columns = laid_out(line)
     if not left and columns[-1] <= room:
@@ -34,13 +36,15 @@ def cut(line: str, left: int, room: int) -> str:
     if first >= len(columns):
         return "…"
     last = max(first, bisect_right(columns, left + room) - 1)
-    blanks = " " * (columns[first] - left)  # half of a wide character, or of a tab, was cut off
+    blanks = " " * (columns[first] - left)  # part of a wide character, or of a tab, was cut off
     return ("…" if left else "") + blanks + "".join(pieces[first:last]) + ("…" if last < len(pieces) else "")
 
 
-@lru_cache(16)  # a frame asks for a line several times, and hostile files have everything on one long line
+@lru_cache(16)  # a frame needs a line several times, and hostile files have everything on one long line
 def laid_out(line: str) -> tuple[Sequence[str], Sequence[int]]:
-    """What each character of a line prints, and the cell it begins in; a last cell is where the line ends."""
+    """The printed form of each character of a line and the cell where it begins, and as a last cell the end of the
+    line.
+    """
     if line.isascii() and line.isprintable():
         return line, range(len(line) + 1)
     pieces: list[str] = []

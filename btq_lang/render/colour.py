@@ -1,4 +1,4 @@
-"""ANSI colours: what is painted how, and whether to paint at all."""
+"""ANSI colours: the styles, and whether to use colour at all."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _CODES = {
 
 
 def painter(colour: bool) -> Paint:
-    """A function of a style and a text: the text in that style, or as it is where no colour is wanted."""
+    """A function of a style and a text that returns the text in that style, or unchanged without colour."""
     if not colour:
         return lambda style, text: text
     return lambda style, text: f"\x1b[{_CODES[style]}m{text}\x1b[0m" if text else ""
 
 
 def wants_colour(isatty: bool, environ: Mapping[str, str]) -> bool:
-    """Whether `--color auto` means yes; the order of the questions is CPython's own (`_colorize.can_colorize`).
+    """Whether `--color auto` means yes; the order of the checks is CPython's (`_colorize.can_colorize`).
 
     See no-color.org and force-color.org: a variable that is set and not empty counts.
     """

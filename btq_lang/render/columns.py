@@ -1,4 +1,4 @@
-"""Columns of a table as wide as a terminal: how wide each is, and a cell's text in lines."""
+"""Columns of a table that fits a terminal: their widths, and cells broken into lines."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def cells_of(text: str) -> int:
 
 
 def narrowed(widths: list[int], room: int) -> list[int]:
-    """The widest columns give way until all fit."""
+    """Shrink the widest columns until all fit."""
     widths = list(widths)
     while sum(widths) > room and max(widths) > _NARROWEST:
         widths[widths.index(max(widths))] -= 1
@@ -22,7 +22,8 @@ def narrowed(widths: list[int], room: int) -> list[int]:
 
 def broken(text: str, room: int) -> list[str]:
     """A text in lines, broken at blanks, and long words at `.`, `-`, `/` or, where there is none, anywhere; all lines
-    stand as far in as the first."""
+    are indented like the first.
+    """
     words = text.lstrip(" ")
     indent = len(text) - len(words)
     room -= indent
@@ -40,7 +41,7 @@ def broken(text: str, room: int) -> list[str]:
 
 
 def _fitting(word: str, room: int) -> int:
-    """How many characters of a word stand on a line."""
+    """How many characters of a word fit on a line."""
     fits = 1
     while fits < len(word) and cells_of(word[: fits + 1]) <= room:
         fits += 1

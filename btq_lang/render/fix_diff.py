@@ -1,4 +1,4 @@
-"""What a fix does, as the rows of a small diff.
+"""A fix as the rows of a small diff.
 
 Invariant: a diff is shown only where it says more than the fix's title, and is never longer than `_MOST` rows.
 """
@@ -19,7 +19,7 @@ _MOST = 12
 
 
 def fix_diff(report: Report, finding: Finding, fix: Fix, room: int) -> list[Row]:
-    """The lines a fix takes away and puts in; none for one replacement of just what the finding marks."""
+    """The lines that a fix removes and adds; empty for a single replacement of exactly the marked span."""
     if _title_says_it(finding, fix):
         return []
     rows: list[Row] = []
@@ -54,7 +54,7 @@ def _title_says_it(finding: Finding, fix: Fix) -> bool:
 def _hunks(text: str, edits: list[Edit], room: int) -> list[Row]:
     lines = line_index(text)
     rows: list[Row] = []
-    shift = 0  # how many lines the hunks above have put in
+    shift = 0  # how many lines earlier hunks have added
     hunk: list[Edit] = []
     for edit, following in zip(edits, [*edits[1:], None], strict=True):
         hunk.append(edit)
@@ -73,7 +73,7 @@ def _hunks(text: str, edits: list[Edit], room: int) -> list[Row]:
 
 
 def _edited(text: str, lines: LineIndex, edits: Iterable[Edit], first: int, last: int) -> str:
-    """The lines from `first` to `last` after the edits, which touch no others."""
+    """The lines from `first` to `last` after the edits, which are within them."""
     start = lines.offset(Position(first, 0))
     end = lines.offset(Position(last, len(text)))
     return apply_edits(text[start:end], (Edit(edit.span.shifted(-start), edit.text) for edit in edits))
@@ -85,7 +85,7 @@ def _lines(text: str) -> list[str]:
 
 
 def _common(old: list[str], new: list[str]) -> int:
-    """How many lines two lists begin with in common."""
+    """The length of the common prefix of two lists of lines."""
     return next((at for at, (a, b) in enumerate(zip(old, new, strict=False)) if a != b), min(len(old), len(new)))
 
 

@@ -1,7 +1,7 @@
 """A frame: the lines of a file around a span, with the span marked.
 
-Rows say what stands left and right of the gutter; numbers are aligned by whoever joins the frames of one diagnostic.
-Invariant: a mark stands below what it marks, whatever tabs and wide characters come before it.
+Rows hold the parts left and right of the gutter; the caller that joins the frames of a diagnostic aligns the numbers.
+Invariant: a mark is below what it marks, whatever tabs and wide characters come before it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from btq_lang.render.location import clamped, line_index
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Position, Span
 
-_CONTEXT = 1  # lines shown above and below: above stands the parent or the opener
+_CONTEXT = 1  # lines shown above and below: the line above has the parent or the opening bracket
 _HEAD, _TAIL = 4, 2  # lines of a long span that are shown at its start and its end
 _MARGIN = "  "  # where the line along a span over several lines is drawn
 
@@ -36,14 +36,14 @@ def frame(text: str, span: Span, *, mark: str, room: int, paint: Callable[[str],
     """The rows that show a span.
 
     Args:
-        mark: what stands below each cell of the span: `^` for the finding, `-` for what is related to it.
-        room: how many cells of a line may be shown.
-        paint: what colours the marks.
+        mark: what to print below each cell of the span: `^` for the finding, `-` for related places.
+        room: the maximal number of cells of a line.
+        paint: colours the marks.
     """
     lines = line_index(text)
     span = clamped(span, text)
     start, end = lines.position(span.start), lines.position(span.end)
-    if span.end > span.start and end.column == 0:  # it ends with a line end: that belongs to the line before
+    if span.end > span.start and end.column == 0:  # the line end at its end belongs to the line before
         end = Position(end.line - 1, len(_line(lines, end.line - 1)) + 1)
     several = end.line > start.line
     margin = _MARGIN if several else ""
@@ -55,7 +55,7 @@ def frame(text: str, span: Span, *, mark: str, room: int, paint: Callable[[str],
 
 
 class _View(Record):
-    """The part of the lines that is shown: `room` cells from `left` on, the same for all lines of a frame."""
+    """The visible part of the lines: `room` cells from `left` on, the same for all lines of a frame."""
 
     lines: LineIndex
     left: int
@@ -65,12 +65,12 @@ class _View(Record):
         return cut(_line(self.lines, number), self.left, self.room)
 
     def cell(self, at: Position) -> int:
-        """The shown cell where a position is, one to the right of the sign for a cut on the left."""
+        """The visible cell of a position, one to the right if there is a sign for a cut on the left."""
         return _cell(_line(self.lines, at.line), at.column) - self.left + (1 if self.left else 0)
 
 
 def _view(lines: LineIndex, start: Position, columns: int, room: int) -> _View:
-    """What to show so that the span, or its beginning, stands in the middle of a line that is too long."""
+    """The view that puts the span, or its beginning, in the middle of a line that is too long."""
     line = _line(lines, start.line)
     first, last = _cell(line, start.column), _cell(line, start.column + columns)
     total = max(_cell(line, len(line)), last)
@@ -88,7 +88,7 @@ def _single(view: _View, start: Position, end: Position, mark: str, paint: Calla
 
 
 def _several(view: _View, start: Position, end: Position, mark: str, paint: Callable[[str], str]) -> list[Row]:
-    """A span over lines, as rustc draws it: `/` or `____^` where it begins, `|____^` where it ends."""
+    """A span over several lines, as rustc draws it: `/` or `____^` where it begins, `|____^` where it ends."""
     if _line(view.lines, start.line)[: start.column].strip():
         rows = [
             Row(start.line + 1, _MARGIN + view.line(start.line)),
@@ -112,12 +112,12 @@ def _context(view: _View, numbers: range, margin: str) -> list[Row]:
     return [Row(number + 1, margin + view.line(number)) for number in numbers if _line(view.lines, number).strip()]
 
 
-@lru_cache(16)  # as for what is laid out: whoever has the same line again has its hash, too
+@lru_cache(16)  # as for `laid_out`; the hash of a line is computed once
 def _line(lines: LineIndex, number: int) -> str:
     return lines.line(number)
 
 
 def _cell(line: str, column: int) -> int:
-    """The cell where a column begins; a line end is thought of as one cell wide."""
+    """The cell where a column begins; a line end counts as one cell wide."""
     columns = laid_out(line)[1]
     return columns[min(column, len(line))] + max(0, column - len(line))

@@ -1,4 +1,4 @@
-"""`full`: findings with the lines they are about, as rustc and ruff print theirs.
+"""`full`: findings with their source lines, in the style of rustc and ruff.
 
     error[unknown-node]: no node `Rety` is known
       --> lab.btq:3:9
@@ -8,7 +8,7 @@
        |
        = help: replace `Rety` by `Retry` (--fix)
 
-Invariant: one finding is one block, its gutter as wide as its largest line number, with a blank line after it.
+Invariant: a finding is one block, its gutter as wide as its largest line number, with a blank line after it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Place
     from btq_lang.render.report import Finding, Report
 
-_LEAST_ROOM = 20  # a terminal narrower than this is not worth cutting for
+_LEAST_ROOM = 20  # lines are not cut below this width
 
 
 def render(report: Report, *, colour: bool = False, width: int = 120) -> Iterator[str]:
@@ -50,7 +50,7 @@ def _header(finding: Finding, paint: Paint) -> str:
 
 def _rows(report: Report, finding: Finding, width: int, paint: Paint) -> Iterator[Row]:
     diagnostic = finding.diagnostic
-    # What stands left of a line: its number, and ` | `; and a sign on either side of it where it is cut.
+    # To the left of a line are its number and ` | `; a cut line has a sign on each side.
     room = max(_LEAST_ROOM, width - len(str(line_index(finding.text).line_count)) - 5)
     severity = diagnostic.effective_severity.value
     yield from _place(report, finding, None, "^", severity, room, paint)
@@ -85,7 +85,7 @@ def _place(
 
 
 def _remark(kind: str, text: str) -> Iterator[Row]:
-    """A note or a help; its further lines stand below its first."""
+    """A note or a help; further lines are aligned with its first."""
     first, *others = text.split("\n")
     yield Row(None, f"{kind}: {printable(first)}", "=")
     for line in others:
@@ -93,7 +93,7 @@ def _remark(kind: str, text: str) -> Iterator[Row]:
 
 
 def _line(row: Row, gutter: int, paint: Paint) -> str:
-    """A row as it is printed; `note:` begins a part of its own at the left edge, `-->` points out of the gutter."""
+    """The printed form of a row; `note:` begins a part of its own at the left edge, `-->` points out of the gutter."""
     if row.bar == "note:":
         return paint("message", "note") + f": {row.body}\n"
     if row.bar in ("-->", ":::"):

@@ -1,4 +1,4 @@
-"""Pieces of GitHub's Markdown (https://github.github.com/gfm/), in which a cell of a table is one line."""
+"""Tables and text in GitHub's Markdown (https://github.github.com/gfm/), in which a table cell is one line."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ def table(heading: Sequence[str], rows: Iterable[Sequence[str]], numbers_from: i
     """The lines of a table.
 
     Args:
-        numbers_from: the columns from this one on are set to the right.
+        numbers_from: columns from this one on are right-aligned.
     """
     yield f"| {' | '.join(heading)} |"
     yield "|" + "|".join("---:" if at >= numbers_from else "---" for at in range(len(heading))) + "|"
@@ -18,7 +18,7 @@ def table(heading: Sequence[str], rows: Iterable[Sequence[str]], numbers_from: i
 
 
 def code(text: str) -> str:
-    """A code span in a table: a bar would end the cell, and backticks need more of them around."""
+    """A code span in a table: escapes bars, which would end the cell, and encloses backticks in more of them."""
     text = " ".join(text.split()).replace("|", "\\|")
     ticks = "`"
     while ticks in text:
@@ -27,6 +27,6 @@ def code(text: str) -> str:
 
 
 def escaped(text: str) -> str:
-    """A text as it is, on one line, whatever Markdown and GitHub would read in it."""
+    """A text, on one line, escaped so that Markdown and GitHub show it verbatim."""
     found = "".join(f"\\{character}" if character in "\\`*_[]|~" else character for character in " ".join(text.split()))
     return found.replace("&", "&amp;").replace("<", "&lt;").replace("@", "&#64;")

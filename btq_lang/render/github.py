@@ -2,8 +2,8 @@
 
     ::error file=lab.btq,line=3,endLine=3,col=9,endColumn=13,title=unknown-node::lab.btq:3:9: no node `Rety` is known
 
-The escapes are those of actions/toolkit (packages/core/src/command.ts), but for `%0D`: no carriage return gets that
-far.  The log shows the message alone, so the place stands in it once more.
+The escapes are those of actions/toolkit (packages/core/src/command.ts), except `%0D`: carriage returns do not get that
+far.  The log shows only the message, so that repeats the place.
 """
 
 from __future__ import annotations

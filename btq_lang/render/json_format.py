@@ -12,11 +12,11 @@ The document, format 1; a later btq adds keys but changes none without a new num
 
     RANGE = {"start": {"line": N, "column": N}, "end": {"line": N, "column": N}}
 
-A file that could not be read or written, or that is no UTF-8, has an entry of its own: `rule` is "io-error", which is
-the name of no rule, and `severity` "error"; the summary counts it.
+A file that could not be read or written, or that is not UTF-8, has an entry of its own: `rule` is "io-error", which is
+not a rule's name, and `severity` "error"; the summary counts it.
 
-Lines and columns count from 1, columns in Unicode code points, and the end is exclusive.  A fix is `safe` where `btq
-check --fix` applies it.  The text is ASCII, so that every terminal and locale carries it.
+Lines and columns count from 1, columns in Unicode code points, and the end is exclusive.  A fix is `safe` if `btq check
+--fix` applies it.  The text is ASCII, so that every terminal and locale carries it.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """`junit`: the XML that CI servers read as test results: a test case for each file that was checked.
 
-Errors and warnings of a file make its one `<failure>`, a line each, for GitLab and Jenkins read no second one; what is
-milder stands in its `<system-out>`.  A file that could not be read or written has an `<error>`.  Invariant: the XML is
-well formed for every text.  Format: the JUnit schema of Jenkins' xUnit plugin (junit-10.xsd).
+Errors and warnings of a file make its one `<failure>`, a line each, because GitLab and Jenkins ignore a second one;
+milder findings are in its `<system-out>`.  A file that could not be read or written has an `<error>`.  Invariant: the
+XML is well formed for every text.  Format: the JUnit schema of Jenkins' xUnit plugin (junit-10.xsd).
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def render(report: Report) -> Iterator[str]:
 
 
 def _case(report: Report, path: str, findings: list[Finding], troubles: list[Trouble]) -> Iterator[str]:
-    """A test case; beside an `<error>` what was found is no `<failure>`, for a test case has one result."""
+    """A test case; with an `<error>` it has no `<failure>`, because a test case has one result."""
     failures = [finding for finding in findings if not troubles and _fails(finding)]
     others = [finding for finding in findings if troubles or not _fails(finding)]
     start = f'    <testcase classname="btq" name="{escaped(path)}" file="{escaped(path)}" time="0"'
@@ -76,5 +76,5 @@ def _lines(report: Report, findings: Iterable[Finding]) -> Iterator[str]:
 
 
 def escaped(text: str) -> str:
-    """What XML 1.0 can carry in content and attributes: `printable` leaves no control character and no surrogate."""
+    """The text escaped for XML 1.0 content and attributes; `printable` removes control characters and surrogates."""
     return printable(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace('"', "&quot;")

@@ -1,6 +1,6 @@
-"""From places to lines and columns as people count them: from 1.
+"""Converts places to lines and columns that count from 1.
 
-Invariant: every place has a location; a span outside its text is clamped, a file without a text is an empty one.
+Invariant: every place has a location; a span outside its text is clamped, a file without a text counts as empty.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Location(Record):
 
 
 def location(report: Report, finding: Finding, place: Place | None = None) -> Location:
-    """Where a place of a finding is; without a place, where the finding itself is."""
+    """The location of a place of a finding; without a place, of the finding itself."""
     path = finding.path if place is None or place.path is None else place.path
     span = finding.diagnostic.span if place is None else place.span
     lines = line_index(text_of(report, finding, path) or "")
@@ -36,16 +36,16 @@ def location(report: Report, finding: Finding, place: Place | None = None) -> Lo
 
 
 def text_of(report: Report, finding: Finding, path: str) -> str | None:
-    """The text of a file that a finding names; None where nobody gave it."""
+    """The text of a file that a finding names; None if it is unknown."""
     return finding.text if path == finding.path else report.texts.get(path)
 
 
 def clamped(span: Span, text: str) -> Span:
-    """The part of a span that lies in the text; empty where there is none."""
+    """The part of a span within the text; empty if there is none."""
     start = max(0, min(span.start, len(text)))
     return Span(start, max(start, min(span.end, len(text))))
 
 
-@lru_cache(16)  # findings come file by file, so few texts are enough; a hash of a text is computed once
+@lru_cache(16)  # findings come file by file, so few texts are enough; the hash of a text is computed once
 def line_index(text: str) -> LineIndex:
     return LineIndex(text)

@@ -1,4 +1,4 @@
-"""A report: what one run found, as every format takes it."""
+"""A report: the findings of one run, the input of every format."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ class Finding(Record):
 
 
 class Trouble(Record):
-    """A file that could not be read or written, or not well, so that what is found in it is not all there is.
+    """A file that could not be read or written, or only in part, so that findings may be missing.
 
     Attributes:
-        line: counted from 1, as `column` is; None where the whole file is meant.
+        line: counted from 1, as `column` is; None for the whole file.
     """
 
     path: str
@@ -34,14 +34,14 @@ class Trouble(Record):
 
 
 class Report(Record):
-    """What one run found.
+    """The findings of one run.
 
     Attributes:
-        findings: in the order in which they are to appear.
-        texts: the other files that related places and fixes may name; a file that is missing here is shown by its name.
-        checked: the files that were asked for, those without findings too.
-        troubles: what is in the formats for programs; for people the command prints it by itself.
-        nothing: why there are none, where that can be said.
+        findings: in the order of output.
+        texts: of other files that related places and fixes may name; a file without one is shown by its name.
+        checked: the requested files, including those without findings.
+        troubles: for the formats for programs; for people, the command prints them itself.
+        nothing: why there are no findings, if known.
     """
 
     findings: tuple[Finding, ...]

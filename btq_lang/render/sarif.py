@@ -1,9 +1,9 @@
 """`sarif`: SARIF 2.1.0 (OASIS, sarif-v2.1.0-os), which GitHub code scanning, Azure DevOps and editors read.
 
 Invariant: one run, one result a finding, and just the rules that have results, in the order of the table of rules.
-Columns are code points, which `columnKind` declares.  Relative paths hang below `%SRCROOT%`, the name that GitHub gives
-to the checkout.  One departure: `{` in a message is not doubled, as §3.11.5 asks; those who show messages without
-arguments do not undo it, and `{{goal}}` would mislead.
+Columns are code points, which `columnKind` declares.  Relative paths are below `%SRCROOT%`, GitHub's name for the
+checkout.  One departure: `{` in a message is not doubled, as §3.11.5 demands; viewers do not undo that in messages
+without arguments, and `{{goal}}` would mislead.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Json = dict[str, object]
 
 
 def render(report: Report, page: Callable[[str], str] = page) -> Iterator[str]:
-    """The log, in one piece; `page` gives the Markdown page of a rule."""
+    """The log, in one piece; `page` returns the Markdown page of a rule."""
     used = {finding.diagnostic.rule for finding in report.findings}
     indexes = {rule: index for index, rule in enumerate(rule for rule in RULES if rule in used)}
     log = {
@@ -61,7 +61,7 @@ def _rule(name: str, page: Callable[[str], str]) -> Json:
 
 
 def _invocations(troubles: tuple[Trouble, ...]) -> Json:
-    """What kept the run from seeing all files (§3.20); a run without trouble needs none."""
+    """The failures to read or write files (§3.20); empty without any."""
     if not troubles:
         return {}
     notifications = [
@@ -130,7 +130,7 @@ def _region(report: Report, finding: Finding, place: Place | None) -> Json:
 
 def _artifact(path: str) -> Json:
     try:
-        name = path.encode("utf-8", "surrogateescape")  # a file name may hold bytes that are no UTF-8
+        name = path.encode("utf-8", "surrogateescape")  # a file name may contain bytes that are not UTF-8
     except UnicodeEncodeError:
         name = path.encode("utf-8", "surrogatepass")
     uri = quote(name, safe="/")

@@ -6,8 +6,9 @@ from typing import Final
 
 
 def plain(value: str | float) -> str | float:
-    """A value; a text that a spreadsheet would take for a formula has an apostrophe before it, as OWASP advises
-    ("CSV Injection")."""
+    """A value; a text that a spreadsheet would take for a formula gets an apostrophe prefix, as OWASP advises ("CSV
+    Injection").
+    """
     return f"'{value}" if isinstance(value, str) and value.startswith(_FORMULA) else value
 
 

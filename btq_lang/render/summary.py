@@ -1,4 +1,4 @@
-"""What a run found, in numbers and in one line."""
+"""The findings of a run as counts and in one line."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def count(findings: Iterable[Finding]) -> dict[Severity, int]:
 
 
 def is_fixable(finding: Finding) -> bool:
-    """`btq check --fix` mends it."""
+    """Whether `btq check --fix` fixes it."""
     return any(fix.safe for fix in finding.diagnostic.fixes)
 
 
