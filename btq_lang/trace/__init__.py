@@ -1,13 +1,13 @@
-"""The overview of missions that a safety engineer asks for: requirement, quality, nodes, how it is enforced, and where.
+"""The overview of missions for safety engineers: requirements with quality, nodes, enforcement and places.
 
-One invariant: everything is said once, in a row with a key, and the same missions give the same overview.
+One invariant: every fact is in exactly one row with a key, and the same missions give the same overview.
 
     overview.py    the rows
     collect.py     a workspace as an overview
-    ways.py        how clauses are held
-    missions.py    how they are held in what is built, and all of it in one call
-    meanings.py    what quality names mean
-    verdicts.py    what the page shows of verdicts
+    ways.py how clauses are covered
+    missions.py how the built tree covers them, and all of it in one call
+    meanings.py the meaning of quality names
+    verdicts.py verdicts on the page
     table.py, csv_rows.py, json_document.py, markdown.py, page.py   the writers
 """
 
@@ -18,12 +18,12 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from btq_lang.trace.overview import Overview
 
-# The command line asks for them whatever it is to do, so nothing else is imported here.
+# The command line needs them for every command, so nothing else is imported here.
 FORMATS: Final = ("table", "csv", "json", "markdown", "html")
 
 
 def write(overview: Overview, form: str, *, colour: bool = False, width: int = 120) -> str:
-    """The overview in one of FORMATS.
+    """Write the overview in one of FORMATS.
 
     Args:
         colour: ANSI colours, for `table`.

@@ -1,7 +1,7 @@
-"""A workspace as an overview.
+"""Collects the overview of workspaces.
 
-One invariant: a node, a requirement and a quality are one row each, in however many missions they are seen, for they
-are written once.  What is wrong with the missions is not said here: an overview has what could be understood.
+One invariant: each node, requirement and quality is one row, however many missions contain it, because it is written
+once.  Errors of missions are not reported here: an overview has all valid parts.
 """
 
 from __future__ import annotations
@@ -53,11 +53,11 @@ def collect(
     """The overview of missions.
 
     Args:
-        parts: workspaces, each with the paths of it that are asked for; a file that another one of them includes is a
-            part of that mission.
-        ways: how clauses are held.
-        shown: a path as people read it.
-        said_of: lines that the box of a node shows below its own, and its class in the drawing.
+        parts: workspaces, each with the requested paths in it; a file included by another of them is a part of that
+            mission.
+        ways: determines how clauses are covered.
+        shown: gives a path as people read it.
+        said_of: gives further lines for the box of a node, and its class in the drawing.
     """
     collector = _Collector(ways, shown, said_of)
     files: list[str] = []
@@ -70,7 +70,7 @@ def collect(
 
 
 class _Collector:
-    """What was seen so far: rows by what they stand for."""
+    """The rows so far, by what they represent."""
 
     def __init__(self, ways: Ways, shown: Callable[[str], str], said_of: SaidOf | None) -> None:
         self._ways = ways
@@ -82,7 +82,7 @@ class _Collector:
         self._qualities: dict[str, _Quality] = {}
 
     def add(self, workspace: Workspace, path: str) -> None:
-        """Add a mission: a file and all that it includes."""
+        """Add a mission: a file and all its includes."""
         found = requirements(workspace, path)
         meanings = Meanings(workspace, path)
         self._edition = self._edition or meanings.edition
@@ -99,10 +99,10 @@ class _Collector:
             node = self._nodes[id(source.node)]
             carries: Carries = "own" if id(source) in own else "above" if _is_below(found, source, own) else "none"
             if node.carries is None or _CARRIES.index(carries) > _CARRIES.index(node.carries):
-                node.carries = carries  # of several missions the one that has least to say
+                node.carries = carries  # of several missions, the weakest
 
     def overview(self, files: tuple[str, ...]) -> Overview:
-        """All rows, those that belong together linked."""
+        """All rows, linked with each other."""
         edition = self._edition or "2023"
         rows = tuple(each.row(self._key(each.meaning, each.quality)) for each in self._requirements.values())
         measured: dict[str, list[str]] = {}
@@ -113,13 +113,13 @@ class _Collector:
             each.row(tuple(measured.get(each.meaning.id or each.name, ()))) for each in self._qualities.values()
         )
         nodes = tuple(each.row() for each in self._nodes.values())
-        trees = tuple(sorted(self._trees(), key=lambda tree: tree.at.path not in files))  # included ones last
+        trees = tuple(sorted(self._trees(), key=lambda tree: tree.at.path not in files))  # included trees last
         return Overview(
             edition, files, rows, quality_rows, nodes, trees, _totals(edition, rows, quality_rows, self._requirements)
         )
 
     def _declared(self, workspace: Workspace, path: str, meanings: Meanings, place: Callable[[Place], At]) -> None:
-        """Qualities of one's own count, be they used or not."""
+        """Add user-defined qualities, whether used or not."""
         for each in workspace.scope(path).paths:
             for entry in workspace.files[each].parsed.entries:
                 if isinstance(entry.item, QualityDecl) and entry.item.name is not None:
@@ -160,7 +160,7 @@ class _Collector:
     def _uses(
         self, workspace: Workspace, path: str, found: Requirements, place: Callable[[Place], At]
     ) -> dict[int, None]:
-        """Add what requirements hold for; the nodes that carry something themselves, by `id`."""
+        """Add what requirements hold for; returns the nodes that carry something themselves, by `id`."""
         own = {id(source): None for source in found.nodes.all if any(True for _ in concerns(source))}
         rows = {each.name: self._requirements[_place_of(each)] for each in found.all.values()}
         loose = {(requirement.name, claim.text) for requirement, claim in found.about_no_node()}
@@ -222,7 +222,7 @@ def _said_in(box: Box, said: tuple[tuple[str, ...], str]) -> Box:
 
 
 class _Node:
-    """A node; tree: where its tree is; notes: what its figure shows at it, by what they stand for."""
+    """A node; tree: the place of its tree; notes: those at it in its figure, by what they represent."""
 
     def __init__(self, key: str, source: SourceNode, at: At, tree: At) -> None:
         self.key = key
@@ -240,8 +240,9 @@ class _Node:
 
 
 class _Requirement:
-    """A requirement; uses: what it holds for, in a dict that keeps their order and has each once; loose: the clauses
-    that are about no node in any mission in which others of them are about one, None: there is no such mission yet."""
+    """A requirement; uses: what it holds for, as an ordered set; loose: the clauses without a node in every mission in
+    which other clauses have one, None: no such mission yet.
+    """
 
     def __init__(self, key: str, requirement: Requirement, meaning: Meaning, at: At) -> None:
         self.key = key
@@ -293,7 +294,7 @@ class _Quality:
         )
 
 
-# ---- what is said of one thing ----
+# ---- single rows ----
 
 
 def _places(workspace: Workspace, shown: Callable[[str], str]) -> Callable[[Place], At]:
@@ -312,7 +313,7 @@ def _places(workspace: Workspace, shown: Callable[[str], str]) -> Callable[[Plac
 
 
 def _place_of(requirement: Requirement) -> tuple[int, int]:
-    """Where a requirement is defined: the same for all missions that see it."""
+    """The place where a requirement is defined: the same in all missions that use it."""
     return id(requirement.place.anchor), requirement.place.span.start
 
 
@@ -323,7 +324,7 @@ def _tree_place(source: SourceNode) -> Place:
 
 
 def _is_below(found: Requirements, source: SourceNode, own: dict[int, None]) -> bool:
-    """Whether a node above carries something, on each way that leads to a node through SubTree nodes."""
+    """Whether, on each path to a node through SubTree nodes, a node above carries something."""
     waiting = [source]
     seen: set[int] = set()
     is_below = False
@@ -357,14 +358,14 @@ def _subject(applied: Applied) -> str:
 
 
 def _name(source: SourceNode) -> str:
-    """Its kind and its instance name; of a placeholder, which stands for a skill, the skill's."""
+    """Its kind and its instance name; for a placeholder of a skill, those of the skill."""
     if is_placeholder(source.node) and source.node.name is not None:
         return source.node.name.text
     return source.shown.removeprefix("`").removesuffix("`")
 
 
 def _note(row: _Requirement, applied: Applied, use: Use) -> Note:
-    """What stands at a node; its state is that of the weakest clause."""
+    """The note at a node; its state is that of the weakest clause."""
     name = row.requirement.name
     found = {clause.way for clause in use.clauses}
     state = next((way for way in ("reviewed", "monitored", "enforced") if way in found), "")
@@ -399,7 +400,7 @@ def _totals(
     quality_rows: Sequence[QualityRow],
     found: dict[tuple[int, int], _Requirement],
 ) -> tuple[TotalRow, ...]:
-    """One for each characteristic of the product, those in use that are named, and the rest."""
+    """A total for each product characteristic, each characteristic in use that is named, and the rest."""
     characteristics = [each.id for each in qualities(edition) if each.parent is None and each.kind == "product"]
     meant = [each.meaning.characteristic for each in found.values()]
     named = (*meant, *(each.characteristic for each in quality_rows if each.concerns))

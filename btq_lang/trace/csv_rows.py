@@ -7,14 +7,14 @@ The columns, which later versions add to but do not change:
                     node without quality | tree without quality
     requirement, title, quality, characteristic
     holds_for       the subject, or the node that has the concern, or the node or tree of a gap
-    tree            where its first node stands
+    tree the tree of its first node
     clause, how, why    how: enforced | monitored | reviewed
     attached_by     subject | satisfies | apply | link
     source, line    of what attached it, or of the node or tree
     defined, defined_line   where the requirement or the quality is defined or first named
 
-A text that a spreadsheet would take for a formula (`-> Work`, `=1+1`) has an apostrophe before it, as OWASP advises
-("CSV Injection"); programs that want texts as they are read the JSON.
+A text that a spreadsheet would take for a formula (`-> Work`, `=1+1`) gets an apostrophe prefix, as OWASP advises ("CSV
+Injection"); programs that need the exact texts read the JSON.
 """
 
 from __future__ import annotations

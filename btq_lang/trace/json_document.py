@@ -24,8 +24,8 @@ The document, format 1; a later btq adds keys but changes none without a new num
 
     PLACE = {"path": PATH, "line": N, "column": N}, counted from 1, columns in Unicode code points
 
-A `skill` is an action or a condition that is no built-in; it `carries` a quality or a requirement itself, through a
-node above it, or not at all.  Keys are good for this document only.  The text is ASCII.
+A `skill` is an action or a condition that is not built in; it `carries` a quality or a requirement itself, through a
+node above it, or not at all.  Keys are valid in this document only.  The text is ASCII.
 """
 
 from __future__ import annotations

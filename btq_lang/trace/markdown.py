@@ -1,4 +1,4 @@
-"""Markdown, for pull requests: GitHub's tables, in which a line end is `<br>`."""
+"""Markdown, for pull requests: GitHub's tables, with `<br>` for line ends."""
 
 from __future__ import annotations
 

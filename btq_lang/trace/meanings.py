@@ -1,6 +1,6 @@
-"""What quality names mean in a mission: its own declarations first, then the quality model.
+"""The meaning of quality names in a mission: its own declarations first, then the quality model.
 
-One invariant: every name has an answer; a name that nobody knows belongs to no characteristic.
+One invariant: every name has a meaning; an unknown name belongs to no characteristic.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class Meaning(Record):
-    """What a name means.
+    """The meaning of a name.
 
     Attributes:
-        id: one's own name, or the model's; None: nobody knows it.
-        above: the ids of what it is a part of, the nearest first.
-        characteristic: the ISO's; None: it belongs to none.
+        id: the declared name, or the model's id; None: unknown.
+        above: the ids of the qualities that contain it, the nearest first.
+        characteristic: that of the ISO standard; None: it belongs to none.
     """
 
     id: str | None
@@ -45,7 +45,7 @@ class Meanings:
                 self._own[fold(name)] = target
 
     def of(self, name: str) -> Meaning:
-        """What a name means; names joined by points."""
+        """The meaning of a name, or of names joined by dots."""
         own: list[QualityDecl] = []
         declared = self._own.get(fold(name.rpartition(".")[2]))
         while declared is not None and declared not in own:
@@ -65,15 +65,15 @@ class Meanings:
     def _in_model(self, name: str) -> Quality | None:
         match = find(tuple(name.split(".")), self.edition)
         if match.quality is None and match.kind == "ambiguous":
-            if match.candidates[0].id in successors(fold(name)):  # the old name of a characteristic, as checks read it
+            if match.candidates[0].id in successors(fold(name)):  # the old name of a characteristic, as in the checks
                 return match.candidates[0]
             above = {each.parent for each in match.candidates}
-            common = above.pop() if len(above) == 1 else None  # of all its meanings
+            common = above.pop() if len(above) == 1 else None  # common to all its meanings
             return get(common, self.edition) if common is not None else None
         return match.quality
 
     def _characteristic(self, quality: Quality | None) -> str | None:
-        """The id of the ISO's characteristic that a quality is, is a part of, or is nearest to."""
+        """The id of the ISO characteristic that a quality is, is a part of, or is nearest to."""
         if quality is None:
             return None
         if quality.kind == "robotics" and quality.nearest is not None:

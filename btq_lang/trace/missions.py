@@ -1,4 +1,4 @@
-"""The overview of missions as they are built: what the engine enforces of their requirements counts."""
+"""The overview of missions as built, with what the engine enforces of their requirements."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
 
 
 class TraceTable(Record):
-    """What `btq trace` shows.
+    """The result of `btq trace`.
 
     Attributes:
         overview: the rows: requirements, qualities, nodes, trees, and totals.
-        errors: how many errors the missions have; where there are any, something may be missing.
+        errors: how many errors the missions have; with any, rows may be missing.
     """
 
     overview: Overview
     errors: int
 
     def write(self, form: str = "table", *, colour: bool = False, width: int = 120) -> str:
-        """The table as a text.
+        """Write the table as text.
 
         Args:
             form: `table`, `csv`, `json`, `markdown` or `html`.
@@ -57,8 +57,8 @@ def trace_table(workspace: Workspace, *paths: str, bundle: bool = False) -> Trac
         [('rq1', 'monitored')]
 
     Args:
-        paths: the missions in the workspace, each with all that it includes; none: all files.
-        bundle: what is enforced when each mission is built with all that it includes in one file.
+        paths: the missions in the workspace, each with all its includes; none: all files.
+        bundle: determine enforcement as built with each mission and its includes in one file.
 
     Raises:
         KeyError: there is no such file.
@@ -69,12 +69,12 @@ def trace_table(workspace: Workspace, *paths: str, bundle: bool = False) -> Trac
 def trace_tables(
     parts: Sequence[tuple[Workspace, Sequence[str]]], bundled: bool = False, said_of: SaidOf | None = None
 ) -> TraceTable:
-    """The table of the missions of several workspaces.
+    """The table of missions of several workspaces.
 
     Args:
-        parts: workspaces, each with the paths of it that are asked for.
-        bundled: they are built with all that they include.
-        said_of: what the boxes of nodes show beside, as `collect` takes it.
+        parts: workspaces, each with the requested paths in it.
+        bundled: they are built with all their includes.
+        said_of: as in `collect`.
     """
     errors = {path: number for workspace, given in parts for path, number in _errors(workspace, given)}
     broken = frozenset(path for path, number in errors.items() if number)
@@ -91,12 +91,12 @@ def trace_tables(
 def built_ways(
     workspace: Workspace, path: str, found: Requirements, bundled: bool = False
 ) -> Sequence[Sequence[Clause]]:
-    """How clauses are held by what `btq build` makes of a mission; where it makes nothing, as they are declared."""
+    """How clauses are covered in the output of `btq build`, or as declared if the mission cannot be built."""
     declared = declared_ways(workspace, path, found)
     held = as_xml(workspace, path, bundled=bundled).held
     if not held:
         return declared
-    # A requirement without measurable clauses has none that is held.
+    # A requirement without measurable clauses has nothing to cover.
     return [
         tuple(Clause(each.clause, each.way, each.why, each.asked) for each in clauses) or said
         for clauses, said in zip(held, declared, strict=True)
@@ -104,7 +104,7 @@ def built_ways(
 
 
 def _errors(workspace: Workspace, given: Sequence[str]) -> list[tuple[str, int]]:
-    """How many errors each file has, those that are included too."""
+    """How many errors each file has, included files too."""
     paths = dict.fromkeys(path for each in given for path in workspace.closure(each))
     found = zip(paths, check_each(workspace, paths), strict=True)
     return [(path, sum(each.effective_severity is Severity.ERROR for each in of_file)) for path, of_file in found]

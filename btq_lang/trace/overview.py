@@ -1,7 +1,7 @@
-"""What an overview of missions says: small frozen records that the writers print, and nobody has to look anything up.
+"""The contents of an overview: small frozen records that writers print without looking anything up.
 
-One invariant: rows name each other by keys (`n3` a node, `r1` a requirement, `q2` a quality), which are the same for
-the same missions.  Lines and columns count from 1.
+One invariant: rows refer to each other by keys (`n3` a node, `r1` a requirement, `q2` a quality), which are the same
+for the same missions.  Lines and columns count from 1.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from btq_lang.graph.figure import Figure
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    # How a clause is held: by the tree that `btq build` makes, by tools that read logs, or by people.
+    # How a clause is covered: by the tree that `btq build` makes, by tools that read logs, or by people.
     Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
     # Whether a node carries a quality or a requirement: itself, through a node above it, or not at all.
     Carries: TypeAlias = Literal["own", "above", "none"]
@@ -32,11 +32,11 @@ class At(Record):
 
 
 class Clause(Record):
-    """A clause as it holds for a subject.
+    """A clause applied to a subject.
 
     Attributes:
-        why: why no more is done about it; empty where there is nothing to say.
-        asked: the engine is to enforce it.
+        why: why it is not covered better; empty if there is nothing to explain.
+        asked: the mission demands that the engine enforces it.
     """
 
     text: str
@@ -46,11 +46,11 @@ class Clause(Record):
 
 
 class Use(Record):
-    """A requirement at what it holds for.
+    """A requirement applied to a subject.
 
     Attributes:
-        subject: as a reader knows it: `MoveBase ToCharger`, `from Pick starts to Place succeeds`.
-        nodes: the keys of the nodes that are meant.
+        subject: in words: `MoveBase ToCharger`, `from Pick starts to Place succeeds`.
+        nodes: the keys of its nodes.
         how: `subject`: the claim names it; `satisfies` and `apply`: attached; `link`: the node satisfies a requirement
             whose claims name their subjects themselves.
         arguments: `(limit = 5 min)`.
@@ -68,12 +68,12 @@ class RequirementRow(Record):
     """A requirement.
 
     Attributes:
-        quality: as written; None: it names none.
+        quality: as written; None without one.
         quality_key: of the quality's row.
         clauses: all of them, as typed.
-        uses: what it holds for; none: it is attached to nothing.
-        loose: the clauses that are about no node, where others of them are about one.
-        is_hard: the engine is to enforce it.
+        uses: what it holds for; empty if it is attached to nothing.
+        loose: the clauses without a node, if other clauses have one.
+        is_hard: the engine must enforce it.
     """
 
     key: str
@@ -89,21 +89,22 @@ class RequirementRow(Record):
 
     @property
     def way(self) -> str:
-        """How it is held: one way, `enforced, monitored` or `enforced, not attached` where clauses differ, `not
-        attached`."""
+        """How it is covered: one way, or `enforced, monitored` or `enforced, not attached` if clauses differ, or `not
+        attached`.
+        """
         found = {clause.way for use in self.uses for clause in use.clauses}
         ways: list[str] = [way for way in WAYS if way in found] or (["linked"] if self.uses else [])
         return ", ".join(ways if ways and not self.loose else [*ways, "not attached"])
 
     @property
     def whys(self) -> tuple[str, ...]:
-        """Why no more is done about its clauses, each reason once."""
+        """Why its clauses are not covered better, each reason once."""
         found = [clause.why for use in self.uses for clause in use.clauses if clause.way == "monitored" and clause.why]
         return tuple(dict.fromkeys((*found, *(f"`{clause}` applies to no node" for clause in self.loose))))
 
     @property
     def nodes(self) -> tuple[str, ...]:
-        """The keys of all nodes that it has to do with."""
+        """The keys of all its nodes."""
         return tuple(dict.fromkeys(key for use in self.uses for key in use.nodes))
 
 
@@ -112,10 +113,10 @@ class QualityRow(Record):
 
     Attributes:
         name: as first written.
-        id: in the quality model, or of one's own declaration; None: nobody knows it.
-        characteristic: the ISO's; None: it belongs to none.
+        id: in the quality model, or the declared name; None: unknown.
+        characteristic: that of the ISO standard; None: it belongs to none.
         concerns: the keys of the nodes that satisfice it.
-        requirements: the keys of those that make it measurable, those of its parts too.
+        requirements: the keys of those that make it, or a part of it, measurable.
     """
 
     key: str
@@ -129,11 +130,11 @@ class QualityRow(Record):
 
 
 class NodeRow(Record):
-    """A node as it is written.
+    """A written node.
 
     Attributes:
         name: its kind and its instance name.
-        is_skill: an action or a condition that is no built-in: what the robot does.
+        is_skill: it is an action or a condition that is not built in: a skill of the robot.
     """
 
     key: str
@@ -146,7 +147,7 @@ class NodeRow(Record):
 
 
 class TreeRow(Record):
-    """A tree; nodes: the keys of its nodes; figure: how it is drawn."""
+    """A tree; nodes: the keys of its nodes; figure: its drawing."""
 
     name: str
     at: At
@@ -156,11 +157,11 @@ class TreeRow(Record):
 
 
 class Total(Record):
-    """What is said about one characteristic; `name` of the last one: what belongs to none.
+    """The totals of one characteristic; the last row is for what belongs to none.
 
     Attributes:
         concerns: nodes that satisfice it.
-        enforced, monitored, reviewed: clauses, each counted at every subject.
+        enforced, monitored, reviewed: clauses, counted for every subject.
     """
 
     id: str
@@ -173,12 +174,12 @@ class Total(Record):
 
 
 class Overview(Record):
-    """All of it.
+    """The whole overview.
 
     Attributes:
-        edition: of the quality model that the totals are counted by.
-        files: the missions that were looked at.
-        totals: of each characteristic of the edition, those nobody mentions too.
+        edition: of the quality model in which the totals are counted.
+        files: the missions.
+        totals: of each characteristic of the edition, including unused ones.
     """
 
     edition: str
@@ -201,12 +202,12 @@ class Overview(Record):
 
     @property
     def loose(self) -> tuple[tuple[RequirementRow, str], ...]:
-        """Clauses about no node, of requirements that have a node by others."""
+        """Clauses without a node, of requirements whose other clauses have one."""
         return tuple((requirement, clause) for requirement in self.requirements for clause in requirement.loose)
 
     @property
     def unenforced(self) -> tuple[RequirementRow, ...]:
-        """Hard requirements, some clause of which is only monitored somewhere, or about no node."""
+        """Hard requirements with a clause that is only monitored for some subject, or has no node."""
         return tuple(
             requirement
             for requirement in self.requirements
@@ -216,12 +217,12 @@ class Overview(Record):
 
     @property
     def bare_nodes(self) -> tuple[NodeRow, ...]:
-        """Skills that neither carry anything themselves nor stand below a node that does."""
+        """Skills that neither carry anything themselves nor are below a node that does."""
         return tuple(node for node in self.nodes if node.is_skill and node.carries == "none")
 
     @property
     def bare_trees(self) -> tuple[TreeRow, ...]:
-        """Trees no node of which carries anything itself."""
+        """Trees without a node that carries anything itself."""
         return tuple(tree for tree in self.trees if tree.is_bare)
 
     def coverage(self) -> dict[str, int]:

@@ -1,8 +1,8 @@
-"""The overview as one HTML page that needs nothing else: no network, no fonts, no files beside it.
+"""The overview as one self-contained HTML page: without network, fonts or other files.
 
-One invariant: without its script it says as much; the script only filters and highlights.  Each mission's trees stand
-beside the table, with qualities and requirements at their nodes; whatever stands for the same thing has the same
-`data-note` and is highlighted together.
+One invariant: without its script the page has the same contents; the script only filters and highlights.  Each
+mission's trees are beside the table, with qualities and requirements at their nodes; all marks of the same thing have
+the same `data-note` and are highlighted together.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def page(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
     """The whole page.
 
     Args:
-        missions: with the verdicts that are shown.
+        missions: with the verdicts to show.
     """
     return "\n".join(_lines(overview, missions)) + "\n"
 
@@ -252,5 +252,5 @@ def _at(at: At) -> str:
 
 _CODE: Final = re.compile("`([^`]*)`")
 _NONE: Final = '<span class="missing">none</span>'
-_FILES: Final = 3  # named in the title
-_BROAD: Final = 720  # pixels: a broader tree grows to the right
+_FILES: Final = 3  # files named in the title
+_BROAD: Final = 720  # pixels: a broader tree is drawn from left to right

@@ -88,7 +88,7 @@ tr.chosen > th:first-child, tr:target > th:first-child { border-left-color: var(
 @media (prefers-reduced-motion: no-preference) { html { scroll-behavior: smooth; } }
 """
 
-# A key (`r1`, `q2`) is chosen by a click or Enter on a row, a note or a node; Escape or the same click lets it go.
+# A click or Enter on a row, a note or a node selects its key (`r1`, `q2`); Escape or the same click deselects it.
 SCRIPT: Final = """\
 "use strict";
 (() => {

@@ -1,6 +1,6 @@
-"""Tables for a terminal, as wide as it is: cells are broken into lines where they have to be.
+"""Tables for a terminal: cells are broken into lines to fit its width.
 
-One invariant: no line is wider than the terminal, down to 60 columns, and nothing that is printed steers it.
+One invariant: no line is wider than the terminal, down to 60 columns, and no printed text controls the terminal.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from btq_lang.trace.wording import GAPS, shown_quality, summary, told
 
 
 def table(overview: Overview, colour: bool = False, width: int = 120) -> str:
-    """The overview for people at a terminal: requirements, concerns, gaps, totals, and a sentence."""
+    """The overview for people at a terminal: requirements, concerns, gaps, totals, and a summary."""
     return "\n".join(_lines(overview, painter(colour), max(width, _LEAST))) + "\n"
 
 
@@ -69,7 +69,7 @@ def _number(number: int) -> str:
 
 
 def _folder(overview: Overview) -> str:
-    """The folder of all places, which is then said once."""
+    """The folder common to all places, which is then printed once."""
     places = [row.at for row in overview.requirements]
     places += [node.at for node in overview.nodes]
     places += [quality.at for quality in overview.qualities]
@@ -78,7 +78,7 @@ def _folder(overview: Overview) -> str:
 
 
 def _is_relative(folder: str) -> bool:
-    """Whether a folder is one that can be left out: below the current one."""
+    """Whether a folder is below the current one."""
     return bool(folder) and not folder.startswith(("/", "..")) and ":" not in folder
 
 
@@ -100,7 +100,7 @@ def _requirement(each: RequirementRow, folder: str) -> tuple[Sequence[str], ...]
 def _table(
     heading: Sequence[str], rows: Sequence[Sequence[Sequence[str]]], paint: Paint, width: int, numbers_from: int = 99
 ) -> Iterator[str]:
-    """A table; each cell is lines, the first of the first cell is what the row is about."""
+    """A table whose cells are lines; the first line of the first cell is the row's subject."""
     cells = [[[printable(line) for line in cell] for cell in row] for row in rows]
     widths = [
         max(cells_of(title), *(cells_of(line) for row in cells for line in row[at])) for at, title in enumerate(heading)
@@ -124,7 +124,7 @@ def _table(
 
 
 def _row(cells: Sequence[str], widths: Sequence[int], numbers_from: int, paint: Paint, style: str = "") -> str:
-    """A line; style: of its first cell."""
+    """A line of cells; style: of its first cell."""
     parts = []
     for at, (cell, room) in enumerate(zip(cells, widths, strict=True)):
         blanks = " " * (room - cells_of(cell))

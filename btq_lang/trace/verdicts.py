@@ -1,6 +1,6 @@
-"""Verdicts on the page: what clauses came to, how their measures are distributed, the runs that broke them worst.
+"""Verdicts on the page: results of clauses, distributions of their measures, and the runs with the worst violations.
 
-One invariant: a drawing says nothing that no text says, and colour is never the only sign.
+One invariant: every fact in a drawing is also in a text, and colour is never the only sign.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 
 def verdicts(missions: Sequence[MissionVerdicts], keys: Mapping[str, str]) -> Iterator[str]:
-    """The section of the page.
+    """The page's section of verdicts.
 
     Args:
-        keys: of the page's rows of requirements, by name.
+        keys: of the requirements' rows on the page, by name.
     """
     yield '<section id="verdicts" aria-labelledby="h-verdicts"><h2 id="h-verdicts">Verdicts</h2>'
     for mission in missions:
@@ -39,7 +39,7 @@ def verdicts(missions: Sequence[MissionVerdicts], keys: Mapping[str, str]) -> It
 
 
 def outcomes(missions: Sequence[MissionVerdicts]) -> SaidOf:
-    """What the boxes of nodes show of their instances in the logs, and the classes that they are drawn as."""
+    """Further lines for the boxes of nodes about their instances in the logs, and the classes of the boxes."""
     found: dict[int, list[NodeSummary]] = {}
     for mission in missions:
         for each in mission.nodes:
@@ -135,7 +135,7 @@ def _histogram(found: Histogram) -> str:
     return "".join(parts) + "</svg>"
 
 
-# ---- a run ----
+# ---- timelines ----
 
 
 def _timeline(timeline: Timeline) -> Iterator[str]:
@@ -169,7 +169,7 @@ _HIGH: Final = 110
 _GROUND: Final = 92
 _TEXT: Final = 13
 _EDGE: Final = 6
-_DEEPEST: Final = 12  # levels that are set in
+_DEEPEST: Final = 12  # levels that are indented
 _CAME_TO: Final = {"S": "succeeded", "F": "failed", "H": "halted", "O": "interrupted"}
 
 VERDICT_STYLE: Final = """\

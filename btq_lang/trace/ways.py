@@ -1,6 +1,6 @@
-"""How each clause is held, as far as the requirement itself says it: by people where it names a method of theirs.
+"""How each clause is covered, as far as the requirement itself declares it: by people if it names such a method.
 
-What the generated tree enforces is not known here: whoever knows it hands `collect` a function that says it.
+What the generated tree enforces is unknown here: callers that know it pass `collect` a function that returns it.
 """
 
 from __future__ import annotations
@@ -15,23 +15,23 @@ from btq_lang.trace.overview import Clause
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    # For each of `applied` of a mission's requirements, in its order, its clauses.
+    # Gives the clauses of each of a mission's `applied` requirements, in their order.
     Ways: TypeAlias = Callable[[Workspace, str, Requirements], Sequence[Sequence[Clause]]]
 
 
 def declared_ways(
     workspace: Workspace, path: str, found: Requirements, because: str = ""
 ) -> Sequence[Sequence[Clause]]:
-    """Each claim monitored, or reviewed where the requirement is verified by people.
+    """Every claim as monitored, or as reviewed if people verify the requirement.
 
     Args:
-        because: why no more can be said of those that the engine is to enforce.
+        because: the reason to give for claims that the engine must enforce.
     """
     return [_clauses(applied, because) for applied in found.applied]
 
 
 def is_hard(requirement: Requirement) -> bool:
-    """Whether the engine is to enforce a requirement, rather than people to look after it."""
+    """Whether the engine must enforce a requirement, which people do not verify."""
     return requirement.action in ("fail", "halt") and requirement.method not in _BY_PEOPLE
 
 

@@ -8,7 +8,7 @@ from btq_lang.trace.overview import Overview, QualityRow, RequirementRow, Use
 
 
 def summary(overview: Overview) -> str:
-    """How many there are of everything, in a sentence."""
+    """All counts, in a sentence."""
     ways = {way: sum(getattr(total, way) for total in overview.totals) for way in ("enforced", "monitored", "reviewed")}
     ways["without a node"] = len(overview.loose)
     held = ", ".join(f"{number} {way}" for way, number in ways.items() if number)
@@ -31,14 +31,15 @@ def counted(number: int, one: str, several: str = "") -> str:
 
 
 def shown_quality(quality: QualityRow) -> str:
-    """A quality's name; where the model calls it otherwise, that as well."""
+    """A quality's name, with the model's name if that differs."""
     known = quality.id
     return quality.name if known is None or known.endswith(quality.name) else f"{quality.name} ({known})"
 
 
 def told(requirement: RequirementRow, use: Use) -> str:
-    """What is to be said of a subject: how it came by its requirement, where that is no `satisfies`, and how it is
-    held, where that is not the same for all."""
+    """The remarks on a subject: how its requirement is attached, unless by `satisfies`, and how it is covered, unless
+    that is the same for all.
+    """
     parts = [_ATTACHED[use.how]]
     if "," in requirement.way:
         parts.append(", ".join(dict.fromkeys(clause.way for clause in use.clauses)))
