@@ -9,9 +9,9 @@
     built = btq.build(workspace, path).files        # what `btq build` writes, in memory
 
 Likewise `import_xml`, `trace_table`, `draw_tree`, `diff_missions` and `verify_logs`.  All are typed, and `help` of each
-says its arguments and errors.
+lists its arguments and errors.
 
-Names are imported when they are first used, so that `import btq_lang` costs little.
+Names are imported on first use, so that `import btq_lang` is fast.
 """
 
 from __future__ import annotations
@@ -102,5 +102,5 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    """The public names, whether they are imported yet or not: shells complete them."""
+    """The public names, imported or not: interactive shells complete them."""
     return list(__all__)

@@ -1,7 +1,7 @@
 """The command line: `btq check`, `format`, `build`, `import`, `trace`, `graph`, `explain`, `init`, `completion`.
 
-Exit codes, everywhere: 0 clean, 1 findings, 2 usage or I/O.  Nothing is decided here: arguments in, the pure parts
-called, their answer printed.  A command imports what it needs when it runs, for most runs are one `btq check`.
+Exit codes of all commands: 0 clean, 1 findings, 2 usage or I/O. It parses arguments, calls pure functions and prints
+their results.  A command imports what it needs when it runs, because most runs are a `btq check`.
 """
 
 from __future__ import annotations
@@ -14,32 +14,32 @@ from typing import Any
 
 CLEAN, FINDINGS, TROUBLE = 0, 1, 2
 _SYMBOLS_LIKE_OPTIONS = ("->",)
-_MODULES = {"import": "import_xml", "trace": "tracing"}  # of commands whose own name cannot be a module's
+_MODULES = {"import": "import_xml", "trace": "tracing"}  # of commands whose name cannot be a module's
 
 
 def program() -> None:
-    """The program `btq`: runs the command and ends the process.
+    """The program `btq`: run the command and end the process.
 
-    It ends as it stands: to free every object first, as Python does, takes a tenth of a small check, and the system
-    takes all of it back anyway.
+    It skips Python's shutdown: freeing every object takes a tenth of a small check, and the system reclaims all memory
+    anyway.
     """
-    gc.set_threshold(100_000, 50, 10)  # nearly all that a command makes stays: looking for garbage takes a tenth of it
+    gc.set_threshold(100_000, 50, 10)  # nearly all objects stay alive: collection takes a tenth of the time
     try:
         code = main()
-    except Exception as error:  # a mistake of btq's: nothing of it says that there are findings
+    except Exception as error:  # a bug in btq: the exit code must not mean findings
         code = _internal_error(error)
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()
         except OSError:
             code = TROUBLE
-        except ValueError:  # closed, since nobody reads it
+        except ValueError:  # closed, because its reader has gone
             pass
     os._exit(code)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; `arguments` without the program's name, None: those of the process."""
+    """Run a command; returns its exit code.  `arguments` exclude the program's name; None: those of the process."""
     if sys.stdout is None or sys.stderr is None:  # closed before the start: `btq check >&-`
         from io import BytesIO, TextIOWrapper
 
@@ -70,8 +70,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _plain_check(paths: Sequence[str]) -> int:
-    """`btq check PATH …`, the command that editors, hooks and people run all day: no argparse, no needless work."""
-    gc.disable()  # what imports make stays; looking for garbage in it takes a tenth of the time of a small check
+    """`btq check PATH …`, the most frequent command: it runs without argparse and other imports."""
+    gc.disable()  # objects of imports stay alive; collection takes a tenth of the time of a small check
     from btq_lang.commands.check import run
     from btq_lang.commands.options import CheckOptions
 
@@ -81,7 +81,7 @@ def _plain_check(paths: Sequence[str]) -> int:
 
 
 def _command(name: str) -> Callable[[Any], int]:
-    """What runs a command."""
+    """The function that runs a command."""
     if name == "lsp":
         return _serve
     from importlib import import_module
@@ -91,10 +91,10 @@ def _command(name: str) -> Callable[[Any], int]:
 
 
 def _serve(options: Any) -> int:
-    """`btq lsp`: the server, which is also the program `btq-lsp`."""
+    """`btq lsp`: the server, which `btq-lsp` starts too."""
     from btq_lang.server import serve  # the protocol's types take longer to import than most commands to run
 
-    raise SystemExit(serve(options))  # standard output was the editor's and is closed: nobody may flush it
+    raise SystemExit(serve(options))  # standard output was the editor's and is closed: it must not be flushed
 
 
 def _finish(run: Callable[[Any], int], options: object) -> int:
@@ -103,10 +103,10 @@ def _finish(run: Callable[[Any], int], options: object) -> int:
         sys.stdout.flush()
     except KeyboardInterrupt:
         return 130
-    except BrokenPipeError:  # the reader of our output has seen enough: `btq check | head`; ruff says 0, too
+    except BrokenPipeError:  # the reader has stopped: `btq check | head`; ruff exits with 0, too
         sys.stderr.close()
         return CLEAN
-    except OSError as error:  # our own output cannot be written: a full disk
+    except OSError as error:  # standard output cannot be written: a full disk
         print(f"btq: {error.strerror}", file=sys.stderr)
         return TROUBLE
     return code

@@ -1,11 +1,11 @@
 """The commands: a module each, with a function `run(options)` that returns the exit code.
 
-One invariant: 0 is clean, 1 says that there are findings, 2 that the call or a file is at fault; output files appear
-whole or not at all.  A command line comes in, and text on the standard streams and files go out.  Not known here: how
-anything is checked, built or judged; commands ask the rooms that know.
+One invariant: 0 means clean, 1 findings, 2 a usage or I/O error; output files are written completely or not at all.  A
+command line comes in, and text on the standard streams and files go out.  How to check, build or judge is unknown here;
+other packages do that.
 
-    arguments.py     the command line, and which module runs which command
-    files.py, output.py, options.py   what commands share: which files, where to, which findings
+    arguments.py the command line, and which module runs which command
+    files.py, output.py, options.py shared by commands: input files, output, selection of findings
     check.py, format.py, build.py …   the commands
     shell/           completion scripts
 """

@@ -11,11 +11,11 @@ from btq_lang.workspace.watcher import watch
 
 
 def run_again(run: Callable[[], tuple[str, ...]], paths: Sequence[str], watched: tuple[str, ...]) -> None:
-    """Run for every change, until Ctrl+C.
+    """Run on every change, until Ctrl+C.
 
     Args:
-        run: one run; it answers the files that the next one would depend on.
-        paths: what the command line asks for; new files among them are seen as well.
+        run: performs one run; returns the files that the next one depends on.
+        paths: of the command line; new files among them count as changes, too.
         watched: the files that the first run depended on.
     """
     state = {"files": watched}

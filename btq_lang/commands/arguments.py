@@ -1,4 +1,4 @@
-"""The command line as argparse has it: the commands and their options; what runs them is not imported."""
+"""The command line for argparse: the commands and their options, without importing the commands."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ SEVERITIES = ("error", "warning", "info", "hint")
 
 
 def build_parser() -> Parser:
-    """The parser of the command line: shell completion and the documentation are made from it, too.
+    """The parser of the command line, from which shell completion and documentation are generated, too.
 
-    What it parses has the command's name as `command` and the command's own parser as `parser`.
+    Its result has the command's name as `command` and the command's own parser as `parser`.
     """
     parser = Parser(
         prog="btq",
@@ -52,10 +52,10 @@ def build_parser() -> Parser:
 
 
 class Parser(ArgumentParser):
-    """Of a word that is no choice, it says what was probably meant; argparse does since Python 3.14."""
+    """A parser that suggests what an invalid choice was probably meant to be, as argparse does since Python 3.14."""
 
     def error(self, message: str) -> NoReturn:
-        """End the program with the usage and what is wrong."""
+        """End the program with the usage and the error."""
         if wrong := re.search(r"invalid choice: '([^']*)' \(choose from (.*)\)$", message):
             close = near(wrong[1], wrong[2].replace("'", "").split(", "), limit=1)
             message += f"; did you mean {close[0]}?" if close else ""
@@ -150,7 +150,7 @@ def _add_build(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument("--force", action="store_true", help="overwrite XML that btq did not write")
     parser.add_argument("--verbose", action="store_true", help="show for every clause whether and how it is enforced")
     parser.add_argument("--watch", action="store_true", help="build again whenever a file changes")
-    parser.set_defaults(report="full")  # editors want a line for each error
+    parser.set_defaults(report="full")  # editors need one line for each error
     _add_color(parser)
 
 

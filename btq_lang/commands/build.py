@@ -26,11 +26,11 @@ from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_
 
 
 class Target(Record):
-    """A file to be written, or to be removed.
+    """A file to write or to remove.
 
     Attributes:
-        text: what is to stand there; None: nothing.
-        old: what stands there now; None: nothing.
+        text: the new contents; None: remove the file.
+        old: the current contents; None: no file.
     """
 
     path: str
@@ -39,12 +39,12 @@ class Target(Record):
 
 
 class Outcome(Record):
-    """What one run did.
+    """The result of one run.
 
     Attributes:
         code: the exit code.
         watched: the files that another run would depend on.
-        files: what was written, or stood there already.
+        files: those written, or already up to date.
     """
 
     code: int
@@ -75,7 +75,7 @@ def _usage_problem(options: Namespace) -> str | None:
 
 
 def build(options: Namespace, files: Files) -> Outcome:
-    """One run; what there is to say of it is printed."""
+    """Build once, and print messages."""
     groups, problems = files.groups(options.paths, options.stdin_filename)
     if options.target:
         groups = tuple(replace(group, workspace=for_target(group.workspace, options.target)) for group in groups)
@@ -92,7 +92,7 @@ def build(options: Namespace, files: Files) -> Outcome:
         print(f"btq: {problem}", file=sys.stderr)
     if nothing := nothing_below(options.paths, groups):
         print(f"btq build: {nothing}", file=sys.stderr)
-    if problems or nothing:  # a file that could not be read may be part of any other
+    if problems or nothing:  # an unreadable file may be part of any other
         return Outcome(2, watched)
     if _has_errors(groups, options):
         return Outcome(1, watched)
@@ -147,7 +147,7 @@ def _outputs(group: Group, places: Places, options: Namespace) -> tuple[Output, 
 
 
 def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
-    """Tell what keeps the files from being built."""
+    """Print the errors that prevent the build; returns whether there are any."""
     findings = [
         Finding(path, group.workspace.files[path].source, each)
         for group in groups
@@ -171,22 +171,23 @@ def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
 
 
 def _tell(remarks: tuple[Remark, ...], word: str, groups: tuple[Group, ...]) -> int:
-    """Print what an export has to say; how much that was."""
+    """Print an export's remarks; returns how many."""
     for remark in remarks:
         file = next(group.workspace.files[remark.path] for group in groups if remark.path in group.workspace.files)
         line, column = file.lines.position(remark.span.start)
-        place = "" if file.origin else f":{line + 1}:{column + 1}"  # XML is read as this language would say it
+        place = "" if file.origin else f":{line + 1}:{column + 1}"  # places are in the text that XML was converted to
         print(f"{shown(remark.path)}{place}: {word}: {remark.message}", file=sys.stderr)
     return len(remarks)
 
 
 def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: bool) -> None:
-    """Print how the clauses of requirements are held: those that are to be enforced one by one, where they are not, or
-    where there is something to say of it."""
+    """Print how the clauses of requirements are covered, with a line for each one demanded to be enforced that is not,
+    or that has a remark.
+    """
     clauses: dict[object, Held] = {}
     for held in (held for done in made for applied in done.held for held in applied):
         key = held.requirement, held.clause, held.place.path, held.place.span, id(held.node and held.node.node)
-        if key not in clauses or held.way == "enforced":  # what one file cannot enforce, another may
+        if key not in clauses or held.way == "enforced":  # one file may enforce what another cannot
             clauses[key] = held
     for held in clauses.values():
         if not verbose and (not held.asked or (held.way == "enforced" and not held.why)):
@@ -202,7 +203,7 @@ def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: b
         for done in made
         for requirement, claim in done.loose
     }
-    loose = {key: place for key, place in loose.items() if key not in known}  # one file's may be another's
+    loose = {key: place for key, place in loose.items() if key not in known}  # another file may have its node
     for (requirement, clause, *_), place in loose.items():
         remark = Remark(*_absolute(place, groups), f"{requirement}, `{clause}` applies to no node")
         _tell((remark,), "not checked", groups)
@@ -214,7 +215,7 @@ def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: b
 
 
 def _tell_guessed(exports: list[Export]) -> None:
-    """Print which nodes have a model that says what they may be, for the mission does not say it."""
+    """Print which nodes got a guessed category in the models, because the mission does not declare it."""
     guessed = {name: category for each in exports for name, category in each.guessed.items()}
     shown = [f"{name} ({category})" for name, category in sorted(guessed.items())[:_GUESSES_SHOWN]]
     if len(guessed) > len(shown):
@@ -225,14 +226,14 @@ def _tell_guessed(exports: list[Export]) -> None:
 
 
 def _absolute(place: Place, groups: tuple[Group, ...]) -> tuple[str, Span]:
-    """The file of a place, and where it is in that."""
+    """The file of a place, and its span in that file."""
     assert place.path is not None, "a clause is part of a file"
     file = next(group.workspace.files[place.path] for group in groups if place.path in group.workspace.files)
     return place.path, place.span.shifted(file.start_of(place.anchor)) if place.anchor is not None else place.span
 
 
 def _same_place(made: list[Output]) -> Iterator[str]:
-    """Two files that would be written to one place: `a.btq` and `a.qualitybtcpp`."""
+    """Messages for two files that would be written to one place: `a.btq` and `a.qualitybtcpp`."""
     known: dict[str, str] = {}
     for output in made:
         other = known.setdefault(output.place, output.path)
@@ -244,7 +245,7 @@ def _same_place(made: list[Output]) -> Iterator[str]:
 
 
 def _targets(output: Output) -> Iterator[Target]:
-    """The XML of a mission and its side file; one of an earlier build goes."""
+    """The XML of a mission and its side file; an outdated side file is removed."""
     yield Target(output.place, output.text, _old_text(output.place))
     side = side_path(output.place)
     old = _old_text(side)
@@ -257,7 +258,7 @@ def _old_text(path: str) -> str | None:
 
 
 def _compare(targets: list[Target], is_more_stale: bool) -> int:
-    """`--check`: name the files that are not what they would be, or would not be."""
+    """`--check`: print the files that a build would change or remove."""
     stale = [target for target in targets if target.text != target.old]
     for target in stale:
         state = "missing" if target.old is None else "out of date" if target.text is not None else "stale"
@@ -266,7 +267,7 @@ def _compare(targets: list[Target], is_more_stale: bool) -> int:
 
 
 def _write(targets: list[Target], options: Namespace) -> int:
-    """Write what has changed: all of it, or where one file cannot be written, none."""
+    """Write what has changed: all files, or none if one cannot be written."""
     changed = [target for target in targets if target.text != target.old]
     foreign = [target for target in changed if not options.force and _is_foreign(target.old)]
     for target in foreign:
@@ -298,7 +299,7 @@ def _put(path: str, text: str | None) -> None:
     """Write a file, or remove it.
 
     Raises:
-        OSError: it cannot be.
+        OSError: that fails.
     """
     if text is None:
         os.unlink(path)
@@ -312,7 +313,7 @@ def _is_foreign(text: str | None) -> bool:
 
 
 def _take_back(targets: list[Target]) -> None:
-    """Put back what stood in files before, as far as the disk lets us."""
+    """Restore the old contents of files, as far as possible."""
     for target in targets:
         try:
             _put(target.path, target.old)

@@ -23,13 +23,13 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class Built(Record):
-    """What `btq build` makes of a mission.
+    """The output of `btq build` for a mission.
 
     Attributes:
-        files: the texts by path, the XML of each mission beside it and `<name>.qreq.json` where one says more than its
-            XML; none where there are problems.
-        problems: what keeps the mission from being built: its errors, and what XML cannot say.
-        repairs: what the XML says otherwise than the mission, for the engine would refuse it.
+        files: the texts by path, the XML of each mission beside it and `<name>.qreq.json` if a mission has more than
+            its XML; none if there are problems.
+        problems: why the mission cannot be built: its errors, and what XML cannot express.
+        repairs: where the XML differs from the mission, because the engine would refuse the original.
     """
 
     files: Mapping[str, str]
@@ -40,8 +40,7 @@ class Built(Record):
 def build(
     workspace: Workspace, path: str, *, target: str | None = None, bundle: bool = False, enforce: bool = True
 ) -> Built:
-    """The XML of a mission and of all that it includes, with their side files, byte for byte as `btq build` writes it.
-
+    """The XML of a mission and all its includes, with their side files, byte for byte as `btq build` writes it.
     Nothing is written to the disk.
 
         >>> from btq_lang import Workspace, build
@@ -62,7 +61,7 @@ def build(
         path: of the mission in the workspace.
         target: the version of the engine, such as "4.8"; None: the newest of the project.
         bundle: one file with all that the mission includes.
-        enforce: with the nodes that enforce requirements.
+        enforce: add the nodes that enforce requirements.
 
     Raises:
         KeyError: there is no such file.
@@ -105,13 +104,13 @@ def errors(
     verbatim: bool = False,
     replaces: bool = True,
 ) -> Iterator[tuple[str, Diagnostic]]:
-    """What keeps missions from being built, each with its file.
+    """The diagnostics that prevent the build, each with its file.
 
     Args:
-        given: the files that were asked for.
-        bundled: all that a mission includes is in its file.
-        verbatim: only what is wrong with how a file is written counts, whatever it means.
-        replaces: the XML is written beside the missions, so that what is there now does not count.
+        given: the requested files.
+        bundled: a mission's includes are in its file.
+        verbatim: only syntax errors count.
+        replaces: the XML is written beside the missions, so that existing XML there does not count.
     """
     built = sources(workspace, given)
     included = dict.fromkeys(each for path in built for each in workspace.closure(path) if each not in built)

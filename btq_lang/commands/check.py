@@ -1,4 +1,4 @@
-"""`btq check`: find what is wrong with files, mend what is certain, report."""
+"""`btq check`: find mistakes in files, fix those with safe fixes, report."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _ORDER = tuple(Severity)
 _FAILS = (Severity.ERROR, Severity.WARNING)
-_ROUNDS = 10  # of fixing: a fix may make room for another
+_ROUNDS = 10  # of fixing: a fix may enable another
 
 
 def run(options: CheckOptions) -> int:
@@ -51,14 +51,14 @@ def _usage_problem(options: CheckOptions) -> str | None:
 
 
 def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
-    """One run: its exit code, and the files that another run would depend on."""
+    """Check once; returns the exit code and the files that another run depends on."""
     groups, problems = files.groups(options.paths, options.stdin_filename)
     groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
     mended = 0
     if options.fix:
         groups, mended, trouble = _fix(groups, options, files)
         problems += trouble
-        mended = 0 if trouble else mended  # what could not be written is not mended
+        mended = 0 if trouble else mended  # fixes that could not be written do not count
     for problem in problems:
         print(f"btq: {problem}", file=sys.stderr)
     checked = tuple(path for group in groups for path in group.given)
@@ -68,14 +68,14 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         for path, found in _found(group, options.jobs):
             text = group.workspace.files[path].source
             found = tuple(each for each in found if not is_reported_beside(each, is_checked))
-            if path in group.damaged:  # what cannot be read there is told already: the bytes
+            if path in group.damaged:  # the bytes that cannot be decoded are already reported
                 found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
             findings += [Finding(path, text, diagnostic) for diagnostic in found if _is_wanted(diagnostic, options)]
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     nothing = nothing_below(options.paths, groups)
     report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), nothing)
     _print(with_paths(report, shown), options, mended)
-    if nothing and options.output_format not in ("full", "concise"):  # those for people say it in their summary
+    if nothing and options.output_format not in ("full", "concise"):  # formats for people have it in their summary
         print(f"btq check: {nothing}", file=sys.stderr)
     watched = tuple(
         path for group in groups for path in (*group.workspace.files, *group.absent, group.project_file) if path
@@ -91,8 +91,8 @@ def _trouble(problem: LoadProblem) -> Trouble:
 
 
 def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...]]]:
-    """The diagnostics of each file that was asked for, in order; many files on several processors."""
-    if len(group.given) == 1:  # as most often: nobody need be told how far it is
+    """The diagnostics of each requested file, in order; many files are checked in parallel."""
+    if len(group.given) == 1:  # the usual case needs no progress
         yield group.given[0], check(group.workspace, group.given[0])
         return
     from btq_lang.commands.progress import Progress
@@ -113,7 +113,7 @@ def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...
 def _fix(
     groups: tuple[Group, ...], options: CheckOptions, files: Files
 ) -> tuple[tuple[Group, ...], int, tuple[LoadProblem, ...]]:
-    """Apply the safe fixes to the files that were asked for; the groups with the new texts, and how many fixes."""
+    """Apply the safe fixes to the requested files; returns the groups with the new texts, and how many fixes."""
     from btq_lang.workspace.fixes import fixed
 
     done: list[Group] = []
@@ -142,14 +142,14 @@ def _fix(
                     write_whole(path, text)
                 except OSError as error:
                     trouble.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
-                    unchanged = group.workspace.files[path]  # what is found in it still stands on the disk
+                    unchanged = group.workspace.files[path]  # the file on the disk still has its findings
                     workspace = Workspace({**workspace.files, path: unchanged}, workspace.project)
         done.append(replace(group, workspace=workspace))
     return tuple(done), mended, tuple(trouble)
 
 
 def _print(report: Report, options: CheckOptions, mended: int) -> None:
-    # With --fix, standard input's new text is the output, so the report goes elsewhere.
+    # With --fix, standard output has the new text of standard input, so the report goes to standard error.
     stream = sys.stderr if options.fix and STDIN in options.paths else sys.stdout
     colour = options.color == "always" or (options.color == "auto" and wants_colour(stream.isatty(), os.environ))
     width = _width() if stream.isatty() else 120
@@ -160,7 +160,7 @@ def _print(report: Report, options: CheckOptions, mended: int) -> None:
 
 
 def _configured(workspace: Workspace, options: CheckOptions) -> Workspace:
-    """The workspace with what the command line selects and ignores, on top of what the project file says."""
+    """The workspace with the command line's selection of rules on top of the project file's."""
     project: Project = workspace.project
     select, ignore = _rules(options.select), _rules(options.ignore)
     if not select and not ignore:

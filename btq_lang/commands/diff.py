@@ -24,11 +24,11 @@ from btq_lang.workspace.loader import LoadProblem, absolute, collect, find_proje
 
 
 class Trouble(Exception):
-    """What was asked for cannot be compared."""
+    """The arguments cannot be compared; the message says why."""
 
 
 def run(options: Namespace) -> int:
-    """Compare and print; 0 the same, 1 different, 2 neither can be said."""
+    """Compare and print; returns 0: the same, 1: different, 2: the comparison failed."""
     try:
         comparisons = tuple(
             _of_revisions(options) if options.git is not None else _of_paths(options.paths, options.stdin_filename)
@@ -54,7 +54,7 @@ def _rendered(comparisons: tuple[Comparison, ...], options: Namespace) -> Iterat
 
 
 def _warn(side: Side) -> None:
-    """Say of what is compared only in part that it is."""
+    """Warn about a mission that is compared only in part."""
     for path in side.paths:
         file = side.workspace.files[path]
         for include in file.includes:
@@ -90,11 +90,11 @@ def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[Comparis
         yield _with_stdin(paths, stdin_filename)
         return
     old, new = (None if path == os.devnull else absolute(path) for path in paths)
-    # Before anything is made of the paths, so that what is missing is called as it was asked for.
+    # Checked before paths are normalised, so that messages name them as on the command line.
     missing = (path for path in (old, new) if path is not None and not os.path.exists(path))
     _raise(tuple(LoadProblem(path, f"cannot be read: {os.strerror(errno.ENOENT)}") for path in missing))
     if old is not None and new is not None and os.path.isdir(old) != os.path.isdir(new):
-        # As `diff` does: a file and the one of its name in a folder.
+        # As in `diff`: a file and a folder compare with the file of that name in the folder.
         old = f"{old}/{os.path.basename(new)}" if os.path.isdir(old) else old
         new = f"{new}/{os.path.basename(old)}" if os.path.isdir(new) else new
     sides = [{} if path is None else _sides(path) for path in (old, new)]
@@ -103,7 +103,7 @@ def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[Comparis
 
 
 def _with_stdin(paths: list[str], stdin_filename: str | None) -> Comparison:
-    """One file, and one that comes from standard input."""
+    """Compare a file with standard input."""
     other = next((path for path in paths if path != STDIN), None)
     if other is None:
         raise Trouble("one of the two can be standard input, not both")
@@ -119,7 +119,7 @@ def _with_stdin(paths: list[str], stdin_filename: str | None) -> Comparison:
 
 
 def _pairs(old: Collection[str], new: Collection[str]) -> list[tuple[str, str]]:
-    """Files of one name, and an XML file with the .btq file that would be built into it."""
+    """Pairs of files with equal names, or of an XML file and the .btq file that builds it."""
     came = set(new) - set(old)
     pairs = []
     for name in old:
@@ -131,7 +131,9 @@ def _pairs(old: Collection[str], new: Collection[str]) -> list[tuple[str, str]]:
 
 
 def _sides(path: str) -> dict[str, Side]:
-    """The mission of a file, with all that it includes; or those of a folder, each by itself, by their names in it."""
+    """The mission of a file, with all its includes; or the missions of a folder, each without includes, by their names
+    in it.
+    """
     if not os.path.isdir(path):
         return {"": _built_on_disk(path) or _on_disk(path)}
     found: dict[str, Side] = {}
@@ -146,21 +148,21 @@ def _sides(path: str) -> dict[str, Side]:
 
 
 def _on_disk(path: str, stdin_filename: str | None = None) -> Side:
-    """A file with what it includes; `-` is standard input."""
+    """A file with its includes; `-` is standard input."""
     (group,) = _groups([path], stdin_filename)
     (own,) = group.given
     return Side(shown(own), group.workspace, group.workspace.closure(own), shown)
 
 
 def _by_itself(built: Side, is_file: Callable[[str], bool]) -> Side:
-    """A built file of a folder without what it includes, as long as that is in XML of its own."""
+    """A built file of a folder without its includes, if these are separate XML files."""
     *included, own = built.paths
     bundled = (path for path in included if not is_file(f"{os.path.splitext(path)[0]}.xml"))
     return replace(built, paths=(*bundled, own))
 
 
 def _built_on_disk(path: str) -> Side | None:
-    """What a built XML file was made of, where its side file says so."""
+    """The mission from which an XML file was built, if its side file tells."""
     built = as_built(path, Disk())
     return None if built is None else _side(shown(path), built)
 
@@ -173,7 +175,7 @@ def _side(name: str, built: Built) -> Side:
 
 
 def _xml_below(folder: str) -> tuple[str, ...]:
-    """The XML below a folder that is compared: what a build wrote is not, where its .btq is there to say it."""
+    """The XML files below a folder to compare: without those built from a .btq file that is there."""
     project = find_project(folder).project
     paths, problems = collect([folder], project, (".xml", *SUFFIXES))
     _raise(problems)
@@ -213,7 +215,7 @@ def _of_revisions(options: Namespace) -> Iterator[Comparison]:
 
 
 def _revised(known: Revisions, revision: str | None, path: str | None, with_includes: bool) -> Side:
-    """A file as it was; revision: None is the working tree."""
+    """A file at a revision; None: the working tree."""
     if path is None:
         return NOWHERE
     if revision is None:

@@ -1,4 +1,4 @@
-"""The disk, for whoever compares what is there with another revision."""
+"""The working tree, as one side of a comparison with another revision."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class Disk:
-    """The files as they are now."""
+    """The files on the disk."""
 
     def is_file(self, path: str) -> bool:
         return os.path.isfile(path)

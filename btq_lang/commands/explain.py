@@ -1,4 +1,4 @@
-"""`btq explain`: what a rule, a node, a quality, a word of the language, a port, a verdict or a unit is."""
+"""`btq explain`: explains a rule, a node, a quality, a word of the language, a port, a verdict or a unit."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from btq_lang.util.spelling import near
 
 
 def run(options: Namespace) -> int:
-    """Print all that goes by the names; without a name, the names there are."""
+    """Print everything with the given names; without a name, list all names."""
     names = [name for word in options.subject if (name := word.strip())]
-    pages = list(_pages(" ".join(names)))  # a name of several words, as `time behaviour`
+    pages = list(_pages(" ".join(names)))  # a name of several words: `time behaviour`
     unknown = []
     if not names:
         pages = ["\n".join(_overview())]
@@ -120,7 +120,7 @@ def _attribute(kind: AttributeKind) -> str:
 
 
 def _ports(name: str) -> Iterator[str]:
-    """The ports of this name that nodes of the engine have."""
+    """The pages of ports with this name, of nodes of the engine."""
     found = [(kind, port) for kind in BUILTINS.values() for port in kind.ports if port.name == name]
     if found and name not in RESERVED_ATTRIBUTES:
         lines = [f"{f'{kind.tag}:':<24} {port.type:<13} {port.doc}" for kind, port in found]
@@ -136,7 +136,7 @@ def _type(name: str) -> Iterator[str]:
 
 
 def _sign(name: str) -> Iterator[str]:
-    """`{pose}` and `{ }` are one sign, and `btq: ignore[unused-tree]` is a sign with its rule."""
+    """The pages of signs: `{pose}` and `{ }` are one, and `btq: ignore[unused-tree]` is a sign with its rule."""
     plain = name.partition("[")[0]
     if name.startswith("{") and name.endswith("}") and name != "{=}":
         plain = "{@ }" if name.startswith("{@") else "{ }"
@@ -174,7 +174,7 @@ def _verdicts() -> Iterator[str]:
 
 
 def _likely(name: str) -> tuple[str, ...]:
-    """What looks like it, or else what it is a part of."""
+    """Names similar to a name, or else names that contain it."""
     names = _names()
     parts = [each for each in names if len(name) > 2 and name.casefold() in each.casefold()]
     return near(name, names) or tuple(sorted(parts, key=lambda each: (len(each), each))[:5]) or nearest_units(name)

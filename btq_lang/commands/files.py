@@ -1,4 +1,4 @@
-"""The files of a command line, in their projects, parsed once and for as long as they do not change."""
+"""The files of a command line, in their projects, cached until they change."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class Group(Record):
 
     Attributes:
         workspace: those files, and what they include.
-        given: the paths that were asked for, those of `workspace` that could be read.
-        damaged: the paths that are no UTF-8: never written back.
-        absent: where included files would be that are not there.
-        project_file: where the project was read from, if it was.
+        given: the requested paths in `workspace`, those that could be read.
+        damaged: the paths of files that are not UTF-8 and are never written back.
+        absent: the paths of missing includes.
+        project_file: from which the project was read, if any.
     """
 
     workspace: Workspace
@@ -38,12 +38,12 @@ class Group(Record):
 
 
 def usage_problem(paths: Iterable[str]) -> str | None:
-    """What is wrong with the paths of a command line, before any is looked at."""
+    """The usage error in the paths of a command line, without accessing the disk."""
     return "empty path; `.` is this folder" if "" in paths else None
 
 
 def nothing_below(paths: Iterable[str], groups: Iterable[Group]) -> str | None:
-    """What to say where folders were asked for and there is no mission below any of them."""
+    """The message if folders were requested and none contains a mission."""
     folders = [path.rstrip("/") + "/" for path in paths if os.path.isdir(path)]
     if not folders or any(group.given for group in groups):
         return None
@@ -51,18 +51,18 @@ def nothing_below(paths: Iterable[str], groups: Iterable[Group]) -> str | None:
 
 
 def write_stdout(text: str) -> None:
-    """Print a file as it is: standard output itself would write other line ends on some systems."""
+    """Print a file verbatim: standard output would translate line ends on some systems."""
     sys.stdout.flush()
     sys.stdout.buffer.write(text.encode())
 
 
 class Files:
-    """What was read so far; asked again, it parses only what changed.
+    """A cache of files; it parses again only what has changed.
 
     Attributes:
-        overlay: texts that count instead of the files on the disk, by path: standard input, an editor's buffers.
-        stdin: the path that standard input goes by, once it was read.
-        folders: before which paths are shown: the current folder, or an editor's folders.
+        overlay: texts that replace files on the disk, by path: standard input, an editor's buffers.
+        stdin: the path assigned to standard input, once it was read.
+        folders: relative to which paths are shown: the current folder, or an editor's folders.
     """
 
     def __init__(self) -> None:
@@ -75,9 +75,9 @@ class Files:
     def groups(
         self, paths: Iterable[str], stdin_filename: str | None = None
     ) -> tuple[tuple[Group, ...], tuple[LoadProblem, ...]]:
-        """The files that paths stand for, by project, and what could not be read.
+        """The files that paths denote, by project, and read errors.
 
-        Each file belongs to the project file nearest above it, whatever the current folder.
+        Each file belongs to the nearest project file above it, whatever the current folder.
         """
         problems: list[LoadProblem] = []
         projects: dict[str, Found] = {}
@@ -115,7 +115,7 @@ class Files:
         return tuple(groups), tuple(problems)
 
     def know(self, files: Iterable[File]) -> None:
-        """Take files as they are elsewhere, for as long as their texts are the same."""
+        """Reuse files parsed elsewhere, while their texts are the same."""
         self._known.update({file.path: file for file in files})
 
     def _read_stdin(self, filename: str | None) -> str:

@@ -1,4 +1,4 @@
-"""Commands as an editor asks for them: open texts count, and what would be printed is answered."""
+"""Commands for an editor: open texts override files, and the output is returned."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from btq_lang.commands.files import Files
 
 
 def build_open(path: str, texts: Mapping[str, str]) -> tuple[int, tuple[str, ...], str]:
-    """`btq build` of one mission: the exit code, the files that stand there now, and what is said of it.
+    """`btq build` of one mission: the exit code, the built files, and the printed messages.
 
     Args:
-        texts: those that count instead of the files on the disk, by path.
+        texts: override files on the disk, by path.
     """
     options = build_parser().parse_args(["build", "--color", "never", path])
     options.report = "concise"
     files = Files()
     files.overlay = {**texts}
     printed = StringIO()
-    with redirect_stdout(printed), redirect_stderr(printed):  # standard output is the editor's
+    with redirect_stdout(printed), redirect_stderr(printed):  # standard output belongs to the editor
         built = build(options, files)
     return built.code, built.files, printed.getvalue().strip()

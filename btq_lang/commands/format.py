@@ -1,4 +1,4 @@
-"""`btq format`: settle the layout of files."""
+"""`btq format`: lay out files in the standard style."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from btq_lang.workspace.loader import LoadProblem, shown, write_whole
 
 
 def run(options: Namespace) -> int:
-    """Format, or with `--check` and `--diff` only say what would change."""
+    """Format, or with `--check` and `--diff` only report what would change."""
     if misuse := usage_problem(options.paths):
         print(f"btq format: {misuse}", file=sys.stderr)
         return 2
@@ -42,7 +42,7 @@ def run(options: Namespace) -> int:
                 place = f"{shown(path)}:{line + 1}:{column + 1}"
                 print(f"{place}: not formatted: {done.refused.message}", file=sys.stderr)
             elif path in group.damaged:
-                refused += 1  # told as trouble already; writing it back would lose something
+                refused += 1  # already reported as trouble; writing it back would lose bytes
             elif done.text != text:
                 changed += 1
                 if options.diff:

@@ -1,6 +1,6 @@
-"""What git knows of a file: the texts of its revisions.  Git is called as a process, and only here.
+"""The texts of a file's revisions in git.  Git runs as a process, and only here.
 
-One invariant: nothing is written, and no argument that comes from outside is read by git as an option.
+One invariant: nothing is written, and git reads no external argument as an option.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class GitTrouble(Exception):
-    """Git is missing, or does not know what was asked for."""
+    """Git is missing, or does not know a revision or file."""
 
 
 class Revisions:
-    """Two revisions of what is in a repository.
+    """Two revisions of a repository.
 
     Attributes:
         old, new: commits; None is the working tree.
-        names: commits as they were asked for.
+        names: of the commits, as on the command line.
     """
 
     def __init__(self, root: str, old: str, new: str | None, names: dict[str, str]) -> None:
@@ -36,13 +36,13 @@ class Revisions:
         self.new: Final = new
         self.names: Final = names
         self._root: Final = root
-        self._missions: dict[str | None, frozenset[str]] = {}  # what `_sources` has found
+        self._missions: dict[str | None, frozenset[str]] = {}  # results of `_sources`
 
     def changed(self, folder: str) -> list[tuple[str | None, str | None]]:
-        """The missions below a folder whose text changed: where they were and are; None where they were or are not.
+        """The missions below a folder whose text changed: their old and new paths, None if absent.
 
-        XML is one that somebody wrote, be it by itself or for others to include; what a build wrote, its .btq says, if
-        there is one, and else the side file, too.
+        XML counts as a mission if it is written by hand; built XML is covered by its .btq file, or without one
+        represents the mission together with its side file.
         """
         commits = [self.old] if self.new is None else [self.old, self.new]
         run = ["diff", "--name-status", "--find-renames", "-z", *commits, "--", self._inside(folder) or "."]
@@ -54,7 +54,7 @@ class Revisions:
             target = self._outside(words[at + 2]) if status in ("R", "C") else path
             at += 3 if status in ("R", "C") else 2
             before, after = (None if status in ("A", "C") else path, None if status == "D" else target)
-            if path.endswith(SIDE_SUFFIX) and target.endswith(SIDE_SUFFIX):  # its XML may be as it was
+            if path.endswith(SIDE_SUFFIX) and target.endswith(SIDE_SUFFIX):  # its XML may be unchanged
                 xml = xml_path(path), xml_path(target)
                 before = xml[0] if self._is_there(self.old, xml[0]) else None
                 after = xml[1] if self._is_there(self.new, xml[1]) else None
@@ -64,10 +64,10 @@ class Revisions:
         return [*pairs]
 
     def workspace(self, commit: str, path: str, known: dict[str, str] | None = None) -> Workspace | None:
-        """A file of a commit with all that it includes there; None where the commit has no such file.
+        """A file of a commit with all its includes there; None if the commit has no such file.
 
         Args:
-            known: texts that count instead of those of the commit, by path.
+            known: texts that override those of the commit, by path.
         """
         known = known or {}
         project = find_project(path).project
@@ -85,18 +85,18 @@ class Revisions:
         return Workspace(files, project) if path in files else None
 
     def had_folder(self, path: str) -> bool:
-        """Whether a path is a folder of one of the revisions, and perhaps no more."""
+        """Whether a path is a folder in one of the revisions, even if it has been removed."""
         return any(self._kind(commit, path) == "tree" for commit in (self.old, self.new) if commit is not None)
 
     def text(self, commit: str, path: str) -> str | None:
-        """What a file of a commit says; None where there is none."""
+        """The text of a file in a commit; None if there is none."""
         if not self.has(commit, path):
             return None
         data = _git_bytes(self._root, "cat-file", "blob", f"{commit}:{self._inside(path)}")
         return data.decode("utf-8", "replace").removeprefix("\ufeff")
 
     def _is_xml(self, before: str | None, after: str | None) -> bool:
-        """Whether XML of which no .btq file says the same was or is a mission."""
+        """Whether XML without its .btq file was or is a mission."""
         for revision, path in ((self.old, before), (self.new, after)):
             if path is None or not path.endswith(".xml"):
                 continue
@@ -122,16 +122,16 @@ class Revisions:
         return self._kind(commit, path) == "blob"
 
     def _kind(self, commit: str, path: str) -> str:
-        """`blob` of a file, `tree` of a folder; empty where the commit has nothing there."""
+        """`blob` for a file, `tree` for a folder; empty if the commit has nothing there."""
         return os.fsdecode(_run(self._root, "cat-file", "-t", f"{commit}:{self._inside(path)}").stdout).strip()
 
     def _inside(self, path: str) -> str:
-        """A path as git names it: from the root of the repository."""
+        """A path relative to the root of the repository, as in git."""
         real = absolute(os.path.realpath(path))
         return "" if real == self._root else os.path.relpath(real, self._root).replace(os.sep, "/")
 
     def _outside(self, path: str) -> str:
-        """A path of git's, as it is asked for: relative to the current folder, whatever links lead there."""
+        """A path of git's, relative to the current folder, even if that is reached through links."""
         return absolute(os.path.relpath(f"{self._root}/{path}", os.path.realpath(".")))
 
 
@@ -156,16 +156,17 @@ class Commit:
 
 
 def revisions(asked: str, path: str) -> Revisions:
-    """What `REV`, `REV..REV` and `REV...REV` mean for a file or folder (gitrevisions(7)).
+    """Resolve `REV`, `REV..REV` and `REV...REV` for a file or folder (gitrevisions(7)).
 
     Args:
-        asked: one revision means it and the working tree; `A..B` two, `A...B` where B branched off A, and B.
+        asked: a single revision is compared with the working tree; `A..B` means these two, `A...B` their merge base and
+            B.
 
     Raises:
         GitTrouble: the path is in no repository, a revision is not known, git is not installed.
     """
     folder = path
-    while not os.path.isdir(folder) and os.path.dirname(folder) != folder:  # a revision may have had it
+    while not os.path.isdir(folder) and os.path.dirname(folder) != folder:  # a revision may contain it
         folder = os.path.dirname(folder)
     root = absolute(_git(folder, "rev-parse", "--show-toplevel").rstrip("\n"))
     first, dots, second = asked.partition("..." if "..." in asked else "..")

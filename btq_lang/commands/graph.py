@@ -16,7 +16,7 @@ from btq_lang.workspace.loader import LoadProblem, shown
 
 
 def run(options: Namespace) -> int:
-    """Draw the trees of one file; what is wrong with it is drawn as far as it can be read."""
+    """Draw the trees of one file; of a file with errors, all valid parts."""
     if problem := usage_problem(options.paths) or form_problem(options, FORMATS):
         print(f"btq graph: {problem}", file=sys.stderr)
         return 2

@@ -23,11 +23,11 @@ _STDIN = "-"
 
 
 class _Job(Record):
-    """An XML file, what became of it, and where that goes; None: to standard output.
+    """An XML file, its result, and the target path; None: standard output.
 
     Attributes:
-        others: the files of its bundle: where they go, and their texts.
-        losses: what it said before and does not say any more, a line each, with what can be done.
+        others: the files of its bundle: their targets and texts.
+        losses: what the mission loses, a line each, with what to do.
     """
 
     path: str
@@ -39,7 +39,7 @@ class _Job(Record):
 
 
 def run(options: Namespace) -> int:
-    """Import each file; one that cannot be read as XML stops none of the others."""
+    """Import each file; a file that is not XML does not stop the others."""
     jobs: list[_Job] = []
     problems: list[LoadProblem] = []
     targets = {absolute(path): _target(path, options) for path in options.files if path != _STDIN}
@@ -47,7 +47,7 @@ def run(options: Namespace) -> int:
         job = _job(path, targets, options, problems)
         if job is not None:
             jobs.append(job)
-    if len([job for job in jobs if _is_second(job, jobs, problems)]) > 0:  # all of them are told
+    if len([job for job in jobs if _is_second(job, jobs, problems)]) > 0:  # no `any`: it reports all of them
         jobs = []  # the others may include what would be missing
     jobs = [job for job in jobs if not _clashes(job, jobs, options.force, problems)]
     _show_findings(jobs, options)
@@ -64,7 +64,7 @@ def run(options: Namespace) -> int:
 
 
 def _target(path: str, options: Namespace) -> str:
-    """Where the .btq file of an XML file goes."""
+    """The path of the .btq file for an XML file."""
     name = f"{os.path.splitext(os.path.basename(path))[0]}.btq"
     return absolute(os.path.join(options.output or os.path.dirname(path), name))
 
@@ -72,7 +72,7 @@ def _target(path: str, options: Namespace) -> str:
 def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: list[LoadProblem]) -> _Job | None:
     if path == _STDIN:
         xml, problem = decoded("<stdin>", sys.stdin.buffer.read())
-        if xml is None or problem is not None:  # as of a file
+        if xml is None or problem is not None:  # as for a file
             problems.extend([problem] if problem else [])
             return None
         job = _Job("<stdin>", xml, import_xml(xml, options.keep_v3), None)
@@ -82,14 +82,14 @@ def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: li
         problems.append(LoadProblem(path, "not imported: its name does not end with .xml"))
         return None
     text, problem = read(path)
-    if text is None or problem is not None:  # what is no UTF-8 would lose something
+    if text is None or problem is not None:  # other than UTF-8 would lose bytes
         problems.extend([problem] if problem else [])
         return None
     folder, target = os.path.dirname(path), targets[path]
     moves = os.path.dirname(target) != folder
 
     def included_as(named: str) -> str:
-        """What is imported beside it is included as it is now, and the rest where it is."""
+        """The path to include a file by: a file imported in the same run by its new one, any other by its own."""
         other = absolute(os.path.join(folder, named))
         if other in targets:
             other = targets[other]
@@ -102,7 +102,7 @@ def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: li
 
 
 def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProblem]) -> _Job | None:
-    """What became of a file that `btq build` made, with what the mission said beyond it: that stands beside it."""
+    """The result for a file that `btq build` made, with what its side file has in addition."""
     side = side_path(job.path)
     text, problem = read(side) if os.path.isfile(side) else (None, None)
     if text is None or problem is not None or not job.done.is_complete:
@@ -141,7 +141,7 @@ def _without_side_file(job: _Job, advice: str) -> _Job:
 
 
 def _is_second(job: _Job, jobs: Iterable[_Job], problems: list[LoadProblem]) -> bool:
-    """Whether another file becomes the one that this one does."""
+    """Whether another job has the same target."""
     if job.target is None:
         return False
     first = next(other for other in jobs if other.target == job.target)
@@ -152,7 +152,7 @@ def _is_second(job: _Job, jobs: Iterable[_Job], problems: list[LoadProblem]) -> 
 
 
 def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadProblem]) -> bool:
-    """Whether a file would be lost by writing this one."""
+    """Whether writing a job would overwrite a file."""
     if job.target is None:
         return False
     for other in jobs:
@@ -193,7 +193,7 @@ def _write(job: _Job, problems: list[LoadProblem]) -> bool:
 
 
 def _show_findings(jobs: Iterable[_Job], options: Namespace) -> None:
-    """What is wrong with the XML, shown on it."""
+    """Print the diagnostics of the XML, with its lines."""
     findings = [Finding(job.path, job.xml, each) for job in jobs for each in job.done.diagnostics]
     if not findings:
         return
@@ -204,7 +204,7 @@ def _show_findings(jobs: Iterable[_Job], options: Namespace) -> None:
 
 
 def _show_changes(job: _Job) -> None:
-    """What is lost, and what the new file says otherwise than the XML, a line each."""
+    """Print what is lost, and where the new file differs from the XML, a line each."""
     for loss in job.losses:
         print(f"{shown(job.path)}: {loss}", file=sys.stderr)
     lines = LineIndex(job.xml)
@@ -231,7 +231,7 @@ def _sum_up(written: list[_Job], refused: int) -> None:
 
 
 def _missing(job: _Job) -> Iterator[str]:
-    """What brings the files that a mission includes and that are still XML beside its XML."""
+    """Commands that import a mission's includes that are still XML, beside its XML."""
     if job.target is None or "include" not in job.done.text:
         return
     from btq_lang.parser import parse

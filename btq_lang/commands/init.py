@@ -1,4 +1,4 @@
-"""`btq init`: create a project that checks clean."""
+"""`btq init`: create a project without findings."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ FILES = {"btq.toml": _PROJECT, "skills.btq": _SKILLS, "mission.btq": _MISSION}
 
 
 def run(options: Namespace) -> int:
-    """Write the files; none is written if one is already there."""
+    """Write the files, or none if one already exists."""
     folder = options.folder
     there = [name for name in FILES if os.path.lexists(os.path.join(folder, name))]
     if there:

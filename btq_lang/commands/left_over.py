@@ -1,4 +1,4 @@
-"""What earlier builds have left: XML made from missions that are gone, which a robot would still load."""
+"""Finds stale output of earlier builds: XML of missions that no longer exist, which a robot would still load."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from btq_lang.workspace.loader import read
 
 
 def left_over(folders: Iterable[str]) -> list[str]:
-    """The files that a build has made, in some folders, and beside which their mission stands no more.
+    """The files in some folders that a build made and whose mission is no longer beside them.
 
-    Only the folders themselves are looked into; where `-o` writes to, no mission stands beside what it made.
+    Subfolders are not searched, nor are targets of `-o`, which have no missions beside them.
     """
     found: list[str] = []
     for folder in sorted(set(folders)):

@@ -1,4 +1,4 @@
-"""The options that are needed before, or without, all the others."""
+"""The options that are needed before, or without, all others."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 class CheckOptions:
     """The options of `btq check` and their defaults.
 
-    A plain `btq check PATH …` needs no more than this: argparse takes longer to import than a small file to check.
+    A plain `btq check PATH …` uses this alone: importing argparse takes longer than checking a small file.
     """
 
     stdin_filename: str | None = None

@@ -1,4 +1,4 @@
-"""Where a command's text goes: to a file, whole or not at all, or to standard output."""
+"""Writes a command's text to a file, completely or not at all, or to standard output."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ from btq_lang.workspace.loader import LoadProblem, absolute, write_whole
 
 
 def form_of(options: Namespace, forms: Sequence[str]) -> str:
-    """Which of the forms to write: the one asked for, else the one that the file's name ends in, else the first."""
+    """The format to write: the requested one, else the one that the file's suffix names, else the first."""
     named = _ENDINGS.get(_ending(options), "")
     return options.format or (named if named in forms else forms[0])
 
 
 def form_problem(options: Namespace, forms: Sequence[str]) -> str | None:
-    """What is wrong with the file's name: a mission's, or one that ends in a form that btq does not write, where none
-    is asked for."""
+    """The error in the output file's name: it is a mission's, or, without a requested format, has the suffix of one
+    that btq does not write.
+    """
     ending = _ending(options)
     if ending in SUFFIXES or (ending == ".xml" and options.format != "junit"):
         return f"-o {options.output} may overwrite a mission; choose another file name"
@@ -30,7 +31,7 @@ def form_problem(options: Namespace, forms: Sequence[str]) -> str | None:
 
 
 def write_output(command: str, path: str | None, text: str) -> int:
-    """Write a text; the command's exit code.
+    """Write a text; returns the command's exit code.
 
     Args:
         path: the file; None or `-`: standard output.
@@ -49,7 +50,7 @@ def write_output(command: str, path: str | None, text: str) -> int:
 
 
 def terminal_width() -> int:
-    """How many columns the terminal has."""
+    """The number of columns of the terminal."""
     try:
         return os.get_terminal_size().columns
     except OSError:

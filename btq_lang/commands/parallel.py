@@ -1,6 +1,6 @@
-"""Checking many files on several processors.
+"""Checks many files in several processes.
 
-Each process has the whole workspace, so that a file's includes are there, and parses only what its own files need.
+Each process has the whole workspace, so that includes are available, and parses only what its own files need.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _store: Store[Workspace] | None = None
 
 def check_all(workspace: Workspace, paths: tuple[str, ...], workers: int) -> Iterator[tuple[Diagnostic, ...]]:
     """The diagnostics of each path, in order."""
-    # A forked process has the files already; elsewhere their texts are sent to each process once.
+    # A forked process has the files already; otherwise each process gets their texts once.
     context = multiprocessing.get_context("fork" if "fork" in multiprocessing.get_all_start_methods() else None)
     with ProcessPoolExecutor(workers, context, _begin, (workspace.files, workspace.project)) as pool:
         yield from pool.map(_check, paths, chunksize=_CHUNK)

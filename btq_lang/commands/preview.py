@@ -1,4 +1,4 @@
-"""`btq preview`: a mission's trees in a browser, drawn again whenever a file changes, or as an editor tells it."""
+"""`btq preview`: shows a mission's trees in a browser, redrawn when a file changes or an editor sends a new text."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def _no_file(path: str) -> str | None:
 
 
 def _follow(mission: _Mission, preview: Preview, ended: Event) -> None:
-    """What an editor tells on standard input, a JSON object a line: the `line` of its cursor, and its `text`."""
+    """Follow an editor's messages on standard input, a JSON object a line: the `line` of its cursor, and its `text`."""
     try:
         for told in sys.stdin.buffer:
             try:
@@ -86,7 +86,7 @@ def _follow(mission: _Mission, preview: Preview, ended: Event) -> None:
 
 
 class _Mission:
-    """The file as it is on the disk whenever somebody asks; several pages may ask at once."""
+    """The current state of the file; several pages may request it at once."""
 
     def __init__(self, path: str, on_click: Sequence[str]) -> None:
         self.path = path
@@ -94,10 +94,10 @@ class _Mission:
         self._files = Files()
         self._lock = Lock()
         self._watched: tuple[str, ...] = (path,)
-        self._read()  # so that everything it depends on is watched from the start
+        self._read()  # so that all dependencies are watched from the start
 
     def drawn(self, folded: Sequence[str]) -> dict[str, object]:
-        """The picture for the page, or what is in the way."""
+        """The picture for the page, or the reason why there is none."""
         workspace = self._read()
         title = os.path.basename(self.path)
         if isinstance(workspace, str):
@@ -107,7 +107,7 @@ class _Mission:
         return {"title": title, "svg": found.svg, "lines": lines}
 
     def went(self, key: str) -> dict[str, object]:
-        """Say where a node stands, for terminals that make links of it, and hand it to the user's editor."""
+        """Print the place of a node, which terminals turn into a link, and open it in the user's editor."""
         workspace = self._read()
         span = None if isinstance(workspace, str) else places(workspace, self.path).get(key)
         if span is None or isinstance(workspace, str):
@@ -124,23 +124,23 @@ class _Mission:
         return {"said": place}
 
     def typed(self, text: str) -> None:
-        """This text counts from now on, and not the file on the disk."""
+        """Use this text from now on instead of the file on the disk."""
         with self._lock:
             self._files.overlay[self.path] = text
 
     def watched(self) -> tuple[str, ...]:
-        """All that the picture depends on, as far as it is known."""
+        """The files that the picture depends on, as far as known."""
         return self._watched
 
     def _position(self, workspace: Workspace, span: Span) -> tuple[int, int]:
-        """Line and column, counted from 1, in the file as it was written."""
+        """Line and column, counted from 1, in the original file."""
         file = workspace.files[self.path]
         span = file.origin.places.origin(span) if file.origin else span
         position = file.source_lines.position(span.start)
         return position.line + 1, position.column + 1
 
     def _read(self) -> Workspace | str:
-        """The mission with what it includes, or why it cannot be read."""
+        """The mission with its includes, or why it cannot be read."""
         with self._lock:
             groups, problems = self._files.groups([self.path])
         for group in groups:
@@ -152,7 +152,7 @@ class _Mission:
 
 
 def _filled(word: str, values: dict[str, str]) -> str:
-    """`+{line}` with the line in it; every other brace stays, for commands of editors have them."""
+    """`+{line}` with the line filled in; all other braces stay, because editor commands may contain them."""
     for name, value in values.items():
         word = word.replace(f"{{{name}}}", value)
     return word

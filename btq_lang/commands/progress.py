@@ -1,16 +1,16 @@
-"""A line on standard error that says how far a long piece of work is, for people at a terminal."""
+"""A line on standard error that shows the progress of long work, for people at a terminal."""
 
 from __future__ import annotations
 
 import sys
 from time import monotonic
 
-_PATIENCE = 0.5  # seconds before a person wonders
+_PATIENCE = 0.5  # seconds before progress is shown
 _PAUSE = 0.1  # seconds between two updates
 
 
 class Progress:
-    """Counts steps; shows nothing where nobody looks and where the work is done soon."""
+    """Counts steps; shows nothing without a terminal or if the work ends soon."""
 
     def __init__(self, total: int, verb: str) -> None:
         self._total = total
@@ -28,14 +28,14 @@ class Progress:
             sys.stderr.flush()
 
     def step(self) -> None:
-        """One more is done."""
+        """Count one more step."""
         self.reached(self._done + 1)
 
     def reached(self, done: int, more: str = "") -> None:
-        """So many are done.
+        """Set the number of steps done.
 
         Args:
-            more: what else there is to say.
+            more: a further text to show.
         """
         self._done = done
         if self._done < self._total and monotonic() >= self._next and sys.stderr.isatty():

@@ -14,7 +14,7 @@ from btq_lang.trace.missions import trace_tables
 
 
 def run(options: Namespace) -> int:
-    """Write the overview; of missions with errors what could be understood."""
+    """Write the overview; for missions with errors, of all valid parts."""
     if problem := usage_problem(options.paths) or form_problem(options, FORMATS):
         print(f"btq trace: {problem}", file=sys.stderr)
         return 2

@@ -1,7 +1,7 @@
-"""Where the files of a bundle go when its mission comes back.
+"""The paths of a bundle's files when its mission is imported.
 
-One invariant: what a side file names may lead anywhere, what is written does not: only files that btq reads, and only
-below the folder of the import, links followed.
+One invariant: whatever paths a side file names, only files that btq reads are written, and only below the folder of the
+import, links followed.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from btq_lang.workspace.loader import LoadProblem, absolute, read
 
 
 def place_of_mission(target: str, file: str, others: Iterable[tuple[str, str]]) -> str:
-    """Where a mission goes so that the files that it includes have room: deeper, where it includes `../shared/a.btq`.
+    """The path of a mission that leaves room for its includes: deeper, if it includes `../shared/a.btq`.
 
     Args:
-        target: where it goes by itself.
-        file: where it was, seen from its side file: its folders keep their names.
+        target: its path without includes.
+        file: its old path, relative to its side file: folders keep their names.
         others: the paths, seen from the mission, and the texts.
     """
     up = max((name.split("/").count("..") for name, _ in others), default=0)
@@ -38,15 +38,15 @@ def unpacked(
     force: bool,
     problems: list[LoadProblem],
 ) -> tuple[tuple[str, str], ...] | None:
-    """The places of the files that a mission includes, with their texts; None: one of them cannot be written.
+    """The paths of the files that a mission includes, with their texts; None: one of them cannot be written.
 
     Args:
         others: the paths, seen from the mission, and the texts.
-        root: the folder that all of them stay below.
-        target: where the mission goes.
-        taken: what no file may be written over, ever.
-        force: files that are there may be written over; one that says the same is left as it is.
-        problems: what keeps files from being written is added.
+        root: the folder that must contain all of them.
+        target: the path of the mission.
+        taken: files that must not be overwritten.
+        force: existing files may be overwritten; equal ones are not touched.
+        problems: errors are appended.
     """
     folder = os.path.dirname(target)
     found: dict[str, str] = {}
@@ -83,4 +83,4 @@ def _says(path: str, text: str) -> bool:
     return os.path.isfile(path) and read(path) == (text, None)
 
 
-_FOREIGN = "\\:\0"  # what makes a path of its own of a name on some system
+_FOREIGN = "\\:\0"  # on some systems, characters that turn a name into another path

@@ -1,4 +1,4 @@
-"""The formats in which `btq verify` writes verdicts: those of `evidence`, and the page that `trace` draws."""
+"""The formats of `btq verify`: those of `evidence`, and the page that `trace` draws."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ def write(
     verbose: bool = False,
     width: int | None = None,
 ) -> str:
-    """The verdicts in one of FORMATS.
+    """Write the verdicts in one of FORMATS.
 
     Args:
-        missions: that were given; those of the report are among them.
+        missions: all candidates, including those of the report.
         colour, verbose, width: for `table`.
     """
     if form != "html":

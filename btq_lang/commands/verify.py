@@ -1,4 +1,4 @@
-"""`btq verify`: judge what robots did, by their logs, against what the mission demands."""
+"""`btq verify`: judge by logs whether robots did what the mission demands."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def run(options: Namespace) -> int:
             )
         report = found.report
         problems += found.problems
-        remarks = report.remarks if form != "table" else ()  # which has them
+        remarks = report.remarks if form != "table" else ()  # the table has them
         for note in (*remarks, *foreign_runs(report)):
             print(f"btq verify: {note}", file=sys.stderr)
         to_terminal = options.output is None and sys.stdout.isatty()
@@ -75,7 +75,7 @@ def run(options: Namespace) -> int:
 
 
 def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequence[Candidate], dict[str, Series]]:
-    """The logs, missions and samples of a command line; what is wrong with them is added to the problems."""
+    """The logs, missions and samples of a command line; errors are appended to the problems."""
     if problem := usage_problem([*options.logs, *options.mission]) or form_problem(options, FORMATS):
         problems.append(problem)
         return (), (), {}
@@ -105,7 +105,7 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
 
 
 def _logs_of(project: Project) -> Sequence[str]:
-    """The paths that the project's patterns match; a pattern that matches none is itself, to be reported."""
+    """The paths that the project's patterns match; a pattern that matches none is kept, to be reported."""
     found: list[str] = []
     for pattern in project.evidence.logs if project.evidence is not None else ():
         path = os.path.join(project.root, pattern)
@@ -114,8 +114,9 @@ def _logs_of(project: Project) -> Sequence[str]:
 
 
 def _missions(asked: Sequence[str], logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
-    """The missions that logs may be of: those asked for, else those of the side files beside the logs and all of this
-    folder's project."""
+    """The missions that logs may belong to: the requested ones, else those of side files beside the logs and of this
+    folder's project.
+    """
     sides = {side.mission: side for side in side_files_beside(logs)}
     there = [mission for mission in sides if os.path.isfile(mission)]
     found = [] if asked else [each for side in sides.values() if side.mission not in there for each in _restored(side)]
@@ -135,7 +136,7 @@ def _missions(asked: Sequence[str], logs: Sequence[str], problems: list[str]) ->
 
 
 def _restored(side: SideFile) -> Iterator[Candidate]:
-    """The mission as it was built, where only the XML and the side file are there."""
+    """The mission as built, if only the XML and the side file are available."""
     built = as_built(xml_path(side.path), Disk())
     if built is not None:
         yield Candidate(built.workspace, built.path, _name(side.mission), side.nodes)

@@ -1,9 +1,9 @@
-"""The server of `btq preview`: the page, pictures when it asks for them, and a word when they have changed or the
-cursor of an editor has moved.
+"""The server of `btq preview`: sends the page, pictures on request, and events when they have changed or the cursor of
+an editor has moved.
 
-One invariant: only pages that it served itself are answered.  It listens on the loopback interface alone, but every
-page in a browser on this machine can send requests there: a foreign one has another Origin, and one that was led here
-by a name of its own (DNS rebinding) another Host.  Not known here: missions and files; answers are handed in.
+One invariant: it answers only pages that it served itself.  It listens on the loopback interface alone, but every page
+in a browser on this machine can send requests there: a foreign one has another Origin, or, with DNS rebinding, another
+Host.  Missions and files are unknown here; callbacks supply the answers.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from typing import Any
 from btq_lang.preview import page
 
 ADDRESS = "127.0.0.1"
-_ALIVE = 15.0  # seconds after which a page that hears nothing is told so, and one that is gone is noticed
+_ALIVE = 15.0  # seconds between keep-alives, which detect pages that are gone
 _LONGEST = 1_000_000  # bytes that a page may send
 
 
 class Preview:
-    """A server in a thread of its own.
+    """A server in its own thread.
 
     Args:
-        port: 0: one that is free.
-        draw: what the page shows, given the names of the nodes that are folded.
-        go: what happens on a click on a node, given its key; the answer is shown to who clicked.
+        port: 0 chooses a free one.
+        draw: returns the page's contents, given the names of the folded nodes.
+        go: handles a click on a node, given its key; the page shows the result.
 
     Raises:
-        OSError: the port is taken.
+        OSError: the port is in use.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class Preview:
         go: Callable[[str], dict[str, object]],
     ) -> None:
         self._changed = Condition()
-        self._now = (0, 0)  # how often something has changed, and the line that the cursor is in; 0: none is known
+        self._now = (0, 0)  # number of changes, and the cursor's line; 0: unknown
         handler = type("Handler", (_Handler,), {"preview": self, "draw_": staticmethod(draw), "go_": staticmethod(go)})
         self._server = ThreadingHTTPServer((ADDRESS, port), handler)
         self._server.daemon_threads = True
@@ -54,19 +54,19 @@ class Preview:
         return f"http://{ADDRESS}:{self.port}/"
 
     def changed(self) -> None:
-        """Every page asks for its picture again."""
+        """Make every page request its picture again."""
         with self._changed:
             self._now = (self._now[0] + 1, self._now[1])
             self._changed.notify_all()
 
     def here(self, line: int) -> None:
-        """Every page marks the node that the line, counted from 1, belongs to."""
+        """Make every page mark the node at the line, counted from 1."""
         with self._changed:
             self._now = (self._now[0], line)
             self._changed.notify_all()
 
     def wait(self, seen: tuple[int, int]) -> tuple[int, int]:
-        """The number of changes so far and the cursor's line, when they are others than were seen, or after a while."""
+        """Wait until the number of changes or the cursor's line differs from those seen, or a timeout; returns both."""
         with self._changed:
             self._changed.wait_for(lambda: self._now != seen, _ALIVE)
             return self._now
@@ -110,7 +110,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._answer("application/json", json.dumps(answer).encode())
 
     def log_message(self, format: str, *args: Any) -> None:
-        """Nothing: the terminal says where the user clicked, not what a browser asks."""
+        """Log nothing: the terminal shows the places of clicks, not requests."""
 
     def _is_ours(self) -> bool:
         own = {f"{name}:{self.preview.port}" for name in (ADDRESS, "localhost")}
@@ -126,7 +126,9 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(body)
 
     def _tell(self) -> None:
-        """Until the page is gone; the format: https://html.spec.whatwg.org/multipage/server-sent-events.html"""
+        """Send events until the page is gone; the format:
+        https://html.spec.whatwg.org/multipage/server-sent-events.html
+        """
         self.send_response(HTTPStatus.OK)
         self.send_header("Content-Type", "text/event-stream")
         self.send_header("Cache-Control", "no-store")

@@ -1,7 +1,7 @@
-"""Completion scripts for shells, made from the argparse parser itself, so that they can never miss an option.
+"""Completion scripts for shells, generated from the argparse parser, so that they have every option.
 
-One invariant: a script holds all it needs: no process is started, not even btq, while somebody waits for a Tab.  Not
-known here: what the commands do, and where a shell wants its script.
+One invariant: a script is self-contained: completion starts no process, not even btq.  What the commands do, and where
+a shell expects its script, is unknown here.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ SHELLS = ("bash", "zsh", "fish", "powershell")
 def completion_script(
     shell: str, parser: argparse.ArgumentParser, choices: Mapping[str, Iterable[str]] | None = None
 ) -> str:
-    """The script that teaches a shell the commands, options and values of a parser.
+    """The completion script of a shell for the commands, options and values of a parser.
 
     Args:
-        choices: the values to offer for arguments whose parser lists none, by `dest`.
+        choices: the values to offer for arguments without choices in the parser, by `dest`.
 
     Raises:
-        ValueError: the shell is none of SHELLS.
+        ValueError: the shell is not in SHELLS.
     """
     commands = tuple(_commands(parser, parser.prog, choices or {}))
     if shell == "bash":
@@ -49,7 +49,7 @@ def completion_script(
 def _commands(parser: argparse.ArgumentParser, line: str, choices: Mapping[str, Iterable[str]]) -> Iterator[Command]:
     """The parser as a command, then the commands below it.
 
-    argparse has no public way to ask for its actions; these attributes are what argcomplete and shtab read too.
+    argparse has no public access to its actions; argcomplete and shtab read the same attributes.
     """
     options: list[Option] = []
     commands: list[tuple[str, str]] = []
@@ -81,5 +81,5 @@ def _help(action: argparse.Action, parser: argparse.ArgumentParser) -> str:
 
 
 def _is_plain(word: str) -> bool:
-    """A word that no shell reads as anything but itself: all others are not offered."""
+    """Whether all shells read a word literally; other words are not offered."""
     return re.fullmatch(r"[\w.@%+,/-]+", word) is not None

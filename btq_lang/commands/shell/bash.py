@@ -1,4 +1,4 @@
-"""Completion for bash, without the bash-completion package; nothing here is newer than bash 3.2, which macOS has."""
+"""Completion for bash, without the bash-completion package; compatible with bash 3.2, which macOS has."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from btq_lang.commands.shell.command_line import Command, valued_options
 
 
 def script(commands: tuple[Command, ...]) -> str:
-    """To be sourced, or put into ~/.local/share/bash-completion/completions under the program's name."""
+    """The script, to be sourced, or put into ~/.local/share/bash-completion/completions under the program's name."""
     program = commands[0].line
     lines = "\n".join(f'            {_line(command.line)}) line="$line $word" last= ;;' for command in commands[1:])
     return _SCRIPT.format(
@@ -39,7 +39,8 @@ def _quoted(words: list[str] | tuple[str, ...]) -> str:
     return "'" + " ".join(words) + "'"
 
 
-# Readline splits words at `=`, so `--color=al` comes as three.  Where nothing is offered, files are (-o default).
+# Readline splits words at `=`, so `--color=al` arrives as three.  Without other proposals, files are offered (-o
+# default).
 _SCRIPT = """\
 # Completion of {program} for bash.
 

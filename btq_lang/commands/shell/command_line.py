@@ -1,4 +1,4 @@
-"""A command line as completion scripts see it: commands, with their options and the values to offer."""
+"""The model of a command line for completion scripts: commands, with their options and the values to offer."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ class Option(Record):
     Attributes:
         names: all its spellings, `-q` and `--quiet`.
         help: its help, in one line.
-        takes_value: the word behind it belongs to it.
-        choices: the values to offer; empty where they are files, or anything.
+        takes_value: the next word belongs to it.
+        choices: the values to offer; empty for files and arbitrary values.
     """
 
     names: tuple[str, ...]
@@ -24,12 +24,12 @@ class Option(Record):
 
 
 class Command(Record):
-    """The program itself, or a command of it.
+    """The program itself, or one of its commands.
 
     Attributes:
-        line: what is typed to get to it: `btq`, `btq check`.
+        line: the words that call it: `btq`, `btq check`.
         commands: the names of the commands below it, with their help.
-        choices: the arguments to offer, where they are not files.
+        choices: the arguments to offer, unless they are files.
         takes_files: an argument may be a file.
     """
 
@@ -41,7 +41,7 @@ class Command(Record):
 
 
 def valued_options(commands: tuple[Command, ...]) -> Iterator[tuple[list[str], tuple[str, ...]]]:
-    """The command lines that end with one option that takes a value, and the values to offer there."""
+    """The command lines that end with an option that takes a value, and the values to offer there."""
     for command in commands:
         for option in command.options:
             if option.takes_value:

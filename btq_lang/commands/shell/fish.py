@@ -8,7 +8,7 @@ from btq_lang.commands.shell.command_line import Command, Option
 
 
 def script(commands: tuple[Command, ...]) -> str:
-    """To be put into ~/.config/fish/completions under the program's name with `.fish`, or sourced."""
+    """The script, to be put into ~/.config/fish/completions under the program's name with `.fish`, or sourced."""
     program = commands[0].line
     lines = " ".join(_quoted(command.line) for command in commands[1:])
     rules = "\n".join(rule for command in commands for rule in _rules(program, command))

@@ -8,7 +8,7 @@ from btq_lang.commands.shell.command_line import Command, valued_options
 
 
 def script(commands: tuple[Command, ...]) -> str:
-    """To be dot-sourced from the profile, or piped into `Out-String | Invoke-Expression`."""
+    """The script, to be dot-sourced from the profile, or piped into `Out-String | Invoke-Expression`."""
     return _SCRIPT.format(
         program=commands[0].line,
         lines=_list(command.line for command in commands[1:]),
@@ -46,8 +46,8 @@ def _quoted(text: str) -> str:
     return "'" + text.replace("'", "''") + "'"
 
 
-# A word may carry its help behind a tab.  `@{}` would take -f and -F for one key.  Where nothing is offered, PowerShell
-# itself offers files.
+# A word may be followed by a tab and its help.  `@{}` would treat -f and -F as one key.  Without other proposals,
+# PowerShell itself offers files.
 _SCRIPT = """\
 # Completion of {program} for PowerShell.
 

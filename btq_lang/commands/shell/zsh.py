@@ -8,7 +8,7 @@ from btq_lang.commands.shell.command_line import Command, valued_options
 
 
 def script(commands: tuple[Command, ...]) -> str:
-    """To be put into a folder of `$fpath` as `_` and the program's name, or sourced after `compinit`."""
+    """The script, to be put into a folder of `$fpath` as `_` and the program's name, or sourced after `compinit`."""
     program = commands[0].line
     lines = "\n".join(f'            ({_quoted(command.line)}) line="$line $word" last= ;;' for command in commands[1:])
     return _SCRIPT.format(
