@@ -1,14 +1,14 @@
-"""The protocol of editors: requests to features, and their answers back.
+"""The Language Server Protocol: passes requests to features and returns their results.
 
-One invariant: only this room and `server` know pygls and lsprotocol.  Messages come in, are converted to offsets and
-paths, asked of `ide`, and converted back.  Not known here: what a feature answers.
+One invariant: only this package and `server` import pygls and lsprotocol.  Handlers convert positions and URIs to
+offsets and paths, call `ide`, and convert the result back.  Features are implemented elsewhere.
 
     convert.py       positions, ranges, edits: between the protocol and btq
-    protocol.py      messages that are written by hand, for their number
-    session.py       which files are open, and whose diagnostics an edit may have changed
-    editor.py        one editor: its session, and when it is sent what
-    failures.py      what happens when a handler raises
-    lifecycle.py, documents.py, commands.py, progress.py …   which request asks which feature, three to five lines each
+    protocol.py messages serialised by hand, for speed
+    session.py the open files, and whose diagnostics an edit may have changed
+    editor.py one client: its session, its capabilities, and what is published when
+    failures.py exceptions in handlers
+    lifecycle.py, documents.py, commands.py, progress.py … the handlers, three to five lines each
 """
 
 from __future__ import annotations
@@ -29,6 +29,6 @@ from btq_lang.lsp.editor import Server
 
 
 def register(server: Server) -> None:
-    """Tell pygls who answers what."""
+    """Register all handlers with pygls."""
     for group in (lifecycle, documents, navigation, explaining, structure, colours, layout, acting, hints, commands):
         group.register(server)

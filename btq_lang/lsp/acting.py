@@ -1,4 +1,4 @@
-"""What can be done: code actions, renamed files, and formatting while one types."""
+"""Code actions, renamed files, and on-type formatting."""
 
 from __future__ import annotations
 

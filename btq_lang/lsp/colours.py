@@ -24,8 +24,9 @@ def register(server: Server) -> None:
         return found
 
     async def made(document: types.TextDocumentIdentifier) -> None:
-        """Make what the tokens consist of for the first time, and listen meanwhile; after an edit, go on with what is
-        there then."""
+        """Compute what the tokens depend on for the first time, in steps that let other messages in; after an edit,
+        continue with the new text.
+        """
         place, is_done = server.at(document), False
         while place is not None and not is_done:
             for _ in features.making(*place, convert.encoding):

@@ -1,4 +1,4 @@
-"""Commands of the server, for whatever an editor wants to do with their answers.
+"""Commands of the server, whose results an editor uses as it likes.
 
 Their names begin with `btq.server.`, so that an editor's plug-in can have commands of its own.
 """
@@ -28,7 +28,7 @@ def register(server: Server) -> None:
 
     @server.command(NODE_PATH)
     def path_of_node(place: types.TextDocumentPositionParams) -> str | None:
-        """The path of the node at a place."""
+        """The path of the node at a position."""
         asked = server.ask(place.text_document, place.position, features.path_of_node)
         return asked[2] if asked else None
 
@@ -40,9 +40,9 @@ def register(server: Server) -> None:
 
     @server.command(XML)
     def xml(document: types.TextDocumentIdentifier) -> str:
-        """What `btq build` would write for a document as it is now, saved or not."""
+        """The XML that `btq build` would write for a document in its current state, saved or not."""
         workspace, path = mission(document)
-        from btq_lang.btcpp.document import write  # not needed by most sessions, and large
+        from btq_lang.btcpp.document import write  # large, and not needed by most sessions
         from btq_lang.btcpp.outputs import as_xml
 
         done = as_xml(workspace, path).export
@@ -52,7 +52,7 @@ def register(server: Server) -> None:
 
     @server.command(PICTURE)
     def picture(document: types.TextDocumentIdentifier, *folded: str) -> dict[str, object]:
-        """The trees of a document as SVG, and by the key of each node in it where that stands in the text."""
+        """The trees of a document as SVG, and the range of each node in the text, by the node's key."""
         workspace, path = mission(document)
         from btq_lang.graph.picture import picture as drawn  # as above
 
@@ -62,7 +62,7 @@ def register(server: Server) -> None:
 
     @server.command(OVERVIEW)
     def overview(document: types.TextDocumentIdentifier) -> str:
-        """The page that `btq trace --format html` writes of a document as it is now, saved or not."""
+        """The page that `btq trace --format html` writes for a document in its current state, saved or not."""
         workspace, path = mission(document)
         from btq_lang.trace.missions import trace_table  # as above
 
@@ -70,7 +70,7 @@ def register(server: Server) -> None:
 
     @server.command(BUILD)
     def build(document: types.TextDocumentIdentifier) -> dict[str, object]:
-        """Write the XML of a mission as `btq build` does; what is open counts as it is in the editor."""
+        """Write the XML of a mission as `btq build` does, with the editor's texts of open files."""
         _, path = mission(document)
         if not document.uri.startswith("file:"):
             raise Refused("save this document to a file first")
@@ -83,7 +83,7 @@ def register(server: Server) -> None:
 
     @server.command(USES)
     def uses(places: list[types.Location]) -> None:
-        """Show places in an editor that has no list of its own for them: the only one, or a message that names all."""
+        """Show locations in an editor without a list for them: go to a single one, or show a message that names all."""
         capabilities = server.client_capabilities.window
         can_show = capabilities is not None and capabilities.show_document is not None
         if len(places) == 1 and can_show:

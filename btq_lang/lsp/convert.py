@@ -1,7 +1,7 @@
-"""Between the protocol's terms and ours: URIs and paths, positions and offsets, and what features answer.
+"""Converts between the protocol's terms and ours: URIs and paths, positions and offsets, and results of features.
 
-One invariant: offsets become lines and columns here and nowhere else, in the encoding that the editor agreed to; and
-what stands in a file that is written in XML is shown where it stands there.
+One invariant: offsets become lines and columns only here, in the negotiated encoding; and places in a file written in
+XML are mapped to that XML.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from btq_lang.diagnostics.rules import RULES, Severity, page_path
 from btq_lang.lsp.protocol import Json, Plain
 from btq_lang.util.text import Edit, Encoding, LineIndex, Position, Span
 
-if TYPE_CHECKING:  # all these import the checks, and an editor waits for the server to start
+if TYPE_CHECKING:  # all these import the checks; the server must start fast
     from btq_lang.ide.actions import Action
     from btq_lang.ide.completion import Completion
     from btq_lang.ide.hover import Hover
@@ -33,46 +33,46 @@ if TYPE_CHECKING:  # all these import the checks, and an editor waits for the se
     from btq_lang.workspace.workspace import Workspace
 
 
-_MOST_KEPT = 2_000  # texts, of some 300 characters each
+_MOST_KEPT = 2_000  # texts, of about 300 characters each
 
 
 class Converter:
-    """The way between an editor's places and ours.
+    """Converts an editor's positions to ours and back.
 
     Attributes:
-        encoding: what the editor counts columns in.
+        encoding: the unit of the editor's columns.
     """
 
     def __init__(self) -> None:
         self.encoding: Encoding = "utf-16"
-        self._uris: dict[str, str] = {}  # as the editor writes them, by path
-        self._spellings = 0  # how many of these it has told so far
+        self._uris: dict[str, str] = {}  # in the editor's spelling, by path
+        self._spellings = 0  # how many spellings have been learnt
 
     def agree(self, encoding: str | types.PositionEncodingKind | None) -> None:
-        """Count columns as the editor does."""
+        """Set the negotiated encoding of columns."""
         kind = types.PositionEncodingKind(encoding) if encoding else types.PositionEncodingKind.Utf16
         self.encoding = _ENCODINGS[kind]
 
     # ---- from the editor ----
 
     def path(self, uri: str) -> str:
-        """The path of a file; what is no file (an untitled buffer) goes by its URI, as if that stood at the top."""
-        from btq_lang.workspace.loader import absolute  # it knows workspaces, which are not needed to start
+        """The path of a file; an untitled buffer's is its URI, as if at the root."""
+        from btq_lang.workspace.loader import absolute  # it imports workspaces, which are not needed to start
 
         parts = urlsplit(uri)
         return absolute(_path_of(parts.path) if parts.scheme == "file" else f"/{unquote(uri)}")
 
     def changed(self, lines: LineIndex, changes: Sequence[types.TextDocumentContentChangeEvent]) -> str:
-        """What a text says after changes, each of which counts in what the one before has made."""
+        """The text after changes, each of which applies to the result of the previous one."""
         for change in changes[:-1]:
             lines = lines.replaced(self._span_in(lines, change), change.text)
-        for change in changes[-1:]:  # mostly the only one; the lines behind it are found with the rest of the file
+        for change in changes[-1:]:  # usually the only one; the line index is not needed after it
             start, end = self._span_in(lines, change)
             return lines.text[:start] + change.text + lines.text[end:]
         return lines.text
 
     def _span_in(self, lines: LineIndex, change: types.TextDocumentContentChangeEvent) -> Span:
-        """What a change replaces."""
+        """The span that a change replaces."""
         if not isinstance(change, types.TextDocumentContentChangePartial):
             return Span(0, len(lines.text))
         start, end = (self._offset_in(lines, place) for place in (change.range.start, change.range.end))
@@ -85,7 +85,7 @@ class Converter:
         return lines.offset(Position(position.line, position.character), self.encoding)
 
     def offset_made(self, workspace: Workspace, path: str, position: types.Position) -> int | None:
-        """As `offset`; of a file in XML, where in this language that is; None: nowhere."""
+        """As `offset`; for a file in XML, the offset in the imported text; None: it has none."""
         file = workspace.files[path]
         if file.origin is None:
             return self.offset(workspace, path, position)
@@ -101,12 +101,12 @@ class Converter:
         return self._uris.get(path) or _uri_of(path)
 
     def learn_uri(self, path: str, uri: str) -> None:
-        """The editor writes the URI of a file so."""
+        """Remember the editor's spelling of a file's URI."""
         self._uris[path] = uri
         self._spellings += 1
 
     def range(self, workspace: Workspace, path: str, span: Span) -> types.Range:
-        """A span of a file's text, where it stands on the disk."""
+        """The range of a span in the original file."""
         file = workspace.files[path]
         if file.origin is not None:
             span = file.origin.places.origin(span)
@@ -125,10 +125,10 @@ class Converter:
     def workspace_edit(
         self, workspace: Workspace, edits: Mapping[str, Iterable[Edit]], versions: Mapping[str, int] | None
     ) -> types.WorkspaceEdit:
-        """Edits of several files.
+        """A workspace edit of several files.
 
         Args:
-            versions: of the open files, for an editor that wants them named; None: it knows no versions here.
+            versions: of the open files; None: the editor does not support versions here.
         """
         changes = {path: self.edits(workspace, path, made) for path, made in edits.items()}
         if versions is None:
@@ -142,10 +142,10 @@ class Converter:
         return types.WorkspaceEdit(document_changes=[*documents])
 
     def findings(self, workspace: Workspace, path: str, found: Findings) -> Json:
-        """All that is reported of a file, as JSON has a list of diagnostics.
+        """All diagnostics of a file, as a JSON list.
 
-        At every key all of it is sent, and of most items nothing has changed, or but the lines: what was written of an
-        item is kept with it for as long as it stands where it stood, and so does all that it refers to.
+        All of them are sent after every keystroke, but most items are unchanged or only moved: the JSON of an item is
+        cached until the item, or something it refers to, moves.
         """
         files, encoding = workspace.files, self.encoding
         written: list[str] = []
@@ -157,13 +157,13 @@ class Converter:
                 written.append(reported.written[1])
                 continue
             written.append(self._diagnostics(workspace, path, reported.placed(starts)))
-            if reported.items:  # of a file that nobody edits it would only take room
+            if reported.items:  # in files that are not edited it would only take memory
                 reported.written = where, written[-1]
         return Json(f"[{', '.join(written)}]")
 
     def problems(self, text: str, found: Iterable[LoadProblem]) -> Json:
-        """What is wrong with a project file, as JSON has a list of diagnostics."""
-        from btq_lang.util.toml_places import word_end  # few are wrong
+        """The problems of a project file, as a JSON list of diagnostics."""
+        from btq_lang.util.toml_places import word_end  # few files have problems
 
         lines = LineIndex(text)
         written: list[str] = []
@@ -174,10 +174,10 @@ class Converter:
         return Json(f"[{', '.join(written)}]")
 
     def _diagnostics(self, workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> str:
-        """Diagnostics as JSON; their spans count in the text on the disk already.
+        """Diagnostics as JSON; their spans already refer to the original file.
 
-        When a line comes or goes, what is behind it is written again, and of that again only the lines are others: what
-        each says is kept as text, and all lines and columns are put into it at once.
+        When a line is added or removed, everything after it is written again with other line numbers: the text of each
+        diagnostic is cached, and all lines and columns are filled in at once.
         """
         written: list[str] = []
         numbers: list[int] = []
@@ -207,7 +207,7 @@ class Converter:
         return {"title": action.title, "kind": action.kind, **preferred, **found, "edit": edit}
 
     def merged(self, edits: Iterable[types.WorkspaceEdit]) -> types.WorkspaceEdit:
-        """Several edits of different files as one."""
+        """Merge edits of different files."""
         merged = types.WorkspaceEdit()
         for edit in edits:
             if edit.changes is not None:
@@ -219,7 +219,7 @@ class Converter:
     def outline(self, workspace: Workspace, path: str, outline: Outline) -> types.DocumentSymbol:
         children = [self.outline(workspace, path, child) for child in outline.children]
         whole, name = self.range(workspace, path, outline.span), self.range(workspace, path, outline.name_span)
-        if workspace.files[path].origin is not None:  # in XML the parts need not stand in the order of this language
+        if workspace.files[path].origin is not None:  # in XML the parts may be in another order
             whole = _around(whole, name, *(child.range for child in children))
         return types.DocumentSymbol(
             outline.name, SYMBOL_KINDS[outline.kind], whole, name, detail=outline.detail, children=children
@@ -249,14 +249,14 @@ class Converter:
         return types.SignatureHelp([signature], active_signature=0, active_parameter=found.active)
 
     def hover(self, workspace: Workspace, path: str, found: Hover) -> Json:
-        """A hover; plain, for the first one made of lsprotocol's classes has a converter compiled for each."""
+        """A hover, as plain data: the first one made of lsprotocol's classes would compile a converter for each."""
         file = workspace.files[path]
         span = file.origin.places.origin(found.span) if file.origin is not None else found.span
         contents = f'{{"kind": "markdown", "value": {as_json(found.markdown)}}}'
         return Json(f'{{"contents": {contents}, "range": {self._range_as_json(file.source_lines, span)}}}')
 
     def completion(self, workspace: Workspace, path: str, found: Completion) -> Json:
-        """Proposals, written at once: of a large file they are hundreds, for an editor that waits."""
+        """Proposals as JSON: a large file has hundreds, and an editor waits for them."""
         file = workspace.files[path]
         assert file.origin is None, "XML has no completion"
         range_, of_path = self._range_as_json(file.lines, found.span), as_json(path)
@@ -291,10 +291,10 @@ def _said(
     tags: tuple[Tag, ...],
     related: tuple[tuple[str, str], ...],
 ) -> str:
-    """What a diagnostic says, wherever it stands: a JSON object, with `%d` where its lines and columns belong.
+    """A diagnostic as a JSON object, with `%d` in place of lines and columns.
 
     Args:
-        severity: None: the rule's own.
+        severity: None: that of the rule.
         related: the URI and the message of each.
     """
     members = {
@@ -314,7 +314,7 @@ def _said(
 
 
 def _literal(text: str) -> str:
-    """A text as it is to be written where numbers are put in."""
+    """A JSON string, escaped for use in a format string."""
     return text.replace("%", "%%")
 
 
@@ -323,7 +323,7 @@ def _uri_of(path: str) -> str:
 
 
 def _path_of(url: str) -> str:
-    """The path that a URL names: as urllib.request has it, which takes long to import."""
+    """The path that a URL names, as in urllib.request, which takes long to import."""
     if os.name != "nt":
         return unquote(url)
     from urllib.request import url2pathname
@@ -331,7 +331,7 @@ def _path_of(url: str) -> str:
     return url2pathname(url)
 
 
-@lru_cache(_MOST_KEPT)  # every place that a diagnostic names has one
+@lru_cache(_MOST_KEPT)  # every place in a diagnostic has one
 def _url_of(path: str) -> str:
     if os.name != "nt":
         return quote(path)

@@ -1,4 +1,4 @@
-"""Open documents, and diagnostics for editors that ask for them."""
+"""Open documents, and pull diagnostics."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def register(server: Server) -> None:
         path = convert.path(params.text_document.uri)
         server.versions[path] = params.text_document.version
         server.check_soon(session.edit(path, convert.changed(session.lines(path), params.content_changes)))
-        server.last_key = asyncio.get_running_loop().time()  # now, for the edit itself may have taken long
+        server.last_key = asyncio.get_running_loop().time()  # now: handling the edit may have taken long
 
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     def did_close(params: types.DidCloseTextDocumentParams) -> None:
@@ -60,13 +60,13 @@ def _diagnostics(server: Server) -> None:
             server.publish_projects()
         await server.scanned.wait()
         paths = session.paths() if session.setting("checkClosedFiles", True) else ()
-        # What the editor still shows of files that are gone, or no longer wanted, goes only if it is told so: also of
-        # those whose result it has forgotten, as VS Code does when a document is closed.
+        # Diagnostics of files that are deleted, or no longer wanted, disappear only after an empty report, also for
+        # files whose result id the editor has forgotten, as VS Code does when a document is closed.
         gone = (known.keys() | server.shown) - set(paths) - session.open.keys()
         items = [_about(convert.uri(path), None, NOTHING) for path in sorted(gone)]
         spelt = [one.uri for one in params.previous_result_ids if convert.uri(convert.path(one.uri)) != one.uri]
-        items += [_about(uri, None, NOTHING) for uri in spelt]  # for the file has another one since then
-        async with checking(server, 0 if known else len(paths)) as told:  # who knows something asks for the news
+        items += [_about(uri, None, NOTHING) for uri in spelt]  # the file's URI has changed since then
+        async with checking(server, 0 if known else len(paths)) as told:  # an editor with results asks for changes only
             for done, path in enumerate(paths, 1):
                 report = server.report(path, known.get(path))
                 items.append(_about(convert.uri(path), server.versions.get(path), report))
@@ -77,12 +77,12 @@ def _diagnostics(server: Server) -> None:
                         token = json.dumps(params.partial_result_token)
                         server.protocol.tell(types.PROGRESS, Json(f'{{"token": {token}, "value": {_all(items)}}}'))
                         items = []
-                await asyncio.sleep(0)  # the editor may have given up, or changed something
+                await asyncio.sleep(0)  # the editor may have cancelled, or changed something
         return _all(items)
 
 
 def _about(uri: str, version: int | None, report: Json) -> str:
-    """A report, with the file that it is about."""
+    """A report for a file."""
     return f'{{"uri": {json.dumps(uri)}, "version": {json.dumps(version)}, {report[1:]}'
 
 
@@ -90,4 +90,4 @@ def _all(items: list[str]) -> Json:
     return Json(f'{{"items": [{", ".join(items)}]}}')
 
 
-A_PART = 20  # of the files, told together
+A_PART = 20  # files reported together

@@ -1,6 +1,6 @@
-"""The editor at the other end: what it can do, what it has open, and what it has been told.
+"""The client: its capabilities, its open files, and what was published to it.
 
-Every answer is made in the terms of `convert`; which request asks which feature is in the modules beside this one.
+`convert` makes all results; the handlers are in the other modules of this package.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ Handler = TypeVar("Handler", bound=Callable[..., Any])
 
 
 class Refused(JsonRpcException):
-    """A request that cannot be granted, with the reason for the user: no failure of the server."""
+    """A request that is refused, with the reason for the user; not a failure of the server."""
 
     CODE = -32803  # RequestFailed
 
@@ -49,31 +49,31 @@ class Refused(JsonRpcException):
 NOT_JSON = json.JSONDecodeError, UnicodeDecodeError
 NO_ITEMS = Json("[]")
 NOTHING = Json('{"kind": "full", "items": []}')
-TO_ASK = 0.01  # seconds, in which an editor that was told what is wrong with a file asks for more about it
-A_PAUSE = 0.1  # seconds, less than between two keys of most who type
+TO_ASK = 0.01  # seconds, within which an editor sends requests about published diagnostics
+A_PAUSE = 0.1  # seconds, less than between most keystrokes
 UNNOTICED = 0.05  # seconds, for which an answer may wait for a check
-MOST_REST = 0.5  # seconds, for which a file that takes long to check is left alone after a key
-A_LOOK = 5  # seconds between two looks at whether the editor's process still runs
-MOST_DETAILS = 500  # a parameter may hold a whole text
+MOST_REST = 0.5  # seconds, for which the check of a slow file is delayed after a keystroke
+A_LOOK = 5  # seconds between checks that the editor's process still runs
+MOST_DETAILS = 500  # a parameter may contain a whole text
 
 
 class Traced(logging.Handler):
-    """What is logged, for an editor that traces: it may not show what a server writes to standard error."""
+    """Sends log records to an editor that traces, which may not show the server's standard error."""
 
     def __init__(self, server: Server) -> None:
-        super().__init__(logging.WARNING)  # pygls logs at lower levels what it sends, this too
+        super().__init__(logging.WARNING)  # at lower levels pygls logs what it sends, including this
         self._server = server
         self._is_telling = False
 
     def emit(self, record: logging.LogRecord) -> None:
-        if not self._is_telling:  # what goes wrong while it is told is logged, too
+        if not self._is_telling:  # errors while sending are logged, too
             self._is_telling = True
             self._server.trace(record.getMessage(), self.format(record))
             self._is_telling = False
 
 
 class Server(LanguageServer):
-    """The server: a session, the way to the editor's terms, and what the editor has been told."""
+    """The server: a session, a converter, and what was published to the editor."""
 
     protocol: Protocol
 
@@ -82,27 +82,27 @@ class Server(LanguageServer):
         self.session = Session()
         self.convert = Converter()
         self.versions: dict[str, int] = {}
-        self.published: dict[str, tuple[int | None, int | None]] = {}  # hashes of what was told, if any, and versions
-        self.asks_for_all = False  # the editor asks for the diagnostics of all files, and not only of what is open
-        self.shown: set[str] = set()  # the files of which an editor that asks may still show something
+        self.published: dict[str, tuple[int | None, int | None]] = {}  # hashes of what was published, and versions
+        self.asks_for_all = False  # the editor pulls workspace diagnostics
+        self.shown: set[str] = set()  # the files of which a pulling editor may still show diagnostics
         self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
         self.waiting: dict[str, None] = {}
-        self.last_key = -MOST_REST  # when something was typed
+        self.last_key = -MOST_REST  # the time of the last keystroke
         self._pause: asyncio.TimerHandle | None = None
         self._preparing: asyncio.Task[None] | None = None
-        self.answering = 0  # how many questions are answered step by step: somebody waits
-        self._ready: set[str] = set()  # the files for whose first questions everything is there
+        self.answering = 0  # how many requests are being answered in steps
+        self._ready: set[str] = set()  # the files prepared for first requests
         self.task: asyncio.Task[None] | None = None
-        self.scanned = asyncio.Event()  # the folders were read once: before, what files there are is not known
-        self._is_settled = False  # what was read first is frozen for the garbage collector
-        self._failures: set[object] = set()  # the places of those that are logged
+        self.scanned = asyncio.Event()  # the folders have been read; before, the set of files is unknown
+        self._is_settled = False  # the first objects are frozen for the garbage collector
+        self._failures: set[object] = set()  # the places of logged failures
         self.protocol.log_failure = self.log_failure
         self._watching: asyncio.Task[None] | None = None
-        self.is_outdated: Callable[[], bool] = lambda: False  # an edit waits to be handled
+        self.is_outdated: Callable[[], bool] = lambda: False  # whether an edit waits to be handled
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
-        """As in pygls, but for how messages are read."""
+        """As in pygls, except for how messages are read."""
         self._stop_event = Event()
         self.protocol.set_writer(StdoutWriter(stdout or sys.stdout.buffer))
         reader = Messages(stdin or sys.stdin.buffer)
@@ -118,21 +118,21 @@ class Server(LanguageServer):
             self.shutdown()  # type: ignore[no-untyped-call]  # pygls has no types there
 
     def report_server_error(self, error: Exception, source: Any) -> None:
-        """As in pygls, which shows the user that a message is not JSON, and does not answer it."""
+        """Answer and log a message that is not JSON, which pygls shows to the user without an answer."""
         if isinstance(error, NOT_JSON):
             self.protocol.refuse(types.ErrorCodes.ParseError, f"a message is not JSON: {error}")
         else:
             super().report_server_error(error, source)
 
-    # ---- the end ----
+    # ---- exit ----
 
     @property
     def exit_code(self) -> int:
-        """What the process ends with: an editor that goes without `shutdown` has crashed, or is badly written."""
+        """The exit code of the process: an error if the editor exits without `shutdown`."""
         return 0 if self.protocol.is_shut_down else 1
 
     def end_with(self, process: int) -> None:
-        """End soon after a process has ended: an editor that crashes may leave its end of the pipes open."""
+        """Exit soon after a process has ended: an editor that crashes may leave its end of the pipes open."""
         self._watching = asyncio.ensure_future(self._end_with(process))
 
     async def _end_with(self, process: int) -> None:
@@ -140,13 +140,13 @@ class Server(LanguageServer):
             await asyncio.sleep(A_LOOK)
         try:
             logging.getLogger(__name__).error("the editor's process %d has ended", process)
-        finally:  # nobody may read what is logged
-            os._exit(self.exit_code)  # `sys.exit` would wait for the thread that waits for the next message
+        finally:  # the log may have no reader
+            os._exit(self.exit_code)  # `sys.exit` would wait for the thread that reads messages
 
-    # ---- what an editor that traces is told ----
+    # ---- tracing ----
 
     def feature(self, feature_name: str, options: Any | None = None) -> Callable[[Handler], Handler]:
-        """As in pygls, which would look for what each handler takes, and compile a converter to check its options."""
+        """As in pygls, but without inspecting each handler's parameters and compiling a converter for its options."""
 
         def register(handler: Handler) -> Handler:
             self.protocol.fm.features[feature_name] = self._timed(feature_name, handler)
@@ -157,14 +157,14 @@ class Server(LanguageServer):
         return register
 
     def trace(self, message: str, details: str) -> None:
-        """Tell what the server does, if the editor has asked for it; the details, if it has asked for those."""
+        """Send a trace message if the editor has enabled tracing; the details only if it is verbose."""
         value = self.protocol.trace
         if value is not types.TraceValue.Off:
             verbose = details if value is types.TraceValue.Verbose else None
             self.log_trace(types.LogTraceParams(message, verbose))
 
     def _timed(self, name: str, handler: Handler) -> Handler:
-        """A handler that says how long it took."""
+        """A handler that traces how long it took."""
 
         def say(begin: float, arguments: tuple[Any, ...]) -> None:
             if self.protocol.trace is not types.TraceValue.Off:
@@ -189,10 +189,10 @@ class Server(LanguageServer):
         return answer_later if asyncio.iscoroutinefunction(handler) else answer  # type: ignore[return-value]  # `wraps`
 
     def log_failure(self, error: BaseException) -> tuple[str, bool]:
-        """Log an exception that nothing expected, once: while somebody types it is raised at every key.
+        """Log an unexpected exception, once: while the user types it may be raised at every keystroke.
 
         Returns:
-            What is said of it, and whether it is a new one.
+            Its message, and whether it is a new one.
         """
         said, where = failures.internal_error(error), failures.place(error)
         is_new = where not in self._failures
@@ -201,11 +201,11 @@ class Server(LanguageServer):
             logging.getLogger(__name__).error(said, exc_info=error)
         return said, is_new
 
-    # ---- what an editor can do ----
+    # ---- capabilities ----
 
     @property
     def pulls(self) -> bool:
-        """The editor asks for diagnostics itself."""
+        """Whether the editor pulls diagnostics."""
         document = self.client_capabilities.text_document
         return document is not None and document.diagnostic is not None
 
@@ -227,29 +227,29 @@ class Server(LanguageServer):
         return document is not None and document.semantic_tokens is not None
 
     def versions_for_edits(self) -> dict[str, int] | None:
-        """The versions of open files, for an editor that compares them."""
+        """The versions of open files, if the editor supports them in edits."""
         workspace = self.client_capabilities.workspace
         edit = workspace.workspace_edit if workspace else None
         return self.versions if edit and edit.document_changes else None
 
     def can_refresh(self, what: str) -> bool:
-        """Whether the editor asks again when told so."""
+        """Whether the editor supports a refresh request."""
         capabilities = getattr(self.client_capabilities.workspace, what, None)
         return bool(capabilities and capabilities.refresh_support)
 
     def knows_command(self, command: str) -> bool:
-        """Whether the editor has said, under `experimental`, that it has a command of its own."""
+        """Whether the editor has declared a command of its own under `experimental`."""
         experimental = self.client_capabilities.experimental
         commands = experimental.get("commands") if isinstance(experimental, dict) else None
         return isinstance(commands, list) and command in commands
 
-    # ---- asking features ----
+    # ---- calling features ----
 
     def at(self, document: types.TextDocumentIdentifier, *, reads: bool = False) -> tuple[Workspace, str] | None:
-        """The workspace and the path of a document; None where it is unknown, or written in XML.
+        """The workspace and the path of a document; None if it is unknown, or written in XML.
 
         Args:
-            reads: what is asked changes nothing and names places that `convert.range` finds, so XML will do.
+            reads: the request changes nothing and its result has places that `convert.range` maps, so XML is allowed.
         """
         path = self.convert.path(document.uri)
         workspace = self.session.workspace_of(path)
@@ -265,7 +265,7 @@ class Server(LanguageServer):
         *,
         reads: bool = False,
     ) -> tuple[Workspace, str, T] | None:
-        """What a feature answers at a position, and the workspace and path that its spans are of; `reads`: as `at`."""
+        """The result of a feature at a position, and the workspace and path of its spans; `reads`: as in `at`."""
         place = self.at(document, reads=reads)
         offset = self.convert.offset_made(*place, position) if place is not None else None
         if place is None or offset is None:
@@ -273,10 +273,10 @@ class Server(LanguageServer):
         workspace, path = place
         return workspace, path, feature(workspace, path, offset)
 
-    # ---- telling diagnostics ----
+    # ---- publishing diagnostics ----
 
     def findings(self, path: str) -> Findings:
-        """What is wrong with a file; nothing is said of XML that is nobody's tree: an editor may send all it has."""
+        """The findings of a file; none for XML without a tree: an editor may send any XML file."""
         found = self.session.findings(path)
         workspace = self.session.workspace_of(path)
         if workspace is None or workspace.files[path].origin is None or path in workspace.included_files:
@@ -285,14 +285,14 @@ class Server(LanguageServer):
         return Findings([]) if is_strange else found
 
     def told(self, path: str) -> Json | None:
-        """All that is wrong with a file, a mission or a project's, as JSON; None: the file is not known."""
+        """All diagnostics of a file, a mission or a project file, as JSON; None: the file is unknown."""
         if path in self.session.projects:
             return self.convert.problems(*self.session.projects[path])
         workspace = self.session.workspace_of(path)
         return None if workspace is None else self.convert.findings(workspace, path, self.findings(path))
 
     def check_soon(self, paths: Iterable[str]) -> None:
-        """Tell the diagnostics of files, those first that come first; what waits already waits on behind them."""
+        """Schedule files, in their order, for checking and publishing, before those already waiting."""
         self.waiting = dict.fromkeys((*paths, *self.waiting))
         for idle in (self._pause, self._preparing):
             if idle is not None:
@@ -301,7 +301,7 @@ class Server(LanguageServer):
             self.task = asyncio.ensure_future(self._check())
 
     async def rest(self, path: str) -> None:
-        """Let whoever types ask first: wait after the last key as long as it takes to check a large file."""
+        """Let requests go first: wait after the last keystroke as long as checking a large file takes."""
         clock = asyncio.get_running_loop().time
         while (took := self.session.took.get(path, 0)) > UNNOTICED:
             rest = self.last_key + min(took, MOST_REST) - clock()
@@ -310,7 +310,7 @@ class Server(LanguageServer):
             await asyncio.sleep(rest)
 
     async def check(self, path: str) -> None:
-        """Check a file that an editor asks about, and begin anew if it is edited meanwhile."""
+        """Check a file for a request, and start over if it is edited meanwhile."""
         while True:
             await self.rest(path)
             try:
@@ -320,8 +320,9 @@ class Server(LanguageServer):
                 await asyncio.sleep(0)
 
     async def _check(self) -> None:
-        """Check file by file, and listen between two: an edit that comes meanwhile is checked first, and what is asked
-        meanwhile is answered before any file that is not open."""
+        """Check file by file, handling messages between two: an edited file is checked first, and requests are answered
+        before checking files that are not open.
+        """
         await asyncio.sleep(0)
         if self.pulls:
             self.waiting.clear()
@@ -337,7 +338,7 @@ class Server(LanguageServer):
                 await asyncio.sleep(TO_ASK / 10)
                 continue
             await self.rest(path)
-            if path != next(iter(self.waiting)):  # another file was typed in meanwhile
+            if path != next(iter(self.waiting)):  # another file was edited meanwhile
                 continue
             del self.waiting[path]
             try:
@@ -347,7 +348,7 @@ class Server(LanguageServer):
                 self.waiting = {path: None, **self.waiting}
                 await asyncio.sleep(0)
                 continue
-            except Exception as error:  # one file that cannot be checked must not silence the others
+            except Exception as error:  # a file that cannot be checked must not block the others
                 self.log_failure(error)
             self.session.let_go()
             told = loop.time() if is_open else told
@@ -362,17 +363,17 @@ class Server(LanguageServer):
         self._pause = asyncio.get_running_loop().call_later(A_PAUSE, self._use_pause)
 
     def _use_pause(self) -> None:
-        """Do what would be in the way while somebody waits."""
+        """Do pending maintenance while the editor is idle."""
         if self.answering:
             self._await_pause()
             return
         if self.scanned.is_set() and not self._is_settled:
-            gc.freeze()  # what was read first stays: to look through it would hold up an answer
+            gc.freeze()  # the first objects stay alive: scanning them would delay an answer
             self._is_settled = True
         self._preparing = asyncio.ensure_future(self._prepare())
 
     async def _prepare(self) -> None:
-        """Get ready for the first questions about what is open, and listen between two steps: an edit ends it."""
+        """Prepare for the first requests about open files, handling messages between steps; an edit ends it."""
         self._ready.intersection_update(self.session.open)
         for path in [path for path in self.session.open if path not in self._ready]:
             place = self.at(types.TextDocumentIdentifier(self.convert.uri(path)))
@@ -383,7 +384,7 @@ class Server(LanguageServer):
             self._ready.add(path)
 
     def publish(self, path: str) -> None:
-        """Tell the diagnostics of a file, unless the editor knows them."""
+        """Publish the diagnostics of a file, unless they are already published."""
         version = self.versions.get(path)
         told = self.told(path) if path in self.session.open or self.session.setting("checkClosedFiles", True) else None
         if told is None:
@@ -398,7 +399,7 @@ class Server(LanguageServer):
             self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
 
     def publish_projects(self) -> None:
-        """Tell what is wrong with project files to an editor that asks for the diagnostics of open files alone."""
+        """Publish the diagnostics of project files to an editor that pulls those of open files only."""
         for path in {*self.session.projects, *self.published}:
             if self.asks_for_all or path in self.session.open:
                 self.withdraw(path)
@@ -406,13 +407,13 @@ class Server(LanguageServer):
                 self.publish(path)
 
     def withdraw(self, path: str) -> None:
-        """Tell that nothing is wrong with a file, if something was told by the URI that it has."""
+        """Publish an empty list for a file, if something was published for its URI."""
         if self.published.pop(path, (None, None))[0] is not None:
             gone = {"uri": self.convert.uri(path), "diagnostics": []}
             self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, gone)
 
     def report(self, path: str, previous: str | None) -> Json:
-        """The diagnostics of a file for an editor that asks: all, or that nothing has changed."""
+        """The diagnostic report of a file for an editor that pulls: full or unchanged."""
         items = self.told(path)
         if items is None:
             return NOTHING
@@ -424,7 +425,7 @@ class Server(LanguageServer):
         return Json(f'{{"kind": "full", "resultId": "{result}", "items": {items}}}')
 
     def reload(self) -> None:
-        """Read folders and projects again, and tell what has changed."""
+        """Read folders and projects again, and publish changes."""
         self.check_soon(self.session.reload())
         for what, refresh in (
             ("semantic_tokens", self.workspace_semantic_tokens_refresh),
@@ -436,8 +437,8 @@ class Server(LanguageServer):
 
 
 def _is_running(process: int) -> bool:
-    """Whether there is a process of this number."""
-    if sys.platform == "win32":  # there `os.kill` ends the process, whatever the signal
+    """Whether a process with this id runs."""
+    if sys.platform == "win32":  # `os.kill` would end the process there, whatever the signal
         import ctypes
 
         kernel = ctypes.WinDLL("kernel32", use_last_error=True)
@@ -451,7 +452,7 @@ def _is_running(process: int) -> bool:
         os.kill(process, 0)
     except ProcessLookupError:
         return False
-    except (PermissionError, OverflowError):  # another user's; or no number of this system's, which says nothing
+    except (PermissionError, OverflowError):  # another user's; or not a valid id: unknown
         pass
     return True
 

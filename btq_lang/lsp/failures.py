@@ -1,6 +1,6 @@
-"""What is said of an exception that nothing expected: one line for people, and the traceback for whoever mends it.
+"""Messages for unexpected exceptions: one line for users; developers find the traceback in the log.
 
-One invariant: to say it raises nothing.
+One invariant: reporting raises nothing.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ def internal_error(error: BaseException, otherwise: str = "") -> str:
     """`internal error: KeyError: 'x' while reading a.btq; report it …`, on one line.
 
     Args:
-        otherwise: what is said in place of `while reading …` where no file was at hand.
+        otherwise: the text in place of `while reading …` if no file is involved.
     """
-    from btq_lang.workspace.loader import shown  # a server imports this when it starts, and seldom needs more
+    from btq_lang.workspace.loader import shown  # a server imports this module at its start, and seldom needs that one
 
     said = " ".join(str(error).split())
     what = f"{type(error).__name__}: {said}" if said else type(error).__name__
@@ -30,13 +30,13 @@ def internal_error(error: BaseException, otherwise: str = "") -> str:
 
 
 def place(error: BaseException) -> object:
-    """Where an exception came from: the same for the same mistake, however often it is made."""
+    """Where an exception was raised: equal for the same bug, however often it occurs."""
     frames = [*_frames(error)][:_FRAMES]
     return type(error), tuple((frame.f_code, line) for frame, line in frames)
 
 
 def _files(error: BaseException) -> Iterator[str]:
-    """The files that were at hand, the last one first."""
+    """The files in use in the traceback, innermost first."""
     from btq_lang.workspace.file import SUFFIXES  # as above
 
     for frame, _ in reversed([*_frames(error)]):
@@ -52,4 +52,4 @@ def _frames(error: BaseException) -> Iterator[tuple[FrameType, int]]:
         at = at.tb_next
 
 
-_FRAMES = 40  # of a recursion without end the innermost frames are others each time
+_FRAMES = 40  # the innermost frames of an infinite recursion differ each time

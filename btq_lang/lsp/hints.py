@@ -15,7 +15,7 @@ from btq_lang.util.text import Span
 if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
-SHOW_REFERENCES = "btq.showReferences"  # a command of the editor's, which opens its own list
+SHOW_REFERENCES = "btq.showReferences"  # a command of the editor, which opens its own list
 
 
 def register(server: Server) -> None:

@@ -1,7 +1,7 @@
 """Formatting.
 
-A text with a syntax error is left as it is.  Why is in the log and in no message box: the error is underlined already,
-and who formats on save would be told at every save.
+A text with a syntax error is not changed.  The reason is only logged: the error is underlined already, and a message
+box would open at every save that formats.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def register(server: Server) -> None:
         place = server.at(params.text_document)
         if place is None or _is_refused(server, *place):
             return None
-        from btq_lang.formatter import format_text  # imported when it is asked for, as features are
+        from btq_lang.formatter import format_text  # imported on use, like features
 
         workspace, path = place
         return convert.edits(*place, format_text(workspace.files[path].text).edits)
@@ -41,7 +41,7 @@ def register(server: Server) -> None:
 
 
 def _is_refused(server: Server, workspace: Workspace, path: str) -> bool:
-    """Whether a file has a syntax error; then the log says so."""
+    """Whether a file has a syntax error, which is then logged."""
     from btq_lang.formatter import refused  # as above
 
     file = workspace.files[path]

@@ -1,4 +1,4 @@
-"""The beginning, the folders, the settings, and files that change on the disk."""
+"""Initialisation, folders, settings, and files that change on the disk."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def register(server: Server) -> None:
 
     @server.feature(types.INITIALIZED)
     async def initialized(_: types.InitializedParams) -> None:
-        # Not in `initialize`: the editor waits for that answer, and what looks at files takes long to import.
+        # Not in `initialize`: the editor waits for its result, and modules that read files take long to import.
         folders = [*server.workspace.folders] or [root for root in (server.workspace.root_uri,) if root]
         _work_in(session, tuple(map(convert.path, folders)))
         capabilities = server.client_capabilities.workspace
-        gc.freeze()  # what was imported stays
-        gc.set_threshold(100_000, 50, 10)  # nearly all that an edit makes stays: looked through less often
+        gc.freeze()  # imported objects stay alive
+        gc.set_threshold(100_000, 50, 10)  # most objects of an edit stay alive: collect less often
         try:
             await _register_watchers(server)
             if capabilities is not None and capabilities.configuration:
@@ -63,21 +63,21 @@ def register(server: Server) -> None:
 
 
 def _work_in(session: Session, folders: tuple[str, ...]) -> None:
-    from btq_lang.workspace.loader import work_in  # an editor waits for the server to start
+    from btq_lang.workspace.loader import work_in  # the server must start fast
 
     session.folders = folders
     work_in(folders[0] if folders else "")
 
 
 async def _register_watchers(server: Server) -> None:
-    """Ask the editor to tell which files change, if it can be asked."""
+    """Register file watchers with the editor, if it supports that."""
     workspace = server.client_capabilities.workspace
     watching = workspace.did_change_watched_files if workspace else None
     if watching is None or not watching.dynamic_registration:
         return
     patterns = [f"**{ending}" if ending[0] == "/" else f"**/*{ending}" for ending in _endings()]
     watchers = [types.FileSystemWatcher(pattern) for pattern in patterns]
-    # Of a folder that goes as a whole an editor tells nothing but that.
+    # If a folder is deleted as a whole, an editor reports only the folder.
     watchers.append(types.FileSystemWatcher("**/*", types.WatchKind.Delete))
     options = types.DidChangeWatchedFilesRegistrationOptions(watchers)
     wanted = types.Registration("watch", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
@@ -85,7 +85,7 @@ async def _register_watchers(server: Server) -> None:
 
 
 def _concerns(session: Session, changed: set[str]) -> bool:
-    """Whether changes on the disk may change what is known: most that is deleted is a file or folder of others."""
+    """Whether changes on the disk may concern the session: most deleted files and folders do not."""
     return any(path.endswith(_endings()) for path in changed) or not changed.isdisjoint(session.places())
 
 
@@ -101,7 +101,7 @@ def _settle(session: Session, settings: object) -> None:
 
 
 async def _first_check(server: Server) -> None:
-    """All files of the folders, after those that are open; with progress, where there are many."""
+    """Check all files of the folders, after the open ones; with progress if there are many."""
     server.check_soon(server.session.paths())
     await asyncio.sleep(_TO_OPEN)
     paths = server.session.paths() if server.session.has_read else server.session.reload()
@@ -117,12 +117,12 @@ async def _first_check(server: Server) -> None:
 
 
 def _endings() -> tuple[str, ...]:
-    """Of the names of files that missions and projects are read from."""
+    """The suffixes of the names of missions and project files."""
     from btq_lang.workspace.file import (
-        SUFFIXES,  # the parser comes with it, and an editor waits for the server to start
+        SUFFIXES,  # it imports the parser, and the server must start fast
     )
 
     return *SUFFIXES, ".xml", "/btq.toml", "/pyproject.toml"
 
 
-_TO_OPEN = 0.02  # seconds, in which an editor tells what it shows: that is checked before any other file
+_TO_OPEN = 0.02  # seconds, in which an editor opens its visible files: these are checked first

@@ -1,4 +1,4 @@
-"""From a name to its definition, its uses, and to another name."""
+"""Definition, references and rename."""
 
 from __future__ import annotations
 

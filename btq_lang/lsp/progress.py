@@ -1,4 +1,4 @@
-"""How far the server is with many files, for editors that show it."""
+"""Progress of work on many files, for editors that show it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MANY_FILES = 50
 
 @asynccontextmanager
 async def checking(server: Server, files: int) -> AsyncIterator[Callable[[int], None]]:
-    """Show that files are checked, and how many of them are: what is yielded tells it.  Few files are not worth it."""
+    """Show progress while files are checked, unless they are few; yields a function that reports how many are done."""
     window = server.client_capabilities.window
     if files < MANY_FILES or window is None or not window.work_done_progress:
         yield lambda _: None
@@ -23,7 +23,7 @@ async def checking(server: Server, files: int) -> AsyncIterator[Callable[[int], 
     server.count += 1
     token = f"btq/check/{server.count}"
     shown = server.work_done_progress
-    await asyncio.shield(shown.create_async(token))  # it is answered even if nobody waits any more
+    await asyncio.shield(shown.create_async(token))  # the request is completed even if the caller is cancelled
     shown.begin(token, types.WorkDoneProgressBegin("btq", message="checking", percentage=0))
     try:
         yield lambda done: shown.report(token, types.WorkDoneProgressReport(percentage=100 * max(done, 0) // files))

@@ -1,6 +1,6 @@
-"""What the protocol does otherwise than pygls: faster on the hot paths, and without a leak.
+"""Deviations from pygls: faster on hot paths, and without a leak.
 
-One invariant: an editor cannot tell the difference, but by the time.  Nothing is known here of btq.
+One invariant: for an editor only the speed differs.  It is independent of btq.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidRequest, JsonRpcServerNotInitialized
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
-Plain = dict[str, Any]  # what json writes as it is
+Plain = dict[str, Any]  # what json writes directly
 
 
 class Json(str):
-    """A result, or what is told, that is JSON already."""
+    """A result, or parameters of a notification, already serialised."""
 
     __slots__ = ()
 
@@ -30,23 +30,23 @@ class Json(str):
 class Protocol(LanguageServerProtocol):
     """The protocol.
 
-    Documents are kept by the session, and not by pygls too, which at every key cuts a text into lines, and not where
-    editors do (form feeds, U+2028).  Answers are written as what they are made of: plain data by `json`, at once.
+    Only the session keeps documents: pygls would split a text into lines at every keystroke, and at other characters
+    than editors (form feeds, U+2028).  Results are plain data, serialised by `json` directly.
 
     Attributes:
-        log_failure: logs an exception that no handler should raise; returns what to say of it, and whether it is new.
+        log_failure: logs an unexpected exception of a handler; returns its message, and whether it is new.
     """
 
     log_failure: Callable[[BaseException], tuple[str, bool]]
 
     def _run_generator(self, future: Future[Any] | None, *, gen: Any, result_future: Future[Any]) -> None:
-        """As in pygls, which logs a handler that is cancelled because the server ends."""
+        """As in pygls, but without logging handlers that are cancelled because the server ends."""
         if future is not None and future.cancelled():
             result_future.cancel()
         super()._run_generator(future, gen=gen, result_future=result_future)
 
     def _check_handler_result(self, future: Future[Any]) -> None:
-        kept = {} if future.cancelled() else self._request_futures  # pygls goes through them when it cancels all
+        kept = {} if future.cancelled() else self._request_futures  # pygls iterates over them when it cancels all
         for key in [key for key, other in kept.items() if other is future]:  # pygls 2.1 keeps each notification
             del kept[key]
         failed = _failure(future)
@@ -71,7 +71,7 @@ class Protocol(LanguageServerProtocol):
             super()._send_response(msg_id, error=error)
         elif isinstance(result, Json):
             self._write(f'{{"jsonrpc": "2.0", "id": {json.dumps(msg_id)}, "result": {result}}}')
-        else:  # what is of lsprotocol in it is made plain by `_serialize_message`
+        else:  # `_serialize_message` converts objects of lsprotocol in it
             self._send_data({"jsonrpc": self.VERSION, "id": msg_id, "result": result})
 
     @property
@@ -80,7 +80,7 @@ class Protocol(LanguageServerProtocol):
         return self._shutdown
 
     def handle_message(self, message: Any) -> None:
-        """As in pygls, which leaves requests after `shutdown` without an answer and takes a second `initialize`."""
+        """As in pygls, but answers requests after `shutdown` with an error, and refuses a second `initialize`."""
         if not hasattr(message, "jsonrpc"):
             self.refuse(types.ErrorCodes.InvalidRequest, "a message is not JSON-RPC: it has no `jsonrpc`")
             return
@@ -91,12 +91,12 @@ class Protocol(LanguageServerProtocol):
             self._send_response(message.id, error=refusal.to_response_error())
 
     def refuse(self, code: types.ErrorCodes, why: str) -> None:
-        """Answer a message that cannot be read, not even whether it is a request."""
+        """Answer a message that cannot be parsed, not even to tell whether it is a request."""
         logging.getLogger(__name__).error(why)
         self._send_data({"jsonrpc": self.VERSION, "id": None, "error": {"code": code.value, "message": why}})
 
     def _refusal(self, method: str) -> JsonRpcException | None:
-        """Why a request cannot be answered at this point of the server's life."""
+        """Why a request is not allowed in this state of the server; None if it is."""
         if self._shutdown:
             return JsonRpcInvalidRequest("the server is shut down: it accepts only `exit`")
         if (self._workspace is not None) is not (method == types.INITIALIZE):
@@ -106,7 +106,7 @@ class Protocol(LanguageServerProtocol):
         return JsonRpcServerNotInitialized("the server is not initialized: send `initialize` first")
 
     def structure_message(self, data: dict[str, Any]) -> Any:
-        """As in pygls, which does not answer a request that it cannot read: who asked would wait for ever."""
+        """As in pygls, but answers requests that cannot be read, for which the editor would wait forever."""
         try:
             return super().structure_message(data)
         except JsonRpcException as error:
@@ -119,14 +119,14 @@ class Protocol(LanguageServerProtocol):
             raise
 
     def getting_ready(self) -> Iterator[None]:
-        """Read a question of each usual kind: pygls has a reader compiled for the first one."""
+        """Parse a request of each usual kind: pygls compiles a parser for the first of each."""
         place = {"textDocument": {"uri": ""}, "position": {"line": 0, "character": 0}}
         for method in _USUAL:
             self.structure_message({"jsonrpc": self.VERSION, "id": 0, "method": method, "params": place})
             yield
 
     def tell(self, method: str, params: Plain | Json) -> None:
-        """Send a notification of plain data, or of what is JSON already."""
+        """Send a notification with plain data or JSON as parameters."""
         if isinstance(params, Json):
             self._write(f'{{"jsonrpc": "2.0", "method": "{method}", "params": {params}}}')
         else:
@@ -151,9 +151,9 @@ class Protocol(LanguageServerProtocol):
 
 
 class Messages:
-    """What comes in, read a message at a time by a thread: pygls has a thread read each line of each head.
+    """Incoming messages, each read by one call in a thread: pygls uses a call for each header line.
 
-    One for `pygls.io_.run_async`.
+    A reader for `pygls.io_.run_async`.
     """
 
     def __init__(self, stream: BinaryIO) -> None:
@@ -173,11 +173,11 @@ class Messages:
 
     @property
     def bring_edit(self) -> bool:
-        """Whether an edit has come in that is not yet handled."""
+        """Whether an edit has arrived that is not yet handled."""
         return not self._is_taken and _CHANGE in self._body
 
     def _read(self) -> None:
-        """One message; nothing at the end of all."""
+        """One message; empty at the end of input."""
         length = 0
         while (line := self._stream.readline()).strip() or (line and not length):
             found = _LENGTH.match(line)
@@ -189,7 +189,7 @@ class Messages:
 
 
 def _failure(future: Future[Any]) -> BaseException | None:
-    """The exception that a handler should not have raised."""
+    """The unexpected exception of a handler."""
     error = None if future.cancelled() else future.exception()
     return None if isinstance(error, JsonRpcException) else error
 

@@ -1,8 +1,8 @@
-"""A session: what an editor has open, in the workspaces of its folders.
+"""A session: the open files of an editor, in the workspaces of its folders.
 
-One invariant: what is open counts, not what is on the disk; and every workspace is the one that would be read afresh
-now.  An edit makes a new workspace of the old one; only what may bring or lose files reads the disk again.  No protocol
-is known here.
+One invariant: open texts override files on the disk; and every workspace equals one read from scratch.  An edit derives
+a new workspace from the old one; only changes that may add or remove files read the disk again.  The protocol is
+unknown here.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from btq_lang.util.record import replace
 from btq_lang.util.text import LineIndex
 from btq_lang.workspace.findings import Findings
 
-if TYPE_CHECKING:  # imported when they are needed, for an editor waits for the server to start
+if TYPE_CHECKING:  # imported on use: the server must start fast
     from btq_lang.commands.files import Files
     from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.workspace.item_index import Name
@@ -29,11 +29,11 @@ class Session:
     """The state of a server: folders, open texts, workspaces, and the diagnostics that were found in them.
 
     Attributes:
-        folders: the editor's folders; empty where single files are open.
+        folders: the editor's folders; empty if single files are open.
         open: the texts of open files, by path.
         settings: what the editor's user has set.
-        projects: the project files of which anything is to be said: their texts, and what is wrong with them.
-        took: how many seconds the last check of an open file has taken, by path.
+        projects: the project files that are open or have problems: their texts and problems.
+        took: the duration of the last check of an open file, in seconds, by path.
     """
 
     def __init__(self) -> None:
@@ -44,21 +44,21 @@ class Session:
         self.took: dict[str, float] = {}
         self._files: Files | None = None
         self._read_for: tuple[tuple[str, ...], dict[str, object]] | None = None  # which folders and settings
-        self._workspaces: list[Workspace] = []  # what their stores keep is of open files
+        self._workspaces: list[Workspace] = []  # their caches are for open files
         self._home: dict[str, int] = {}
-        # Weak, for what the others said when a file was checked is not to stay until it is checked again.
+        # Weak: a file's findings must not keep an old workspace alive until its next check.
         self._checked: dict[str, tuple[ReferenceType[Workspace], Findings]] = {}
 
     # ---- what changes ----
 
     def edit(self, path: str, text: str) -> tuple[str, ...]:
-        """An open file says something else: the files to check again, those first that matter most."""
+        """Change the text of an open file; returns the files to check again, the most important first."""
         self.open[path] = text
         home = self._home.get(path)
         if home is None or self._workspaces[home].files[path].origin is not None:
             return (path, *self.reload())
         before = self._workspaces[home]
-        if before.files[path].text == text:  # opened, and as it is on the disk
+        if before.files[path].text == text:  # opened, and equal to the file on the disk
             return (path,)
         from btq_lang.workspace.inputs import advance
 
@@ -70,13 +70,13 @@ class Session:
         old, new = before.files[path], after.files[path]
         if old.included_paths != new.included_paths:
             return (path, *self.reload())
-        linked = set(after.linked(path))  # what is used is known in both directions
+        linked = set(after.linked(path))  # uses are known in both directions
         if renamed := old.defined_names ^ new.defined_names:
             linked.update(other for other in after.files if other != path and _misses(after, other, renamed))
         return self._in_order(path, linked)
 
     def close(self, path: str) -> tuple[str, ...]:
-        """A file is not open any more: the one on the disk counts again."""
+        """Close a file: the one on the disk counts again."""
         from btq_lang.workspace.loader import read
 
         text = self.open.pop(path, None)
@@ -85,14 +85,14 @@ class Session:
 
             forget(workspace, path)
         self.took.pop(path, None)
-        self._checked.pop(path, None)  # it counts from items, which nobody holds any more
+        self._checked.pop(path, None)  # its offsets count from items that are no longer kept
         is_of_folder = any(path.startswith(f"{folder}/") for folder in self.folders)
         if is_of_folder and text is not None and read(path)[0] == text:
             return (path,)
         return self.reload()
 
     def reload(self) -> tuple[str, ...]:
-        """Read folders and projects again; all files that there are."""
+        """Read folders and projects again; returns all files."""
         from btq_lang.commands.files import Files
         from btq_lang.workspace.inputs import advance
         from btq_lang.workspace.loader import is_project_file
@@ -125,7 +125,7 @@ class Session:
         return self.paths()
 
     def _read_projects(self, problems: Iterable[LoadProblem]) -> None:
-        """Keep what is wrong with project files: those of missions, and those that are open."""
+        """Store the problems of project files, those of missions and open ones."""
         from btq_lang.workspace.loader import find_project, is_project_file, read
 
         found = {path: find_project(path, self.open) for path in self.open if is_project_file(path)}
@@ -139,11 +139,11 @@ class Session:
 
     @property
     def has_read(self) -> bool:
-        """Whether its folders were read, with the settings that it has."""
+        """Whether the folders were read with the current settings."""
         return self._read_for == (self.folders, self.settings)
 
     def _severities(self) -> tuple[tuple[str, Severity | None], ...]:
-        """The severities that the editor's user has set, over those of the project."""
+        """The severities set by the user, which override those of the project."""
         rules = self.settings.get("rules")
         found: list[tuple[str, Severity | None]] = []
         for name, word in rules.items() if isinstance(rules, dict) else ():
@@ -158,10 +158,10 @@ class Session:
         )
 
     def let_go(self) -> None:
-        """Let go of what edits have replaced, while nobody waits for it, and of the trees of files that nobody works
-        in, where they have become much: they are most of what a large folder takes of the memory, and nobody asks for
-        most of them again.  After a question about all files there are many: of these a few each time, for somebody
-        may ask for something else."""
+        """Release what edits have replaced and, if they take much memory, the trees of files that are not worked in:
+        they are most of the memory of a large folder, and few are needed again.  After a request about all files there
+        are many, so only a few are released each time, to stay responsive.
+        """
         from btq_lang.checks import let_go
 
         for workspace in self._workspaces:
@@ -171,11 +171,11 @@ class Session:
             held = [path for path, file in workspace.files.items() if file.is_parsed]
             idle = [path for path in held if path not in worked_in]
             if sum([len(workspace.files[path].text) for path in idle]) > _MOST_IDLE:
-                for each in self.workspaces():  # whoever has one of these holds what it was
+                for each in self.workspaces():  # each of these keeps the replaced objects alive
                     each.let_go(idle[:_AT_ONCE])
 
     def _worked_in(self) -> set[str]:
-        """The files that are open, and those that are linked with them, in whichever workspace: they may share some."""
+        """The open files and those linked with them, in any workspace: workspaces may share files."""
         found: set[str] = set()
         for workspace in self.workspaces():
             missions = {workspace.missions.get(path) for path in self.open} - {None}
@@ -185,28 +185,28 @@ class Session:
     # ---- what is asked ----
 
     def lines(self, path: str) -> LineIndex:
-        """The lines of an open file as it is now."""
+        """The line index of an open file."""
         workspace = self.workspace_of(path)
         return workspace.files[path].source_lines if workspace is not None else LineIndex(self.open.get(path, ""))
 
     def workspace_of(self, path: str) -> Workspace | None:
-        """The workspace of a file; None for a file that is not known, as one that was closed meanwhile."""
+        """The workspace of a file; None for an unknown file, such as one that was closed meanwhile."""
         home = self._home.get(path)
         return None if home is None else self._workspaces[home]
 
     def knows(self, path: str) -> bool:
-        """Whether a path is a mission's, or a project file's of which something is to be said."""
+        """Whether a path is a known mission's or project file's."""
         return path in self._home or path in self.projects
 
     def workspaces(self) -> tuple[Workspace, ...]:
         return tuple(self._workspaces)
 
     def paths(self) -> tuple[str, ...]:
-        """Every file that is known, those that are open first."""
+        """All known files, open ones first."""
         return tuple(sorted((*self._home, *self.projects), key=lambda path: (path not in self.open, path)))
 
     def places(self) -> set[str]:
-        """Every file that is known, and every folder above one."""
+        """All known files, and all folders above them."""
         found: set[str] = set()
         for place in self.paths():
             while place not in found:
@@ -215,13 +215,13 @@ class Session:
         return found
 
     def check(self, path: str, is_outdated: Callable[[], bool]) -> None:
-        """Find out what is wrong with an open file, unless it is edited meanwhile.
+        """Check an open file, unless it is edited meanwhile.
 
         Args:
-            is_outdated: whether an edit waits to be handled.
+            is_outdated: returns whether an edit waits to be handled.
 
         Raises:
-            Cancelled: one does; what was found out so far is kept.
+            Cancelled: one does; results so far are cached.
         """
         workspace = self.workspace_of(path)
         if workspace is None or path not in self.open:
@@ -234,7 +234,7 @@ class Session:
             store.is_cancelled = before
 
     def findings(self, path: str) -> Findings:
-        """All that is wrong with a file now."""
+        """The current findings of a file."""
         workspace = self.workspace_of(path)
         if workspace is None:
             return Findings([])
@@ -248,27 +248,27 @@ class Session:
             keep(workspace, path)
             found = findings(workspace.store, path)
             self.took[path] = perf_counter() - begin
-        else:  # placed, for what counts from items would hold them
+        else:  # placed: offsets that count from items would keep these alive
             found = Findings.placed(check(workspace, path))
         self._checked[path] = ref(workspace), found
         return found
 
     def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
-        """The same, counted from the start of the file."""
+        """The diagnostics of a file, counted from its start."""
         return self.findings(path).diagnostics
 
     def forget(self, path: str) -> None:
-        """A file is gone."""
+        """Forget a file that no longer exists."""
         self._checked.pop(path, None)
 
     def setting(self, name: str, default: bool) -> bool:
-        """What the user has set, if it is a yes or a no."""
+        """A setting of the user, if it is a bool."""
         value = self.settings.get(name)
         return value if isinstance(value, bool) else default
 
 
 def _misses(workspace: Workspace, path: str, names: Set[Name]) -> bool:
-    """Whether a file uses one of the names and does not find it: then where else it is defined is reported."""
+    """Whether a file uses one of the names without a definition, so that its diagnostics name definitions elsewhere."""
     missed = names & workspace.files[path].used_names
     return bool(missed) and not missed <= _names_in_scope(workspace, path)
 
@@ -277,6 +277,6 @@ def _names_in_scope(workspace: Workspace, path: str) -> frozenset[Name]:
     return frozenset().union(*(workspace.files[each].defined_names for each in workspace.closure(path)))
 
 
-_MOST_IDLE = 30_000  # characters, of which each costs some 40 bytes when it is parsed
+_MOST_IDLE = 30_000  # characters; each takes about 40 bytes when parsed
 _AT_ONCE = 5  # files
 _SEVERITIES: dict[object, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}
