@@ -406,7 +406,7 @@ class Lexer(StrangeCharacters):
         safe = in_value and text[end : end + 1] not in _QUOTES and self._takes_strings()
         fix = replace_fix("Put quotes around it", Span(start, end), quoted(text[start:end]), safe=safe)
         fixes = (fix,) if in_value or sign[0] == "/*" else (fix, insert)
-        if sign.end() == end:  # a blank separates the comment from the word
+        if sign.end() == end:  # the word ends with the sign: probably a comment
             fixes = fixes[::-1]
         self.problems.append(
             Diagnostic("misplaced-comment", Span(start, end), f"{message}; put this in quotes", fixes=fixes)
