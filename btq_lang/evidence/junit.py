@@ -1,8 +1,8 @@
 """JUnit XML: a suite for each mission, a case for each requirement.
 
-One invariant: the names of a case's properties are unique. `verifies` is the requirement's ID, which
+One invariant: the names of a case's properties are unique.  `verifies` is the requirement's ID, which
 sphinx-test-reports turns into links (`tr_property_link_types`) and StrictDoc into a field of its test results; both
-read one property with several IDs, separated by commas. StrictDoc refuses a repeated name, and `<error>`.
+read one property with several IDs, separated by commas.  StrictDoc refuses a repeated name, and `<error>`.
 """
 
 from __future__ import annotations

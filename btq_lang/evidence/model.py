@@ -1,6 +1,6 @@
 """The contents of a log: the tree that ran, and what its nodes did.
 
-One invariant: times are whole microseconds since the epoch, and values are as they were logged, in whatever unit. File
+One invariant: times are whole microseconds since the epoch, and values are as they were logged, in whatever unit.  File
 formats, requirements and verdicts are unknown here.
 """
 
@@ -130,7 +130,7 @@ class Series:
         self.values: Final[list[SampleValue | None]] = []
 
     def add(self, time: int, value: SampleValue | None) -> None:
-        """Add a sample, usually the latest; of several at one time the last counts. None: no value from then on."""
+        """Add a sample, usually the latest; of several at one time the last counts.  None: no value from then on."""
         at = len(self.times)
         if at and time <= self.times[-1]:
             at = bisect_left(self.times, time)

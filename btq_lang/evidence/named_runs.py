@@ -4,7 +4,7 @@ One invariant: a run is judged only if every node that it names is in one tree a
 that fits no mission, or several, is counted and not judged.
 
 Nav2's two navigators number the nodes of their trees from 1 each and log to one topic, and a goal may use a tree of its
-own. So the log is cut before the first change after the root has ended, and each piece is joined by itself; adjacent
+own.  So the log is cut before the first change after the root has ended, and each piece is joined by itself; adjacent
 pieces of one mission are merged again.
 """
 

@@ -1,7 +1,7 @@
 """Exact binomial confidence limits for k of n, and how many more runs would decide.
 
 One invariant: the limits are Clopper and Pearson's, one-sided, so each holds with the requested confidence, for a
-single look at the data. SciPy has the same in `scipy.stats.beta`, but takes a second to import.
+single look at the data.  SciPy has the same in `scipy.stats.beta`, but takes a second to import.
 """
 
 from __future__ import annotations

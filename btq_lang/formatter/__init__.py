@@ -1,10 +1,10 @@
 """The formatter: lays a text out in the one style of the project.
 
-One invariant: the meaning of a file does not change. The formatted text has the tree of the original, up to offsets and
-the order of clauses in the blocks of requirements, and every comment at the element where it was; formatting it again
-changes nothing. Spelling is the author's: the formatter knows the positions of words, not their meaning.
+One invariant: the meaning of a file does not change.  The formatted text has the tree of the original, up to offsets
+and the order of clauses in the blocks of requirements, and every comment at the element where it was; formatting it
+again changes nothing.  Spelling is the author's: the formatter knows the positions of words, not their meaning.
 
-A text with a syntax error is refused as a whole and returned unchanged. Indentation is structure, and brackets join
+A text with a syntax error is refused as a whole and returned unchanged.  Indentation is structure, and brackets join
 lines: the parser's recovery guesses what the lines around a mistake belong to, and formatting would write that guess
 into the file.
 

@@ -1,6 +1,6 @@
 """Writes one logical line: the gaps between its words, and the physical lines that its brackets span.
 
-One invariant: the lexer splits the new text into the same tokens. It reads `6` at a line's end and `s` on the next as
+One invariant: the lexer splits the new text into the same tokens.  It reads `6` at a line's end and `s` on the next as
 two words, and `-` differently after a line end; so a line end inside an attribute stays, except where the words on both
 sides are the same either way, and a new one is inserted only before a name or a string.
 """

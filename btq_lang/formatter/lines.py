@@ -1,7 +1,7 @@
 """The logical lines of a file with the comments between them, each with its level.
 
 One invariant: every token and every comment of the file is in exactly one line, in order, and the lines' spans follow
-each other from the start of the file to its end. The grammar is unknown here; `comments` decides where a comment
+each other from the start of the file to its end.  The grammar is unknown here; `comments` decides where a comment
 belongs.
 """
 

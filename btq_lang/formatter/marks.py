@@ -1,6 +1,6 @@
 """Facts of the tree about single tokens, so that a line can be laid out without the tree.
 
-One invariant: a mark is the offset of a token of the file. Only the tree tells whether `/` divides or joins a path,
+One invariant: a mark is the offset of a token of the file.  Only the tree tells whether `/` divides or joins a path,
 whether `-` subtracts, and which brackets hold attributes.
 """
 

@@ -1,6 +1,6 @@
 """Draws a mission in the notation of the behavior-tree literature, with qualities beside their nodes.
 
-One invariant: the same mission gives the same bytes. It does not touch the disk and starts no program: Graphviz is not
+One invariant: the same mission gives the same bytes.  It does not touch the disk and starts no program: Graphviz is not
 needed.
 
     figure.py    what is drawn: boxes, and what is attached to them

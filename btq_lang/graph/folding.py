@@ -2,7 +2,7 @@
 the name of the first.
 
 One invariant: a fold identifies its node by the names on the path to it, so an edit elsewhere in the mission neither
-opens it nor folds another. Pages and keys are unknown here.
+opens it nor folds another.  Pages and keys are unknown here.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 The algorithm is that of A. van der Ploeg, "Drawing non-layered tidy trees in linear time", Software: Practice and
 Experience 44 (12), 2014, pp. 1467-1484: Reingold and Tilford's contours and threads, as C. Buchheim, M. Jünger and S.
 Leipert ("Improving Walker's Algorithm to Run in Linear Time", Graph Drawing 2002) made them linear for any number of
-children, with boxes of any height. Nodes here have layers all the same, but what hangs below a leaf pushes no layer
+children, with boxes of any height.  Nodes here have layers all the same, but what hangs below a leaf pushes no layer
 down; and a box has an anchor, the point placed over the middle of its children.
 
 One invariant: no two boxes overlap, and a parent's anchor is midway between those of its first and last child.
@@ -49,7 +49,7 @@ def layout(sizes: Sequence[Size], parents: Sequence[int | None], gap: int, level
 
 
 class _Node:
-    """A box during placement. The names are the paper's, written out.
+    """A box during placement.  The names are the paper's, written out.
 
     Attributes:
         breadth: with the gap to the next sibling.

@@ -1,6 +1,6 @@
 """Mermaid, which code hosts draw in Markdown files, issues and pull requests.
 
-The format: https://mermaid.js.org/syntax/flowchart.html. Texts are quoted, with entity codes for what Mermaid would
+The format: https://mermaid.js.org/syntax/flowchart.html.  Texts are quoted, with entity codes for what Mermaid would
 interpret: quotes, brackets of HTML, `#`, the backtick that begins Markdown, and the backslash of `\\n`.
 """
 

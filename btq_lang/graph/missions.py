@@ -1,6 +1,6 @@
 """The trees of a mission as figures: the shape and the text of each node.
 
-One invariant: one box for each written node. A SubTree node is a box; its tree is a separate figure.
+One invariant: one box for each written node.  A SubTree node is a box; its tree is a separate figure.
 """
 
 from __future__ import annotations

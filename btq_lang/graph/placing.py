@@ -1,6 +1,6 @@
 """A placed figure: positions of all its boxes, notes and lines.
 
-One invariant: nothing overlaps, and every text is inside what it belongs to. Units are CSS pixels. Notes are attached
+One invariant: nothing overlaps, and every text is inside what it belongs to.  Units are CSS pixels.  Notes are attached
 to a leaf in the direction in which children would follow, and beside an inner node, so that its children stay below.
 """
 

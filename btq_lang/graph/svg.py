@@ -1,6 +1,6 @@
 """SVG, written by hand: a standalone document, or a part of a page.
 
-One invariant: the same figures give the same bytes, and texts are escaped. A document has its own background, light or
+One invariant: the same figures give the same bytes, and texts are escaped.  A document has its own background, light or
 dark like the reader's system; in a page, the page's style sheet paints it (`STYLE` has the shapes of the classes,
 `LIGHT` and `DARK` their colours).
 """

@@ -1,7 +1,7 @@
 """Estimates the width of a text without a font: it needs no other program, and is the same everywhere.
 
-One invariant: the estimate is at least what the usual sans-serif fonts need. The table has the advance widths of DejaVu
-Sans, the widest of the fonts that browsers use for `sans-serif`, in thousandths of the font's size, rounded up.
+One invariant: the estimate is at least what the usual sans-serif fonts need.  The table has the advance widths of
+DejaVu Sans, the widest of the fonts that browsers use for `sans-serif`, in thousandths of the font's size, rounded up.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ def width(text: str, size: int, bold: bool = False) -> int:
 
 def wrapped(text: str, size: int, room: int, most: int) -> tuple[str, ...]:
     """A text in lines of at most `room`, broken at blanks, but not between a number and its unit; `…` if it needs more
-    than `most` lines. Runs of blanks become one.
+    than `most` lines.  Runs of blanks become one.
     """
     lines: list[str] = []
     for word in _NUMBER.sub("\u00a0", " ".join(text.split())).split(" "):

@@ -1,7 +1,7 @@
 """Patterns of paths, as .gitignore writes the simple ones.
 
-`*` and `?` match within one name, `**` over any number of folders. A pattern with a `/` before its end is relative to
-the project's folder, any other matches at any depth; one that ends with `/` matches folders only. Every string is a
+`*` and `?` match within one name, `**` over any number of folders.  A pattern with a `/` before its end is relative to
+the project's folder, any other matches at any depth; one that ends with `/` matches folders only.  Every string is a
 pattern: there are no character classes and no `!`, so no pattern is malformed.
 """
 

@@ -1,7 +1,7 @@
 """Maps parts of a generated text to the parts of the original, to show on the original what was found in the generated
 text.
 
-One invariant: pieces are in order and do not overlap in the generated text. Only offsets are known here.
+One invariant: pieces are in order and do not overlap in the generated text.  Only offsets are known here.
 """
 
 from __future__ import annotations

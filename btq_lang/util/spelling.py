@@ -1,6 +1,6 @@
 """Near names: what an unknown word was probably meant to be.
 
-One invariant: the answer depends on the word and on the set of candidates, never on their order. It does not know what
+One invariant: the answer depends on the word and on the set of candidates, never on their order.  It does not know what
 the candidates are: a caller that wants names of one kind passes only those.
 """
 
@@ -15,7 +15,7 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
     """The candidates nearest to `word`, best first: at most `limit`, without wild guesses.
 
     One edit is allowed for every three letters of the word, three in all, and at most one more than the best candidate
-    needs. A candidate that differs in case alone leaves no room for any other; the word itself is never an answer.
+    needs.  A candidate that differs in case alone leaves no room for any other; the word itself is never an answer.
     """
     folded, letters = word.casefold(), _letters(word)
     cutoff = min(len(folded) // 3, 3)

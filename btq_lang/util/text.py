@@ -1,6 +1,6 @@
 """Text, spans and edits: the units of all other modules.
 
-One invariant: an offset is an index into a Python string. Lines and columns exist only at the edges (a terminal, an
+One invariant: an offset is an index into a Python string.  Lines and columns exist only at the edges (a terminal, an
 editor), and only `LineIndex` converts between them, in the encoding that the reader requests.
 """
 

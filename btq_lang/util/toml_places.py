@@ -1,6 +1,6 @@
 """Finds the positions of keys and values in a TOML file: the standard reader gives values only.
 
-It searches line by line, and for a key in an inline table after the key of that table. Invariant: the result is a
+It searches line by line, and for a key in an inline table after the key of that table.  Invariant: the result is a
 position in the text, or None; it never raises, even for a text that is not TOML.
 """
 

@@ -3,7 +3,7 @@
 One invariant: a line that cannot be read is skipped and counted, and no content of the file affects reading the log.
 
 The file has a header, then a line for each change in order of time: µs since the header's time, the blackboard, the
-entry, and its value or its removal. Source: `export_blackboard` in klein/btlog.py of johanubbink/klein-bt.
+entry, and its value or its removal.  Source: `export_blackboard` in klein/btlog.py of johanubbink/klein-bt.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Judges each verb: a module a verb, named like its row in `catalog/verbs`; for `takes`, `span` and `total` judge the
 time between events, and sums.
 
-One invariant: a module has one of two functions. `judge(claim, activation, observed)` judges one activation that has
-ended, None if it does not count. `judge_run(claim, run)` judges a run that has ended, and yields None for what the end
-of the log cuts off. Odds and windows are unknown here.
+One invariant: a module has one of two functions.  `judge(claim, activation, observed)` judges one activation that has
+ended, None if it does not count.  `judge_run(claim, run)` judges a run that has ended, and yields None for what the end
+of the log cuts off.  Odds and windows are unknown here.
 """
 
 from __future__ import annotations
