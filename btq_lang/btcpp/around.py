@@ -1,6 +1,6 @@
-"""What stands around a node for a requirement, as data.
+"""The nodes that are put around a node to enforce a requirement, as data.
 
-One invariant: it says what is put where, and `wrappers` alone makes elements of it.
+One invariant: only `wrappers` makes elements of this data.
 """
 
 from __future__ import annotations
@@ -13,26 +13,26 @@ from btq_lang.util.record import Record
 if TYPE_CHECKING:
     WrapperTag: TypeAlias = Literal["Sequence", "ReactiveSequence", "Timeout"]
 
-# The kinds that do a clause's work, by which a log shows who stopped a node.
+# The kinds that enforce a clause: a log shows by them what stopped a node.
 LIMITING: Final = "Timeout"  # halts the node after a time
 WATCHING: Final = "ReactiveSequence"  # halts the node when a condition beside it changes
 EVALUATING: Final = "ScriptCondition"  # that condition, or the one that refuses a start
 
-# From the outside in: what stands around the node of several requirements is ordered by this.
+# From the outside in: the wrappers that several requirements put around one node are sorted by this rank.
 START: Final = 0  # the beginning of the mission
-VALUES: Final = 1  # what is read when the node starts
-CONDITION: Final = 2  # what must hold when it starts
-CHECK: Final = 3  # what must hold when it has succeeded
-GUARD: Final = 4  # what must hold while it runs
+VALUES: Final = 1  # values that are read when the node starts
+CONDITION: Final = 2  # condition that must hold when the node starts
+CHECK: Final = 3  # condition that must hold when the node has succeeded
+GUARD: Final = 4  # condition that must hold while the node runs
 LIMIT: Final = 5
-INSIDE: Final = 6  # what notes that the node itself starts and ends
+INSIDE: Final = 6  # scripts that record the start and end of the node itself
 
 
 class Leaf(Record):
     """A Script or a ScriptCondition beside a node.
 
     Attributes:
-        failed: what is done when it fails: a script.
+        failed: script that runs when it fails.
     """
 
     tag: Literal["Script", "ScriptCondition"]
@@ -42,11 +42,11 @@ class Leaf(Record):
 
 
 class FirstValues(Record):
-    """What entries are where nobody has written them before the tree runs for the first time.
+    """The values of entries that are still unwritten when the tree runs for the first time.
 
-    A script cannot ask whether an entry is there, so a node does: `WasEntryUpdated` fails where its entry was never
-    written.  It also fails where that was not written since it was last asked, hence the `RunOnce`.  The entry has no
-    braces, for a port makes an entry of its own type, in which no script can store a text.
+    A script cannot test whether an entry exists, so a node does: `WasEntryUpdated` fails if its entry was never
+    written. It also fails if the entry was not written since the last test, hence the `RunOnce`.  The entry has no
+    braces because a port creates an entry of its own type, in which no script can store a text.
 
     Attributes:
         values: each entry, as scripts name it (`@speed`), with its value, a script.
@@ -59,10 +59,10 @@ class Wrapper(Record):
     """An element around a node.
 
     Attributes:
-        rank: what is outside of what: one of the constants above.
-        requirement: who asks for it.
-        attributes: others than its name, values as they read.
-        before, behind: what stands in it beside the node.
+        rank: one of the constants above.
+        requirement: that it enforces.
+        attributes: except its name; values are unescaped.
+        before, behind: its other children, before and after the node.
     """
 
     rank: int
@@ -75,5 +75,5 @@ class Wrapper(Record):
 
 
 def may_be_skipped(names: Sequence[str]) -> bool:
-    """Whether a node with attributes of these names may be skipped by what they say."""
+    """Whether attributes of these names can make the engine skip their node."""
     return "_skipIf" in names or "_while" in names

@@ -1,6 +1,6 @@
-"""The mission that a built XML file was made of, as the side file beside it holds it, for whoever compares.
+"""The mission that a built XML file was made of, restored from its side file, so that it can be compared.
 
-One invariant: nothing is written, and what the XML says now counts where somebody has changed it.
+One invariant: nothing is written, and where the XML was edited after the build, the edited XML counts.
 """
 
 from __future__ import annotations
@@ -25,29 +25,29 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
 
     class Source(Protocol):
-        """Where files come from: the disk, or a revision."""
+        """Where files are read: the disk, or a revision."""
 
         def is_file(self, path: str) -> bool:
-            """Whether there is such a file."""
+            """Whether the file exists."""
 
         def text(self, path: str) -> str | None:
-            """What it says; None where it cannot be read."""
+            """The text of a file; None if it cannot be read."""
 
         def project(self, path: str) -> Project:
             """The project of a file."""
 
         def workspace(self, path: str, known: dict[str, str]) -> Workspace | None:
-            """A file with all that it includes, where the known texts count instead of those there."""
+            """A file with all that it includes; the known texts replace those of the source."""
 
 
 class Built(Record):
     """The mission of an XML file.
 
     Attributes:
-        workspace: the mission with all that it includes, and the XML that somebody has changed by hand.
-        path: of the mission in there, where no file needs to be.
-        shown: how its paths are shown: those that stand in the side file behind that one's.
-        by_hand: what was changed in what enforces, in which XML.
+        workspace: the mission with all that it includes, and the XML files that were edited by hand.
+        path: of the mission in the workspace; the file need not exist.
+        shown: its paths as they are shown: that of the side file, then those recorded in it.
+        by_hand: the manual edits of generated nodes, with their XML file.
     """
 
     workspace: Workspace
@@ -57,12 +57,12 @@ class Built(Record):
 
 
 def as_built(path: str, source: Source, called: Callable[[str], str] = shown) -> Built | None:
-    """The mission of an XML file; None: there is no side file, or it is of something else.
+    """The mission of an XML file; None if it has no side file, or one that belongs to another file.
 
     Args:
         path: of the XML.
-        source: where it and its side file are read.
-        called: how people call a file of that.
+        source: where both are read.
+        called: gives the name under which a file of the source is shown.
     """
     side = side_path(path)
     if path == side or not path.endswith(".xml") or not source.is_file(side):
@@ -105,10 +105,10 @@ class _Made(Record):
 
     Attributes:
         text: the mission.
-        others: of a bundle, the files it includes: their paths, seen from the mission, and texts.
-        includes: what the XML includes, in order.
-        source: the file that says all that: the side file, or the XML.
-        by_hand: what was changed in what enforces.
+        others: of a bundle, the paths (relative to the mission) and texts of the files it includes.
+        includes: paths that the XML includes, in order.
+        source: the file that all this was read from: the side file, or the XML.
+        by_hand: the manual edits of generated nodes.
     """
 
     text: str
@@ -119,7 +119,7 @@ class _Made(Record):
 
 
 def _made(path: str, source: Source) -> _Made | None:
-    """What an XML file was made of, by its side file or, where it has nothing to say beyond its XML, by that."""
+    """What an XML file was made of, read from its side file or, if it needs none, from the XML itself."""
     side = side_path(path)
     xml = source.text(path)
     said = source.text(side) if source.is_file(side) else None
@@ -136,7 +136,7 @@ def _made(path: str, source: Source) -> _Made | None:
 
 
 def _missing(made: _Made, xml: str, place: str, source: Source) -> Iterator[tuple[str, str]]:
-    """The XML of what a mission includes and what is not there, built into another folder, and where it would be."""
+    """The included XML files that are missing because they were built elsewhere, with their expected paths."""
     includes = tuple(_includes(made.text)) if place.endswith(".btq") else ()
     if len(includes) != len(made.includes):
         return
@@ -151,7 +151,7 @@ def _missing(made: _Made, xml: str, place: str, source: Source) -> Iterator[tupl
 
 
 def _includes(text: str) -> Iterator[str | None]:
-    """The paths that a mission includes; None of a package's."""
+    """The paths that a mission includes; None for a file of a package."""
     for entry in parse(text).entries:
         if isinstance(entry.item, Include):
             is_packaged = any(pair.key.text == "ros_pkg" for pair in entry.item.attributes)

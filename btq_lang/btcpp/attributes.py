@@ -1,4 +1,4 @@
-"""Pairs of a file as attributes of an element: their order is kept, the first of two values counts.
+"""Pairs of a file as attributes of an element: their order is kept, and of two values the first counts.
 
 One invariant: no element gets two attributes of one name, or one whose name XML does not know.
 """
@@ -21,17 +21,17 @@ def attributes_of(
     builtin: NodeKind | None = None,
     label: Word | None = None,
 ) -> list[Attribute]:
-    """The attributes that pairs in brackets say.
+    """The attributes for the pairs in brackets.
 
     Args:
-        builtin: the node whose ports they are: it knows their units.
-        label: what is written as `name` before them.
+        builtin: the node that has these ports; gives their units.
+        label: written before them, as `name`.
     """
     attributes = [] if label is None else [Attribute("name", spelt(label))]
     for pair in pairs:
         value = pair.value
         if value is None:
-            continue  # broken code, which is told
+            continue  # a syntax error, reported by the parser
         key = pair.key.text
         if not (key.isascii() and key.isidentifier()) and not _is_attribute_name(source, key):
             source.problem(entry, pair.key, f"`{key}` cannot be the name of an XML attribute")
@@ -42,7 +42,7 @@ def attributes_of(
 
 
 def only_first(attributes: list[Attribute]) -> list[Attribute]:
-    """The attributes without those that have a value already."""
+    """The attributes without those whose name occurs before."""
     first: dict[str, Attribute] = {}
     for attribute in attributes:
         first.setdefault(attribute.name, attribute)
@@ -50,7 +50,7 @@ def only_first(attributes: list[Attribute]) -> list[Attribute]:
 
 
 def _is_attribute_name(source: Source, key: str) -> bool:
-    """Whether XML knows it; of `xsi:type`, whether the file says what `xsi` is (Namespaces in XML 1.0, section 5)."""
+    """Whether XML allows the name; for `xsi:type`, whether `xsi` is declared (Namespaces in XML 1.0, section 5)."""
     prefix, colon, local = key.partition(":")
     if not colon:
         return is_xml_name(key)
@@ -61,7 +61,7 @@ def _is_attribute_name(source: Source, key: str) -> bool:
 
 
 def _quantity(source: Source, entry: Entry, key: str, value: Word, builtin: NodeKind | None) -> str:
-    """A quantity as a number in the port's unit; as it stands where nobody knows that."""
+    """A quantity as a number in the port's unit; as it is written if that unit is not known."""
     port = builtin.port(key) if builtin is not None else None
     number = in_unit(value, port.unit if port is not None else None)
     if number is None:

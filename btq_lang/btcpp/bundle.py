@@ -22,7 +22,7 @@ def bundle(
     target: str | None = None,
     verbatim: bool = False,
 ) -> Export:
-    """A file with all it includes, included ones first, XML files too.
+    """A file and all it includes, XML files too, as one document; included files come first.
 
     Args:
         target, verbatim: as of `export`.
@@ -54,7 +54,7 @@ def bundle(
 def _merge(
     document: Document, contents: list[Content], palette: Element, includes: dict[str, Element], keep_outer: bool
 ) -> None:
-    """Add what is in a document's root; the comments around the root, too, where it is not the main file's."""
+    """Add the contents of a document's root and, for the main file (`keep_outer`), the comments around the root."""
     for content in document.contents:
         if content is not document.root:
             if keep_outer:
@@ -65,7 +65,7 @@ def _merge(
                 contents.append(child)
             elif child.tag == "include":
                 path = child.get("path")
-                if path is not None and path != _IN_BUNDLE:  # what only the robot knows: a package's
+                if path is not None and path != _IN_BUNDLE:  # files of packages, which only the robot can resolve
                     includes.setdefault(f"{child.get('ros_pkg')}/{path}", child)
             elif child.tag == "TreeNodesModel":
                 _add_models(palette, child)
@@ -74,7 +74,7 @@ def _merge(
 
 
 def _add_models(palette: Element, models: Element) -> None:
-    """A node that two files speak of has one model: the first, with the ports that only the second knows."""
+    """Add models: a node that two files declare gets one, the first, plus the ports that only the second has."""
     known = {_named(model): model for model in palette.elements if model.get("ID") is not None}
     for content in models.children:
         first = known.get(_named(content)) if isinstance(content, Element) else None
@@ -86,7 +86,7 @@ def _add_models(palette: Element, models: Element) -> None:
 
 
 def _named(model: Element) -> tuple[bool, str | None]:
-    """What a model is of: a tree may be called as a node is."""
+    """What a model declares; a tree and a node may share a name."""
     return model.tag == "SubTree", model.get("ID")
 
 
@@ -95,7 +95,7 @@ def _is_port(element: Element) -> bool:
 
 
 def _twice(workspace: Workspace, paths: tuple[str, ...]) -> list[Remark]:
-    """The trees of which another one has the ID already."""
+    """The trees whose ID another tree has already."""
     known: set[str] = set()
     found = []
     for path in paths:
@@ -108,4 +108,4 @@ def _twice(workspace: Workspace, paths: tuple[str, ...]) -> list[Remark]:
     return found
 
 
-_IN_BUNDLE: Final = "/"  # no file can be called so
+_IN_BUNDLE: Final = "/"  # no file can have this name

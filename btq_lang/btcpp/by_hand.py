@@ -1,7 +1,7 @@
-"""What somebody has changed by hand in the nodes that a build put into XML to enforce requirements.
+"""Manual edits of the nodes that a build put into XML to enforce requirements.
 
-No import keeps such a change, for those nodes are made of requirements.  One invariant: as long as they say what they
-said when they were built, there is nothing to tell, wherever they stand and whatever became of the mission's own nodes.
+No import keeps such an edit, for those nodes are generated from requirements.  One invariant: generated nodes that are
+unchanged are never reported, wherever they were moved and however the mission's own nodes were edited.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ class NodeGuards(Record):
     """One of the mission's nodes, with the guards that a build put around and beside it.
 
     Attributes:
-        node: its tree, what it is, how it is called, and which of those in the tree it is: `Main/Pick/Again/1`.
-        guards: by their names, a sum of what each says.
+        node: its tree, kind and name, and its number among the nodes of the tree that share those: `Main/Pick/Again/1`.
+        guards: the checksum of each, by name.
     """
 
     node: str
@@ -30,11 +30,11 @@ class NodeGuards(Record):
 
 
 class ByHand(Record):
-    """A guard that is not as it was built.
+    """A guard that was edited after the build.
 
     Attributes:
-        sum: of what it says now; empty where it is gone.
-        span: where it stands in the XML, or the node that it stood at.
+        sum: its checksum now; empty if it was deleted.
+        span: of the guard in the XML or, if it was deleted, of its node.
     """
 
     guard: str
@@ -54,11 +54,11 @@ def node_guards(root: Element) -> Iterator[NodeGuards]:
 
 
 def changed_by_hand(root: Element, built: Iterable[NodeGuards]) -> tuple[ByHand, ...]:
-    """What was changed since a build, in the order of the file.
+    """The manual edits since a build, in the order of the file.
 
     Args:
-        root: of the XML as it stands now.
-        built: what stood there when it was built.
+        root: of the XML as it is now.
+        built: the guards as they were built.
     """
     built = tuple(built)
     known = {said for each in built for said in each.guards}
@@ -72,14 +72,14 @@ def changed_by_hand(root: Element, built: Iterable[NodeGuards]) -> tuple[ByHand,
     ]
     for each in built:
         node, guards = nodes.get(each.node, (None, {}))
-        was_another = bool(guards) and guards.keys().isdisjoint(dict(each.guards))  # one of its kind before it is gone
+        was_another = bool(guards) and guards.keys().isdisjoint(dict(each.guards))  # of its kind, before it was deleted
         if node is not None and not was_another:
             found += [ByHand(name, "", _span(node)) for name, _ in each.guards if name not in marked]
     return tuple(sorted(found, key=lambda each: each.span))
 
 
 def _nodes(root: Element) -> Iterator[tuple[str, Element, dict[str, str]]]:
-    """The mission's own nodes, in the order of the file, each with the sums of its guards, by their names."""
+    """The mission's own nodes, in the order of the file, each with the checksums of its guards, by name."""
     for tree in root.elements:
         if tree.tag != "BehaviorTree":
             continue
@@ -91,12 +91,12 @@ def _nodes(root: Element) -> Iterator[tuple[str, Element, dict[str, str]]]:
             for node in own:
                 called = f"{tree.get('ID')}/{node.get('ID') or node.tag}/{_name(node)}"
                 number = counts[called] = counts.get(called, 0) + 1
-                # What stands around several nodes no import takes out.
+                # No import takes out what is around several nodes.
                 yield f"{called}/{number}", node, guards if len(own) == 1 else {}
 
 
 def _split(outermost: Element) -> tuple[dict[str, str], list[Element]]:
-    """The guards that an element begins, by their names, and the mission's own nodes in them."""
+    """The guards that an element begins, by name, and the mission's own nodes in them."""
     said: dict[str, list[str]] = {}
     own = []
     stack = [(outermost, "")]
@@ -105,14 +105,14 @@ def _split(outermost: Element) -> tuple[dict[str, str], list[Element]]:
         if element.get(MARK) is None:
             own.append(element)
             continue
-        named = _name(element) or named  # one without a name is a part of the guard around it
+        named = _name(element) or named  # an element without a name is a part of the guard around it
         said.setdefault(named, []).append(_said(element))
         stack += [(child, named) for child in element.elements][::-1]
     return {name: _sum(parts) for name, parts in said.items()}, own
 
 
 def _said(element: Element) -> str:
-    """The tag and the attributes, whatever their order and spelling, but for those of the node itself."""
+    """The tag and the attributes in a normal form, without those that belong to the node itself."""
     moved = {MOVED, *(each.partition(":")[0] for each in (element.get(MOVED) or "").split())}
     return repr((element.tag, sorted((each.name, each.value) for each in element.attributes if each.name not in moved)))
 
@@ -138,4 +138,4 @@ def _span(element: Element) -> Span:
     return Span(element.start + 1, element.start + 1 + len(element.tag))
 
 
-_DIGITS: Final = 16  # enough to tell an edit; nobody is to be kept from forging one
+_DIGITS: Final = 16  # enough to detect an edit; it need not resist forgery

@@ -1,9 +1,8 @@
-"""Conditions and values as scripts of the engine, spelt so that 4.6, 4.8 and 4.10 take them alike.
+"""Conditions and values as scripts of the engine, spelt so that 4.6, 4.8 and 4.10 evaluate them alike.
 
-One invariant: a script that comes out of here compares what the condition compares, or nothing comes out: what no
-script can say is refused with a reason.  Every part stands in brackets and every number has a point: older engines bind
-`-` otherwise, refuse operators of different kinds beside each other, and give a variable the type of its first value.
-It does not know what the script is for, nor whether its variables exist.
+One invariant: a script means what the condition means; a condition that no script can express is refused with a reason.
+Every part is in brackets and every number has a point: older engines bind `-` otherwise, refuse operators of different
+kinds beside each other, and give a variable the type of its first value. It does not check whether the variables exist.
 
 Source: the engines' own grammars, src/script_parser.cpp (4.9 and later) and scripting/operators.hpp (before).
 """
@@ -38,16 +37,16 @@ from btq_lang.requirements.model import (
 )
 
 if TYPE_CHECKING:
-    # The variable that a value table is read into, when the node starts; it has the value in this unit, None: in SI.
+    # The variable that holds the value of a table, read when the node starts, in this unit (None: SI).
     Stored: TypeAlias = Callable[[Table, "Unit | None"], str]
 
 
 class NoScript(Exception):
-    """No script of the engine says this; the text is the reason, to stand behind "because"."""
+    """No script of the engine can express this; the text is the reason and reads well after "because"."""
 
 
 def condition_script(condition: Condition, stored: Stored) -> str:
-    """A condition.
+    """The script of a condition.
 
     Raises:
         NoScript: with the reason.
@@ -57,7 +56,7 @@ def condition_script(condition: Condition, stored: Stored) -> str:
         script = condition_script(condition.conditions[0], stored)
         for each in condition.conditions[1:]:
             script = f"({script} {operator} {condition_script(each, stored)})"
-            no_longer_than_allowed(script)  # contexts in contexts grow without bounds
+            no_longer_than_allowed(script)  # nested contexts make scripts grow without bounds
         return script
     if isinstance(condition, Not):
         return f"(!{condition_script(condition.condition, stored)})"
@@ -77,7 +76,7 @@ def condition_script(condition: Condition, stored: Stored) -> str:
 
 
 def value_script(value: Bounded, unit: Unit | None, stored: Stored) -> str:
-    """A value in a unit; None: in SI.
+    """The script of a value in a unit (None: SI).
 
     Raises:
         NoScript: with the reason.
@@ -86,10 +85,10 @@ def value_script(value: Bounded, unit: Unit | None, stored: Stored) -> str:
 
 
 def table_script(table: Table, spelt: Callable[[Bounded], str], stored: Stored) -> str:
-    """The value of the first case that holds.
+    """The script that gives the value of the first case that holds.
 
     Args:
-        spelt: how a value is written.
+        spelt: writes a value.
 
     Raises:
         NoScript: with the reason.
@@ -102,10 +101,10 @@ def table_script(table: Table, spelt: Callable[[Bounded], str], stored: Stored) 
 
 
 def signal_script(signal: Signal) -> str:
-    """The entry that a signal is read from: in the root blackboard, whatever tree asks.
+    """The entry that a signal is read from: always one of the root blackboard.
 
     Raises:
-        NoScript: scripts cannot name it.
+        NoScript: a script cannot name it.
     """
     key = (signal.key or "").removeprefix("@")
     if signal.key is None:
@@ -116,7 +115,7 @@ def signal_script(signal: Signal) -> str:
 
 
 def first_value_script(signal: Signal) -> str:
-    """What a signal has before its first sample.
+    """The value of a signal before its first sample.
 
     Raises:
         NoScript: with the reason.
@@ -126,7 +125,7 @@ def first_value_script(signal: Signal) -> str:
 
 
 def no_longer_than_allowed(script: str) -> None:
-    """Refuse a script that nobody can read any more.
+    """Refuse a script that is too long to read.
 
     Raises:
         NoScript: it is too long.
@@ -137,7 +136,7 @@ def no_longer_than_allowed(script: str) -> None:
 
 
 def real(value: float) -> str:
-    """A number, as every version reads it."""
+    """A number, spelt so that every version reads it as a real."""
     if not -inf < value < inf:
         raise NoScript("it contains an infinite number")
     text = repr(abs(value))
@@ -150,7 +149,7 @@ def real(value: float) -> str:
 
 
 def _comparison(compare: Compare, stored: Stored) -> str:
-    """`a < b`, `a < b < c`: in the signals' own unit where they have one and nothing is calculated, else in SI."""
+    """`a < b`, `a < b < c`: in the signals' unit if they share one and nothing is calculated, else in SI."""
     signals = [operand.signal for operand in compare.operands if isinstance(operand, Read)]
     units = {signal.unit for signal in signals}
     plain = all(isinstance(operand, Read | Value | Table | Flag | Text) for operand in compare.operands)
@@ -164,7 +163,7 @@ def _comparison(compare: Compare, stored: Stored) -> str:
 
 
 def _number(number: Number, unit: Unit | None, stored: Stored) -> str:
-    """A value in a unit; None: in SI."""
+    """The script of a value in a unit (None: SI)."""
     if isinstance(number, Value):
         return real(from_si(number.si, unit) if unit is not None else number.si)
     if isinstance(number, Flag):
@@ -190,7 +189,7 @@ def _read(signal: Signal, unit: Unit | None) -> str:
     own = signal.unit
     if signal.sort != "number" or own is None or own == unit:
         return key
-    if unit is not None:  # of another signal's unit, the same dimension
+    if unit is not None:  # the unit of another signal, of the same dimension
         return _scaled(_scaled(key, own.factor, own.offset), 1 / unit.factor, -unit.offset / unit.factor)
     return _scaled(key, own.factor, own.offset)
 
@@ -208,7 +207,7 @@ def _text(text: str) -> str:
 
 
 def _own_script(script: Script) -> str:
-    """A script in a classic description: one expression that changes nothing, and means the same everywhere."""
+    """The script in a classic description: one expression without assignments that means the same in every version."""
     from btq_lang.syntax.script import check_script, parse_script, variables  # few missions have one
 
     parsed = parse_script(script.code)
@@ -223,4 +222,4 @@ def _none_stored(_table: Table, _unit: Unit | None) -> str:
     raise NoScript("an initial value cannot depend on a condition")
 
 
-LONGEST: Final = 10_000  # characters: the engine reads such a script at each load, and nobody else can
+LONGEST: Final = 10_000  # characters: the engine parses the script at each load, and people must be able to read it

@@ -1,15 +1,15 @@
-"""Constants on the ports of subtrees, as every version of the engine takes them.
+"""Constants for the ports of subtrees, spelt so that every version of the engine accepts them.
 
-Up to 4.8 the engine keeps what a SubTree says for a port as text, and the node that reads it converts it.  From 4.9.1
-on a text that is a number becomes an `int`, an `int64_t` or a `double`, and the tree is not made when a node below has
-another type on that entry: `level = 30` above a `double`, `limit = 500` above the `msec` of a Timeout.  So a number is
-spelt as what the node below takes: `30.0` is a `double`; one with a blank behind it stays text, and is read as the
-number, for the engine ignores what stands behind the digits.  (Tried with 4.6.2, 4.8.4 and 4.10.0.)
+Up to 4.8 the engine keeps the value of a SubTree's port as text, and the node that reads it converts it.  From 4.9.1 on
+a text that is a number becomes an `int`, an `int64_t` or a `double`, and loading fails if a node below has another type
+on that entry: `level = 30` above a `double`, `limit = 500` above the `msec` of a Timeout.  So a number is spelt as the
+type of the node below: `30.0` is a `double`; one with a trailing blank stays text and is still read as the number, for
+the engine ignores what follows the digits.  (Tried with 4.6.2, 4.8.4 and 4.10.0.)
 
-Where it meets numbers of several types, text fits all of them.  Where it meets a port of text there is no spelling of
-it that the newer engines leave as it is; `number-for-text` is the rule that says so.
+If the port is read as numbers of several types, text fits all of them.  If it is read as text, no spelling of a number
+stays text in newer engines; the rule `number-for-text` reports that.
 
-One invariant: what is no number, or meets no type that is known, is left alone.
+One invariant: a value that is not a number, or for which no type is known, does not change.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from btq_lang.workspace.workspace import Scope
 
 
 def fitting(types: tuple[str, ...], raw: str) -> str:
-    """A constant for a port of a subtree, spelt so that nodes below take it; as it is where it needs no other spelling.
+    """A constant for a port of a subtree, spelt so that the nodes below accept it.
 
     Args:
-        types: what `types_below` says of the port.
-        raw: what stands between the quotes of the attribute.
+        types: the port's `types_below`.
+        raw: the text between the quotes of the attribute.
     """
     if not types or not is_number(raw) or any(map(is_text, types)):
         return raw
@@ -43,10 +43,10 @@ def fitting(types: tuple[str, ...], raw: str) -> str:
 
 
 def types_below(scope: Scope, target: str, tree: str, port: str) -> tuple[str, ...]:
-    """The types that a port of a tree meets in the tree or in those below it, else the one that is declared.
+    """The types as which a port is read in its tree or in those below; if there are none, the declared one.
 
     Args:
-        target: the version of the engine whose types count.
+        target: the version of the engine.
     """
     met = tuple(dict.fromkeys(meeting.type for meeting in meetings(scope, target, tree, port)))
     found = scope.find(Kind.TREE, tree)

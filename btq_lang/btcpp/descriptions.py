@@ -1,6 +1,6 @@
-"""What a `_description` says of the qualities and requirements of a node, for those who look at the tree in Groot.
+"""The qualities and requirements of a node in its `_description`, for readers of the tree in Groot.
 
-One invariant: what the user wrote stands first, unchanged, and the rest behind a mark by which an import cuts it off.
+One invariant: the user's own text comes first, unchanged, and the rest follows a mark, at which an import cuts.
 """
 
 from __future__ import annotations
@@ -32,21 +32,21 @@ from btq_lang.workspace.file import File
 def description(
     source: Source, entry: Entry, clauses: tuple[NodeClause, ...], own: str | None, others: tuple[str, ...] = ()
 ) -> str | None:
-    """The value of a `_description`, as it is spelt; None where there is nothing to say about qualities.
+    """The value of a `_description`, escaped; None if the node has no qualities or requirements.
 
     Args:
-        own: what the user wrote, as it is spelt.
-        others: lines on what holds for the node and is said elsewhere.
+        own: the user's own text, escaped.
+        others: lines on what holds for the node and is written elsewhere.
     """
     lines = tuple(dict.fromkeys((*(line for clause in clauses for line in _lines(source, entry, clause)), *others)))
     return marked_description(own, map(escape, lines)) if lines else None
 
 
 def said_elsewhere(source: Source) -> Mapping[int, tuple[str, ...]]:
-    """What `apply` and claims with a subject of their own say of nodes: a line each, by `id(node)`."""
+    """The lines that `apply` and claims with a subject of their own add to nodes, by `id(node)`."""
     if not any(_speaks_of_nodes(entry.item) for path in source.scope.paths for entry in _entries(source, path)):
         return {}
-    from btq_lang.requirements.resolve import requirements  # few missions need it, and it looks at all of them
+    from btq_lang.requirements.resolve import requirements  # few missions need it, and it resolves all requirements
 
     found: dict[int, tuple[str, ...]] = {}
     for applied in requirements(source.workspace, source.path).applied:
@@ -74,8 +74,8 @@ def requirement_line(
     """A requirement in one line: `rq1 (time-behaviour): Reach it in time; takes at most 30 s; on violation fail`.
 
     Args:
-        quality: the one that encloses it, where it names none itself.
-        arguments: what a use of it gives to its parameters, with the brackets.
+        quality: the enclosing one, if it does not name one itself.
+        arguments: the arguments of its use, with the brackets.
     """
     path = requirement.quality or quality
     name = requirement.name.text if requirement.name is not None else ""
@@ -106,7 +106,7 @@ def _reference(source: Source, entry: Entry, reference: ReqRef) -> str:
 
 
 def _requirement(source: Source, entry: Entry, requirement: Requirement, quality: QualityPath | None) -> str:
-    """A requirement that stands at a node: its definition, or a classic reference to one."""
+    """A requirement written at a node: its definition, or a classic reference to one."""
     if requirement.is_reference and requirement.name is not None:
         return _defined(source, requirement.name.text)
     return requirement_line(source.file, entry, requirement, quality)
@@ -121,7 +121,7 @@ def _defined(source: Source, name: str, arguments: str = "") -> str:
 
 
 def _source_text(file: File, start: int, end: int) -> str:
-    """What stands between two places of a file, without comments, which brackets may hold."""
+    """The text between two offsets of a file, without comments, which brackets may hold."""
     text = file.text[start:end]
     if "#" in text or "//" in text or "/*" in text:
         text = "".join(token.text if token.kind != COMMENT else " " for token in tokens(text))

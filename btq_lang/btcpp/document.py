@@ -1,8 +1,7 @@
-"""An XML document: elements, comments and texts, with the bytes of their attributes, and how it is written.
+"""An XML document: elements with attributes as they are spelt, comments and texts, and how to write it.
 
 One invariant: an attribute keeps its value as the file spells it (`raw`), for the engine keeps a line end inside a
-value and strict readers turn it into a blank, unless it is written `&#10;`: only the spelling says which it was.
-It does not know what the elements mean.
+value and strict readers turn it into a blank, unless it is written `&#10;`. It does not know what the elements mean.
 """
 
 from __future__ import annotations
@@ -16,9 +15,9 @@ class Attribute:
     """`name="raw"`.
 
     Attributes:
-        raw: what stands between the quotes, references as they are.
-        place: where name and value begin in the file that it comes from; None where it was made, or where it stands in
-            its element as it was read, which knows it.
+        raw: the text between the quotes, with its references.
+        place: where name and value begin in the file that it was read from; None if it was made, or if its element can
+            find it.
     """
 
     __slots__ = ("name", "place", "raw")
@@ -30,7 +29,7 @@ class Attribute:
 
     @property
     def value(self) -> str:
-        """What the engine reads."""
+        """The value as the engine reads it."""
         return unescape(self.raw) if "&" in self.raw else self.raw
 
     def __repr__(self) -> str:
@@ -41,10 +40,10 @@ class Element:
     """An element.
 
     Attributes:
-        attributes: many elements share theirs, so an element is given others, and these stay as they are.
-        children: what stands in it, in order.
-        source, start, end: the file it was read from, and its start tag there; -1 where it was made.
-        close: where its end tag ends, likewise.
+        attributes: shared by many elements, so never changed in place: assign another sequence.
+        children: in order.
+        source, start, end: the file it was read from, and the span of its start tag; -1 if it was made.
+        close: the end of its end tag, likewise.
     """
 
     __slots__ = ("_places", "attributes", "children", "close", "end", "source", "start", "tag")
@@ -65,7 +64,7 @@ class Element:
         self.start: Final = start
         self.end: Final = end
         self._places: dict[str, tuple[int, int]] | None = None
-        self.close = end  # set once more, by the reader, when the end tag comes
+        self.close = end  # the reader sets it again when the end tag comes
 
     @property
     def elements(self) -> Iterator[Element]:
@@ -73,17 +72,17 @@ class Element:
         return (child for child in self.children if isinstance(child, Element))
 
     def get(self, name: str) -> str | None:
-        """The value of an attribute; None where it has none of that name."""
+        """The value of an attribute; None if the element does not have it."""
         for attribute in self.attributes:
             if attribute.name == name:
                 return attribute.value
         return None
 
     def place(self, attribute: Attribute) -> tuple[int, int]:
-        """Where name and value of one of its attributes begin in the file that it comes from; -1 where it was made."""
+        """Where name and value of an attribute begin in the file that it was read from; -1 if it was made."""
         if attribute.place is not None:
             return attribute.place
-        if self._places is None:  # looked up when somebody asks, for few do
+        if self._places is None:  # looked up on demand, for few are needed
             found = attribute_matches(self.source, max(self.start, 0), self.end)
             self._places = {match[1]: (match.start(1), match.start(3)) for match in found}
         return self._places.get(attribute.name, _NOWHERE)
@@ -96,7 +95,7 @@ class Comment:
     """`<!--text-->`.
 
     Attributes:
-        beside: it stands on the line on which what comes before it ends.
+        beside: whether it is on the line on which the previous content ends.
     """
 
     __slots__ = ("beside", "start", "text")
@@ -111,7 +110,7 @@ class Comment:
 
 
 class Text:
-    """Character data that is not blank: the text of a port or a description, as it reads."""
+    """Character data that is not blank: the text of a port or a description, unescaped."""
 
     __slots__ = ("start", "text")
 
@@ -124,7 +123,7 @@ class Text:
 
 
 class Raw:
-    """One element as somebody has spelt it, from its `<` to its `>`; only made, never read."""
+    """One element as the user spelt it, from its `<` to its `>`; only made, never read."""
 
     __slots__ = ("text",)
 
@@ -153,7 +152,7 @@ class Document:
 
 
 def attribute_matches(text: str, start: int, end: int) -> Iterator[re.Match[str]]:
-    """The attributes of the start tag there, whose shape is right: name, quote and value."""
+    """The well-formed attributes of the start tag at this place: name, quote and value."""
     name = _TAG_NAME(text, start)
     return ATTRIBUTE.finditer(text, name.end() if name else start, end)
 
@@ -190,7 +189,7 @@ def write(document: Document) -> str:
 
 
 def _has_text(element: Element) -> bool:
-    """Whether all in it stands on one line: a text, perhaps with comments."""
+    """Whether its contents go on one line: a text, perhaps with comments."""
     found = False
     for child in element.children:
         if isinstance(child, Element):
@@ -218,17 +217,17 @@ def _start_tag(element: Element) -> str:
 
 
 def escape(value: str) -> str:
-    """A value as it stands in an attribute: line ends, tabs and what XML forbids there as references."""
+    """A value as it is spelt in an attribute: line ends, tabs and what XML forbids there as references."""
     return value.translate(_IN_ATTRIBUTE) if _SPECIAL(value) else value
 
 
 def escape_text(text: str) -> str:
-    """A text as it stands between tags."""
+    """A text as it is spelt between tags."""
     return text.translate(_IN_TEXT)
 
 
 def unescape(raw: str) -> str:
-    """What the engine reads from a value: the five names and numbers of XML; other references stay as they are."""
+    """The value that the engine reads: it resolves XML's five named references and numbers, and keeps the others."""
     return _REFERENCE.sub(_referred, raw)
 
 
@@ -242,8 +241,8 @@ def _referred(match: re.Match[str]) -> str:
 
 _NOWHERE: Final = (-1, -1)
 _STEP: Final = "  "
-# As the engine reads it: a name, a value in quotes, blanks around the sign.  A name is of letters, digits, `_:.-` and
-# all that is not ASCII; it is said by what is not in it, for `re` takes long to compile sets of so many characters.
+# As the engine reads it: a name, a value in quotes, blanks around the sign.  A name consists of letters, digits, `_:.-`
+# and all that is not ASCII; the set is negated because `re` takes long to compile sets of so many characters.
 IN_WORD: Final = r"[^\x00-,/;-@\[-\^`{-\x7f]"
 WORD: Final = rf"[^\x00-9;-@\[-\^`{{-\x7f]{IN_WORD}*"
 SPACE: Final = r"[ \t\n\v\f\r]*"

@@ -1,12 +1,12 @@
-"""What requirements with `on violation fail` and `halt` add to the XML, and what of each clause the engine enforces.
+"""What requirements with `on violation fail` and `halt` add to the XML, and how each clause is enforced.
 
-One invariant: without what is added, marked as `wrappers` marks it, the XML is the export's; and a clause that is not
-enforced has a reason.  An included file is a part of several missions, so what stands around its nodes is what the
-requirements that it sees itself ask for, and it is the mission's own file that gives the variables of all of them their
-first values.  It does not judge whether a clause makes sense: that is for `checks`.
+One invariant: without the added elements, which `wrappers` marks, the XML is the export's; and a clause that is not
+enforced has a reason.  An included file is a part of several missions, so only requirements that it sees itself add
+wrappers to its nodes, and the mission's own file initializes the variables of all of them.  Whether a clause makes
+sense is for `checks`.
 
-    btq_init   a Sequence around the main tree's root: first values, the mission, and whether it was to be halted
-    btq_first  a RunOnce in it: what signals are whose entries nobody has written
+    btq_init   a Sequence around the main tree's root: first values, the mission, and the test whether to halt it
+    btq_first  a RunOnce in it: the values of signals whose entries are unwritten
     btq_start  a Script in it: the variables of guards
     btq_stop   a ReactiveSequence in it, where a clause halts: ends the mission at the tick after
 """
@@ -40,17 +40,17 @@ if TYPE_CHECKING:
 
 
 class Held(Record):
-    """How a clause is held.
+    """How a clause is enforced.
 
     Attributes:
         requirement: its name.
         clause: as typed.
         place: of the clause.
-        node: that it holds for; None where that is no node.
-        way: by the engine, by looking at logs, or by people.
-        why: why no more is done about it, or what is to be known of what is done; mostly empty.
-        asked: it is to be enforced.
-        subject: the node as the claim names it: as itself, as its tree, or as the mission.
+        node: that it applies to, if any.
+        way: by the engine, by analysis of logs, or by people.
+        why: the reason why the engine does not enforce it, or a note on how it does; mostly empty.
+        asked: whether the requirement wants it enforced.
+        subject: how the claim names the node: as itself, as its tree, or as the mission.
     """
 
     requirement: str
@@ -64,11 +64,11 @@ class Held(Record):
 
 
 class Enforcement(Record):
-    """A file with what its requirements add to it.
+    """A file's export with what its requirements add.
 
     Attributes:
         held: for each of `requirements(…).applied`, in its order, its clauses.
-        loose: what `requirements(…).about_no_node()` says.
+        loose: `requirements(…).about_no_node()`.
     """
 
     export: Export
@@ -77,12 +77,12 @@ class Enforcement(Record):
 
 
 class _Plan(Record):
-    """What is to stand around the nodes of some files.
+    """What is to be put around the nodes of some files.
 
     Attributes:
         wrappers: by `id(node)` of the syntax.
-        enforced: what a clause, a node and arguments are known by, for the files that include these.
-        cells: the entries that a mission begins with, each with its value.
+        enforced: the keys of enforced clauses (clause, node, arguments), for the files that include these.
+        cells: the entries that a mission initializes, each with its value.
         first: those of signals, each with its value before the first sample.
         stops: the entries that halt it.
     """
@@ -96,10 +96,10 @@ class _Plan(Record):
 
 
 def enforced(workspace: Workspace, path: str, export: Export, bundled: bool = False) -> Enforcement:
-    """A file's export, changed in place, with what its requirements add.
+    """Add to a file's export, in place, what its requirements need.
 
     Args:
-        bundled: all that the file includes is in the export.
+        bundled: whether the export has all that the file includes.
     """
     if not _has_requirements(workspace, path):
         return Enforcement(export, ())
@@ -118,7 +118,7 @@ def enforced(workspace: Workspace, path: str, export: Export, bundled: bool = Fa
 
 
 def how_held(workspace: Workspace, path: str, bundled: bool = False) -> tuple[tuple[Held, ...], ...]:
-    """For each of `requirements(workspace, path).applied`, in its order, how its clauses are held in what is built.
+    """For each of `requirements(workspace, path).applied`, in its order, how its clauses are enforced in the build.
 
     Args:
         bundled: as of `enforced`.
@@ -133,7 +133,7 @@ def how_held(workspace: Workspace, path: str, bundled: bool = False) -> tuple[tu
 
 
 def unasked(method: str | None, action: str | None) -> tuple[Way, str] | None:
-    """How the clauses of a requirement are held that nobody asks the engine to hold, and why; None: it takes a plan.
+    """How clauses are checked that the engine need not enforce, and why; None if the engine is to enforce them.
 
     Args:
         method: of `verified by`.
@@ -145,7 +145,7 @@ def unasked(method: str | None, action: str | None) -> tuple[Way, str] | None:
 
 
 def _has_requirements(workspace: Workspace, path: str) -> bool:
-    """Whether it is worth to look at requirements at all: most files have none."""
+    """Whether a file may have requirements at all; most have none."""
     return any(True for _ in workspace.scope(path).names(Kind.REQUIREMENT))
 
 
@@ -155,7 +155,7 @@ def _begins(workspace: Workspace, found: Requirements, path: str, files: frozens
 
 
 def _written(workspace: Workspace, path: str, bundled: bool) -> frozenset[str]:
-    """The files that are written together."""
+    """The files that are written into one document with this one."""
     return frozenset(workspace.closure(path)) if bundled else frozenset((path,))
 
 
@@ -165,7 +165,7 @@ def _written(workspace: Workspace, path: str, bundled: bool) -> frozenset[str]:
 def _plans(
     workspace: Workspace, found: Requirements, path: str, files: frozenset[str]
 ) -> tuple[_Plan, tuple[_Plan, ...]]:
-    """What is to stand around the nodes of a file, and those of the files that it includes and that are built too."""
+    """The plans for a file, and for the files that it includes and that are built too."""
     others = tuple(
         _plan(workspace, requirements(workspace, each), each, frozenset((each,)), ())
         for each in workspace.closure(path)
@@ -177,11 +177,11 @@ def _plans(
 def _plan(
     workspace: Workspace, found: Requirements, path: str, files: frozenset[str], others: Sequence[_Plan]
 ) -> _Plan:
-    """What is to stand around the nodes of some of the files that a file sees.
+    """The plan for some of the files that a file sees.
 
     Args:
-        files: those that are written.
-        others: what is to stand around the nodes of the other files.
+        files: that are written.
+        others: the plans of the other files.
     """
     planner = _Planner(workspace, found, path, files, others)
     held = tuple(
@@ -218,7 +218,7 @@ class _Planner:
         self._judge: Final = Judge(looks, files=files, is_shared=is_shared)
 
     def held(self, applied: Applied, claim: Claim) -> Held:
-        """What is done about a clause; what it needs is remembered."""
+        """How a clause is enforced; records the wrappers it needs."""
         requirement = applied.requirement
         if (known_way := unasked(requirement.method, requirement.action)) is not None:
             return Held(requirement.name, claim.text, claim.place, applied.node, *known_way, subject=applied.shown)
@@ -247,12 +247,12 @@ class _Planner:
 
     @cached_property
     def _bundled(self) -> _Planner:
-        """The same for a bundle: what cannot be enforced there either has another reason than where its node stands."""
+        """The same planner for a bundle: if a bundle could not enforce a clause either, its file is not the reason."""
         files = _written(self._workspace, self._path, True)
         return _Planner(self._workspace, self._found, self._path, files, (), self._budgets)
 
     def _guard(self, requirement: Requirement, claim: Claim, node: SourceNode) -> str:
-        """Remember what a clause needs; what there is to say of it.
+        """Record what a clause needs, and return the note on it.
 
         Raises:
             NotEnforced: the engine cannot do it.
@@ -275,7 +275,7 @@ class _Planner:
 
 
 class _Looks:
-    """As of a judge: at what nobody has looked at yet."""
+    """The view of nodes that a `Judge` needs."""
 
     def __init__(self, found: Requirements, budgets: Budgets, begins: bool) -> None:
         self._found: Final = found
@@ -306,7 +306,7 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _start(plans: Iterable[_Plan]) -> tuple[Wrapper, ...]:
-    """What stands around the mission; nothing where it has nothing to begin with."""
+    """The nodes around the mission; empty if it has nothing to initialize."""
     cells: dict[str, str] = {}
     first: dict[str, str] = {}
     stops: dict[str, str] = {}
@@ -325,8 +325,8 @@ def _start(plans: Iterable[_Plan]) -> tuple[Wrapper, ...]:
     for key in stops:
         one = f"({key} == false)"
         code = f"({code} && {one})" if code else one
-    # The flags are set outside the reactive node, where they would be set back at every tick; the condition behind it
-    # catches what breaks in the tree's last tick.
+    # The flags are set outside the reactive node, which would reset them at every tick; the condition after it catches
+    # violations in the tree's last tick.
     behind = (Leaf("ScriptCondition", "btq_end", code),)
     init = Wrapper(START, _ALL, "Sequence", "btq_init", before=tuple(before), behind=behind)
     guard = (Leaf("ScriptCondition", "btq_go_on", code),)

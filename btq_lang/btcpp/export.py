@@ -1,8 +1,7 @@
-"""A file as XML that the engine loads (docs/language.md): the document, what was mended and what cannot be written.
+"""A file as XML that the engine loads (docs/language.md): the document, the repairs, and what cannot be written.
 
-One invariant: it answers for every workspace and every file in it; without a problem, what is written is well-formed.
-It does not know the disk, nor the enforcement of requirements: `Export.elements` is where a later pass finds the
-element of each node, to put others around it.
+One invariant: it never raises for a file of the workspace; without a problem, the document is well-formed. It knows
+neither the disk nor the enforcement of requirements; a later pass finds the elements to wrap in `Export.elements`.
 """
 
 from __future__ import annotations
@@ -33,10 +32,10 @@ class Export(Record):
     """A file as XML.
 
     Attributes:
-        repairs: what the file says was mended, for the engine would refuse it.
-        problems: what the file says cannot be written; the document is then not what the file means.
+        repairs: what was changed because the engine would refuse it.
+        problems: what cannot be written; the document then differs in meaning from the file.
         elements: the element of each node of the file, by `id(node)`.
-        guessed: the nodes of which nobody says what they are, with the category that their models say.
+        guessed: the undeclared nodes, with the category that their models state.
     """
 
     document: Document
@@ -59,10 +58,10 @@ def export(
 
     Args:
         target: the version of the engine to write for; None: the project's.
-        verbatim: write exactly what the file says: no repairs, and nothing that the file does not say.
-        included_as: what an `<include>` says for an included file, given its path in the workspace; None: its path
-            relative to this file, with `.xml` in the place of `.btq`.
-        is_bundled: included XML is written, too.
+        verbatim: write exactly what is in the file: no repairs and no additions.
+        included_as: gives the path in an `<include>` for an included file's path in the workspace; None: that relative
+            to this file, with `.xml` in place of `.btq`.
+        is_bundled: whether included XML is written too.
 
     Raises:
         KeyError: there is no such file.
@@ -78,7 +77,7 @@ def export(
 
 
 def xml_path(workspace: Workspace, path: str, included: str) -> str:
-    """How the XML of the file `path` names that of an included file, where the XML files stand beside their sources."""
+    """How the XML of the file `path` names that of an included file, if XML files are written beside their sources."""
     relative = posixpath.relpath(included, posixpath.dirname(path) or ".")
     return xml_name(relative) if is_mission(workspace, included) else relative
 
@@ -99,7 +98,7 @@ def _document(source: Source, trees: Trees, included_as: IncludedAs, guessed: di
     behind: list[Content] = []
     root = Element("root")
     contents = root.children
-    end_of_block: list[Content] = []  # comments at the end of the Root's
+    end_of_block: list[Content] = []  # comments at the end of the Root's block
     models = Models()
     head: Entry | None = None
     for entry in entries:
@@ -126,7 +125,7 @@ def _document(source: Source, trees: Trees, included_as: IncludedAs, guessed: di
             _models(source, entry, item, contents, models)
         elif isinstance(item, Verbatim):
             source.put(contents, source.raw(entry, item), around)
-        else:  # what it says is in no element, and so are the comments in it
+        else:  # other items have no element, nor have the comments in them
             contents += source.written(around.before)
     missing = {} if source.verbatim else undeclared(source.workspace, source.path)
     guessed.update({name: node.category for name, node in missing.items() if node.said is None})
@@ -140,7 +139,7 @@ def _document(source: Source, trees: Trees, included_as: IncludedAs, guessed: di
 
 
 def _models(source: Source, entry: Entry, item: ModelsItem, contents: list[Content], models: Models) -> None:
-    """`TreeNodesModel`: the engine takes one."""
+    """Merge all models into one `TreeNodesModel`, for the engine accepts only one."""
     around = source.around(entry, item)
     if models.palettes and not source.verbatim:
         message = "its models move to the first TreeNodesModel: the engine accepts only one"
@@ -172,7 +171,7 @@ def _include(source: Source, entry: Entry, include: Include, included_as: Includ
 
 
 def _root_attributes(source: Source, head: Entry | None) -> list[Attribute]:
-    """BTCPP_format and main_tree_to_execute: as written, and what is missing of them."""
+    """BTCPP_format and main_tree_to_execute: as written, and added where they are missing."""
     item = head.item if head is not None else None
     root = item if isinstance(item, Root) else None
     attributes: list[Attribute] = []

@@ -1,4 +1,4 @@
-"""Whether a text is one XML element, well-formed: what `xml "…"` in a file must hold."""
+"""Whether a text is one well-formed XML element, as `xml "…"` in a file must be."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from btq_lang.catalog.names import is_xml_name
 
 
 def fragment_problem(text: str) -> str | None:
-    """What is wrong with a text that should be one element; None: nothing.  Prefixes need no declaration."""
+    """What is wrong with a text that should be one element; None if it is one.  Prefixes need no declaration."""
     if text[:1] != "<" or not is_xml_name(text[1:2]):
         return "`xml` takes one element; its text must begin with `<`"
     from lxml import etree  # here, for few files have such elements, and it takes long to import

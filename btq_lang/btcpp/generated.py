@@ -1,7 +1,7 @@
-"""Taking out of XML what a build has put into it: the marks of `marks`, for the .btq file says all that itself.
+"""Removing from XML what a build has added, for the .btq file says it itself (see `marks`).
 
-One invariant: XML that no build has made is left as it is, and what is removed is told, in one line; the mark of a file
-is no part of what it says.
+One invariant: XML that no build has made does not change, and what is removed is reported in one line; the comment that
+marks a file as generated is removed without a report.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from btq_lang.util.text import Span
 
 
 def may_be_generated(text: str) -> bool:
-    """Whether XML can hold a mark at all: most does not, and need not be looked through."""
+    """Whether XML can hold a mark at all: most has none, and need not be searched."""
     return "btq" in text and (DESCRIPTION_MARK in text or "by btq" in text or f"{MARK}=" in text)
 
 
 def without_generated(document: Document, changes: list[Change]) -> int:
-    """Take the marks out, in place; in how many elements a build had something to say."""
+    """Remove the marks, in place; return the number of elements that a build had described."""
     document.contents[:] = [each for each in document.contents if not _is_mark(each)]
     enforcing: list[Span] = []
     described: list[Span] = []
@@ -48,7 +48,7 @@ def without_generated(document: Document, changes: list[Change]) -> int:
 
 
 def _is_mark(content: Content) -> bool:
-    """Whether it is the comment that says which file to edit: no change is told where that goes."""
+    """Whether it is the comment that names the file to edit; its removal is not reported."""
     return isinstance(content, Comment) and is_generated_mark(content.text)
 
 
@@ -57,7 +57,7 @@ def _counted(number: int, one: str, many: str) -> str:
 
 
 def _take_out(parent: Element, holding: set[Element], found: list[Span]) -> None:
-    """What enforces a requirement, among the children of an element; what is in it comes up."""
+    """Remove the nodes that enforce requirements from an element's children; keep the mission's own nodes in them."""
     kept: list[Content] = []
     waiting = parent.children[::-1]
     while waiting:
@@ -65,7 +65,7 @@ def _take_out(parent: Element, holding: set[Element], found: list[Span]) -> None
         inside = None
         if isinstance(child, Element) and child.get(MARK) is not None:
             inside = unwrapped(child, holding)
-            if inside is None:  # now it is somebody's
+            if inside is None:  # it was edited, so it belongs to the user now
                 child.attributes = tuple(each for each in child.attributes if each.name not in (MARK, MOVED))
             else:
                 found.append(Span(child.start + 1, child.start + 1 + len(child.tag)))
@@ -76,7 +76,7 @@ def _take_out(parent: Element, holding: set[Element], found: list[Span]) -> None
 
 
 def _cut(element: Element, index: int) -> tuple[Span, ...]:
-    """Leave the user's part of a `_description`; where there was more."""
+    """Keep the user's part of a `_description`; return where more was cut."""
     attribute, kept = element.attributes[index], [*element.attributes]
     start, value_start = element.place(attribute)
     own = own_description(attribute.raw)

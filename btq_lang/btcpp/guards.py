@@ -1,7 +1,7 @@
-"""What the engine is made to do about a clause: the wrappers around nodes, or why there are none.
+"""What makes the engine enforce a clause: the wrappers around nodes, or why there are none.
 
-One invariant: a clause is said to be enforced if and only if wrappers come out for it that a test in `tests/engine` has
-seen at work, or the engine does by itself what it asks.  It does not know elements, nor what other clauses ask for.
+One invariant: a clause counts as enforced if and only if it has wrappers that a test in `tests/engine` has seen at
+work, or the engine does by itself what it demands.  It knows neither elements nor the other clauses.
 """
 
 from __future__ import annotations
@@ -44,18 +44,18 @@ if TYPE_CHECKING:
 
 
 class NotEnforced(Exception):
-    """No wrapper makes the engine do what a clause asks; the text is the reason, to stand behind "because"."""
+    """No wrapper makes the engine enforce a clause; the text is the reason and reads well after "because"."""
 
 
 class Guarded(Record):
-    """What stands around nodes for a clause.
+    """What enforces a clause.
 
     Attributes:
-        wrappers: each with its node, in the order from the outside in.
-        cells: the entries of the root blackboard that the mission begins with, each with its first value.
-        signals: what its scripts read.
-        stop: the entry that halts the mission; None: nothing does.
-        note: what is to be known of it: what of the clause is not enforced, or what it is taken for.
+        wrappers: each with its node, from the outside in.
+        cells: the entries of the root blackboard that the mission initializes, each with its first value.
+        signals: that its scripts read.
+        stop: the entry that halts the mission, if any.
+        note: what of the clause is not enforced, or how it is interpreted.
     """
 
     wrappers: tuple[tuple[SourceNode, Wrapper], ...]
@@ -66,12 +66,12 @@ class Guarded(Record):
 
 
 def guarded(requirement: Requirement, claim: Claim, node: SourceNode, name: str, stop: str, shared: bool) -> Guarded:
-    """What stands around a node for a clause that holds for it.
+    """What enforces a clause that applies to a node.
 
     Args:
-        name: what the names of its nodes and entries begin with.
+        name: prefix of the names of its nodes and entries.
         stop: the entry that halts the mission.
-        shared: the file of the node is a part of several missions.
+        shared: whether the file of the node is a part of several missions.
 
     Raises:
         NotEnforced: the engine cannot do it.
@@ -87,7 +87,7 @@ def guarded(requirement: Requirement, claim: Claim, node: SourceNode, name: str,
 
 
 class _Draft:
-    """The wrappers of a clause, while they are thought of."""
+    """The wrappers of a clause while they are being collected."""
 
     def __init__(
         self, requirement: Requirement, claim: Claim, node: SourceNode, name: str, stop: str, shared: bool
@@ -137,23 +137,23 @@ class _Draft:
         behind: tuple[Leaf, ...] = (),
         node: SourceNode | None = None,
     ) -> None:
-        """Something stands around the clause's node, or another one."""
+        """Add a wrapper around the clause's node, or around another one."""
         wrapper = Wrapper(rank, self.requirement.name, tag, f"{self.name}_{what}", attributes, before, behind)
         self._wrappers.append((node or self.node, wrapper))
 
     def noted(self, note: str) -> None:
-        """What is to be known of what is done."""
+        """Add a note for the user."""
         self._notes.append(note)
 
     def condition(self, what: str, code: str) -> Leaf:
-        """A condition that breaks the clause where it fails."""
+        """A condition whose failure breaks the clause."""
         return Leaf("ScriptCondition", f"{self.name}_{what}", code, f"{self.stop} := true" if self.halts else None)
 
     def script(self, condition: Condition) -> str:
         return condition_script(condition, self.stored)
 
     def at_start(self, what: str, script: str) -> str:
-        """A variable of the tree that has this value from the start of the node on."""
+        """A variable of the tree that is set to this value when the node starts."""
         key = f"_{self.name}_{what}"
         number = 1
         while any(each.startswith(f"{key} :=") for each in self._values):
@@ -168,8 +168,9 @@ class _Draft:
         )
 
     def cell(self, what: str, first: str, with_node: SourceNode | None = None) -> str:
-        """A variable that outlives the node: the tree's, if the node `with_node` above it in the tree gives it its
-        first value; else the mission's."""
+        """A variable that outlives the node: the tree's, if the node `with_node` above it in the tree initializes it;
+        else the mission's.
+        """
         if with_node is not None and _is_above(with_node, self.node):
             return f"_{self.name}_{what}"
         tree = f"_{legal(self.node.tree or '')}" if self._shared else ""
@@ -178,17 +179,17 @@ class _Draft:
         return key
 
     def when(self) -> str | None:
-        """A variable that says whether the clause holds for this activation; None: it always does."""
+        """A variable that records whether the clause applies to this activation; None: it always does."""
         scopes = self._scopes()
         return self.at_start("when", scopes) if scopes is not None else None
 
     def in_scope(self, script: str) -> str:
-        """A condition that need not hold outside the scope, asked when the node starts."""
+        """A condition that need not hold outside the scope, evaluated when the node starts."""
         scopes = self._scopes()
         return script if scopes is None else f"((!{scopes}) || {script})"
 
     def unscoped(self) -> None:
-        """The clause is one that a scope cannot be told of."""
+        """Refuse a scope: the clause is one that cannot be limited to one."""
         if self.requirement.scopes:
             raise NotEnforced(f"its scope, `{self.requirement.scopes[0].text}`, is evaluated only in logs")
 
@@ -206,7 +207,7 @@ class _Draft:
 
 
 def _takes(draft: _Draft) -> None:
-    """`<Timeout msec="30000">X</Timeout>`: halted at the deadline, FAILURE."""
+    """`<Timeout msec="30000">X</Timeout>`: halts X at the deadline and returns FAILURE."""
     when = draft.when()
     _limit(draft, _upper(draft), when)
     if isinstance(draft.claim.subject, Span):
@@ -214,7 +215,7 @@ def _takes(draft: _Draft) -> None:
 
 
 def _succeeds(draft: _Draft) -> None:
-    """A failure is one by itself; a Timeout makes one of being late."""
+    """A failure breaks the clause by itself; a Timeout makes a failure of a late success."""
     if draft.claim.limit is not None:
         when = draft.when()
         _limit(draft, _upper(draft), when)
@@ -235,13 +236,13 @@ def _limit(draft: _Draft, bound: Limit, when: str | None) -> None:
         _milliseconds(value) if not isinstance(value, Table) else table_script(value, _milliseconds, draft.stored)
     )
     if isinstance(value, Table) or when is not None:
-        chosen = milliseconds if when is None else f"({when} ? {milliseconds} : 0)"  # 0 is no limit to the engine
+        chosen = milliseconds if when is None else f"({when} ? {milliseconds} : 0)"  # for the engine, 0 is no limit
         milliseconds = f"{{{draft.at_start('ms', chosen)}}}"
     attributes: tuple[tuple[str, str], ...] = (("msec", milliseconds),)
     if not draft.halts:
         draft.around(LIMIT, "Timeout", "limit", attributes=attributes)
         return
-    # A Timeout fails, too, when what is in it fails in time: only what is not done then was late.
+    # A Timeout fails also if its child fails in time: only a node that is not done by then was late.
     done = draft.at_start("done", "false")
     late = f"{draft.stop} := ({draft.stop} || (!{done}))"
     draft.around(LIMIT, "Timeout", "limit", attributes=(*attributes, ("_onFailure", late)))
@@ -264,7 +265,7 @@ def _needs(draft: _Draft) -> None:
 
 
 def _keeps(draft: _Draft) -> None:
-    """`<ReactiveSequence><ScriptCondition code="φ"/>X</ReactiveSequence>`: asked at every tick."""
+    """`<ReactiveSequence><ScriptCondition code="φ"/>X</ReactiveSequence>`: evaluated at every tick."""
     code = draft.script(_condition(draft))
     if draft.claim.verb == "never":
         code = f"(!{code})"
@@ -283,7 +284,7 @@ def _leaves(draft: _Draft) -> None:
 
 
 def _uses(draft: _Draft) -> None:
-    """What the signal was at the start, and two conditions: while the node runs, and when it has succeeded."""
+    """The signal's value at the start, and two conditions: while the node runs, and when it has succeeded."""
     signal = draft.claim.signal
     assert signal is not None, "the clause names one"
     if signal.behaviour == "gauge":
@@ -301,7 +302,7 @@ def _uses(draft: _Draft) -> None:
 
 
 def _tries(draft: _Draft) -> None:
-    """A counter, set back when the node starts that it is counted in."""
+    """A counter, reset when the node starts whose activations it counts in."""
     draft.unscoped()
     bound = _upper(draft)
     per = draft.claim.per
@@ -320,7 +321,7 @@ def _tries(draft: _Draft) -> None:
 
 
 def _follows(draft: _Draft) -> None:
-    """A flag that the event sets and the start of the node takes away."""
+    """A flag that the event sets and the start of the node resets."""
     draft.unscoped()
     event = draft.claim.event
     assert event is not None, "the clause names one"
@@ -373,7 +374,7 @@ def _is_above(node: SourceNode, below: SourceNode) -> bool:
     return at is node
 
 
-# What an event is noted by: a script of the node; None: a Script before it.
+# The attribute of the node that records an event; None: a Script before it.
 _SEEN: Final[dict[str, str | None]] = {
     "starts": None,
     "succeeds": "_onSuccess",

@@ -1,9 +1,9 @@
-"""A BehaviorTree.CPP XML file as a .btq file: the way in, with nothing lost.
+"""A BehaviorTree.CPP XML file as a .btq file, with nothing lost.
 
 One invariant: a .btq file made here has one element for each of the XML, in order, with its attributes in order and its
-comments where they were (docs/language.md), and is laid out as the formatter lays it out; what has no words in the
-language stands in it as `xml "…"`, and the little that has no form at all is told.  What the words mean is not looked
-at, save for what version 3 said in other words (`version3`).
+comments in place (docs/language.md), and is laid out as the formatter does it; what the language cannot express becomes
+`xml "…"`, and the little that cannot be kept is reported.  The meaning of words does not matter here, except for what
+version 3 called otherwise (`version3`).
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     IncludedAs: TypeAlias = Callable[[str], str]
-    # A word of a line, and what it was made of: the value of one of the element's attributes, what stands between two
-    # places; None: the element's tag, if it is the first.
+    # A word of a line and what it was made of: the value of an attribute, a span of the XML, or (None, if it is the
+    # first) the element's tag.
     Piece: TypeAlias = tuple[str, Attribute | tuple[int, int] | None]
-    # A line: which one it is and where on it the words begin, the element it is for, the words, the pairs in brackets
-    # with what they were made of, and what is between them.
+    # A line: its number and the column of its first word, its element, the words, the pairs in brackets with what they
+    # were made of, and the text between them.
     Mark: TypeAlias = tuple[int, int, Element | None, Sequence[Piece], Sequence[str], Sequence[Attribute] | None, str]
-    # What a node says: the line without its indentation (empty: to be looked at each time), the words, the attributes
-    # in brackets and how they are spelt.
+    # How a node is written: the line without its indentation (empty: it is composed each time), the words, the
+    # attributes in brackets and their spelling.
     Said: TypeAlias = tuple[str, Sequence[Piece], Sequence[Attribute], Sequence[str]]
 
 
@@ -45,11 +45,11 @@ class Imported(Record):
     """An XML file in this language.
 
     Attributes:
-        text: the .btq file; empty where the XML could not be read.
-        changes: what it says otherwise than the XML did, in the order of the XML.
+        text: the .btq file; empty if the XML could not be read.
+        changes: where it differs from the XML, in the order of the XML.
         diagnostics: what is wrong with the XML itself; spans count from its start.
-        places: what in `text` was made of what in the XML; nothing in a text for people.
-        described: how many elements a build had told of requirements or qualities, which is left out.
+        places: which part of `text` was made of which part of the XML; empty for a text for people.
+        described: number of elements whose requirements or qualities a build had described; they are left out.
     """
 
     text: str
@@ -81,11 +81,10 @@ def import_xml(
 
     Args:
         text: the XML, any string at all; what is wrong with it is in `diagnostics` of the result.
-        keep_v3: leave what version 3 of the engine says as it is, instead of saying it as version 4 does.
-        for_people: write `->` for Sequence and so on, and break long lines; for those who only check, nodes keep their
-            names and lines are as long as they are, so that a comment silences a rule for all of an element, and
-            places are known.
-        included_as: what an `include` says for the path of an `<include>`; None: the same.
+        keep_v3: keep nodes of version 3 of the engine, instead of translating them to version 4.
+        for_people: write `->` for Sequence and so on, and break long lines; for checks, nodes keep their names and
+            lines are not broken, so that a comment silences a rule for all of an element, and places are known.
+        included_as: gives the path in an `include` for that of an `<include>`; None: the same.
     """
     with NotCollecting():
         done = read(text)
@@ -117,12 +116,12 @@ def _start(change: Change) -> Span:
 
 
 class _Writer:
-    """A .btq file, written up to some line."""
+    """The .btq file as far as it is written."""
 
     def __init__(self, source: str, for_people: bool, included_as: IncludedAs) -> None:
         self.source: Final = source
         self.symbols: Final = for_people
-        # By tag and attributes: many nodes are alike, and those share their attributes.
+        # By tag and attributes: many nodes are alike and share their attributes.
         self.said: Final[dict[tuple[str, tuple[Attribute, ...]], Said]] = {}
         self.columns: Final = _COLUMNS if for_people else len(source) * 10
         self.included_as: Final = included_as
@@ -133,7 +132,7 @@ class _Writer:
         self.ignored: Final[list[Diagnostic]] = []
 
     def document(self, document: Document) -> None:
-        """The comments before the root, the root, its items, and the comments behind it."""
+        """Write the comments before the root, the root, its items, and the comments after it."""
         contents = document.contents
         at = contents.index(document.root)
         for content in contents[:at]:
@@ -147,7 +146,7 @@ class _Writer:
             self.comment_line(content, 0)
 
     def root(self, root: Element, level: int) -> None:
-        """ "Root" [ Name ] [ Attributes ], and its items below it: in a block, only if something stands behind it"""
+        """ "Root" [ Name ] [ Attributes ], and its items below it: in a block only if something follows the root"""
         attributes = root.attributes
         head: list[Piece] = [("Root", None)]
         if len(attributes) == 2 and _is(attributes[0], "BTCPP_format", "4") and _is_main_tree(attributes[1]):
@@ -158,7 +157,7 @@ class _Writer:
             self.line(0, root, head, attributes[1:])
         else:
             self.line(0, root, head, attributes)
-        above = ""  # the kind of the line above
+        above = ""  # the kind of the previous line
         for child in root.children:
             if isinstance(child, Text):
                 self.lost_text(child)
@@ -175,7 +174,7 @@ class _Writer:
                 above = "line" if one_line else "block"
 
     def item(self, element: Element, level: int) -> None:
-        """BehaviorTree, include, TreeNodesModel; anything else as it is."""
+        """Write a BehaviorTree, include or TreeNodesModel; anything else verbatim."""
         attributes = element.attributes
         first = attributes[0] if attributes else None
         tag = (element.tag, None)
@@ -204,7 +203,7 @@ class _Writer:
             self.verbatim(element, level)
 
     def prefixed(self, element: Element) -> None:
-        """Tell of `<x:BehaviorTree>`, which means something to who knows namespaces."""
+        """Report `<x:BehaviorTree>`, which has another meaning for tools that know namespaces."""
         meant = element.tag.rpartition(":")[2]
         if meant == element.tag or meant not in ("BehaviorTree", "include", "TreeNodesModel"):
             return
@@ -213,7 +212,7 @@ class _Writer:
         self.ignored.append(Diagnostic("xml-ignored", span, message))
 
     def first(self, element: Element, key: str) -> Attribute | None:
-        """The attribute that this language writes first; told where it was not."""
+        """The attribute that this language writes first; reported if it was not first in the XML."""
         for index, attribute in enumerate(element.attributes):
             if attribute.name == key:
                 if index:
@@ -228,10 +227,10 @@ class _Writer:
     # ---- trees ----
 
     def nodes(self, parent: Element, level: int) -> None:
-        """All nodes below an element, with the comments between them; not by recursion, for trees are deep."""
+        """Write all nodes below an element, with the comments between them; not recursively, for trees are deep."""
         known, marks, out = self.said, self.marks, self.out
         stack = [iter(parent.children)]
-        above: Element | None = parent  # what the line above says
+        above: Element | None = parent  # the element of the previous line
         while stack:
             indent = _INDENT * level
             room = self.columns - len(indent)
@@ -296,7 +295,7 @@ class _Writer:
     # ---- models ----
 
     def models(self, element: Element, level: int) -> None:
-        """The models of a TreeNodesModel, with the comments between them."""
+        """Write the models of a TreeNodesModel, with the comments between them."""
         for child in element.children:
             if isinstance(child, Text):
                 self.lost_text(child)
@@ -363,11 +362,11 @@ class _Writer:
         attributes: Sequence[Attribute] | None = None,
         text: str | None = None,
     ) -> None:
-        """One line: words, then attributes in brackets and a string; broken as the formatter breaks it.
+        """Write one line: words, then attributes in brackets and a string; broken as the formatter breaks it.
 
         Args:
             element: whose line it is; its tag is the first word.
-            attributes: None: there are no brackets; empty ones are for `Root ()` alone.
+            attributes: None: no brackets; empty ones are for `Root ()` alone.
         """
         indent = _INDENT * level
         out = indent + head[0][0]
@@ -399,20 +398,20 @@ class _Writer:
         self.out.append(line)
 
     def verbatim(self, element: Element, level: int) -> None:
-        """xml STRING: the element as it stands in the XML."""
+        """Write xml STRING: the element as it is spelt in the XML."""
         said = self.source[element.start : element.close]
         origins = (element.start, element.end), (element.end, element.close)
         self.line(level, None, [("xml", origins[0]), (string_of(said), origins[1])])
 
     def comment_line(self, content: Content, level: int) -> None:
-        """A comment on a line of its own."""
+        """Write a comment on a line of its own."""
         if isinstance(content, Comment):
             said = comment(content.text)
             self.place_comment(content, said, len(self.out), len(_INDENT) * level)
             self.out.append(f"{_INDENT * level}{said}\n")
 
     def comment_behind(self, content: Comment) -> None:
-        """A comment behind the line above."""
+        """Write a comment at the end of the previous line."""
         above, said = self.out[-1][:-1], comment(content.text)
         self.place_comment(content, said, len(self.out) - 1, len(above) + 2)
         self.out[-1] = f"{above}  {said}\n"
@@ -458,7 +457,7 @@ class _Writer:
 
 
 def located(marks: Sequence[Mark], lines: Sequence[str]) -> list[tuple[int, int, int, int]]:
-    """What in the lines was made of what in the XML: pieces for `Places`."""
+    """Which parts of the lines were made of which parts of the XML: pieces for `Places`."""
     places: list[tuple[int, int, int, int]] = []
     starts = [0, *accumulate(map(len, lines))]
     for line, column, element, head, pairs, attributes, between in marks:
@@ -489,7 +488,7 @@ def located(marks: Sequence[Mark], lines: Sequence[str]) -> list[tuple[int, int,
 
 
 def _fits(text: str, column: int, columns: int) -> bool:
-    """Whether a text keeps within the columns, from one on."""
+    """Whether a text that begins at a column ends within the columns."""
     if "\n" not in text:
         return column + len(text) <= columns
     first, *others = text.split("\n")
@@ -505,8 +504,9 @@ def _is_main_tree(attribute: Attribute) -> bool:
 
 
 def _may_stand_behind(element: Element) -> bool:
-    """Whether a comment behind an element's line belongs where it stands in the XML: behind the whole element, or
-    first in a block that is a block without it."""
+    """Whether a comment at the end of an element's line keeps its place: after the whole element, or first in an
+    otherwise empty block.
+    """
     return not element.children or any(isinstance(child, Element) for child in element.children)
 
 
@@ -515,7 +515,7 @@ def _is_description(content: Content) -> bool:
 
 
 def _text_of(content: Content) -> str:
-    """The text of an element that has nothing else; empty for any other."""
+    """The text of an element that contains nothing else; empty for any other."""
     if not isinstance(content, Element) or content.attributes or not content.children:
         return ""
     return "".join(child.text if isinstance(child, Text) else "" for child in content.children) * all(
@@ -524,7 +524,7 @@ def _text_of(content: Content) -> str:
 
 
 def _is_metadata(element: Element) -> bool:
-    """Whether `metadata` lines say all of a <MetadataFields>."""
+    """Whether `metadata` lines can express all of a <MetadataFields>."""
     parts = element.children
     return (
         bool(parts)
@@ -537,7 +537,7 @@ def _is_metadata(element: Element) -> bool:
 
 
 _INDENT: Final = "    "
-_TEXTS_TOLD: Final = 100  # one by one: where there are more, the file is none that somebody mends by hand
+_TEXTS_TOLD: Final = 100  # reported one by one; a file with more is hardly mended by hand
 _COLUMNS: Final = 100  # the formatter's
 _DIRECTIONS: Final = {"input_port": "input", "output_port": "output", "inout_port": "inout"}
 _CATEGORIES: Final = frozenset(CATEGORIES)

@@ -1,8 +1,8 @@
-"""The tree that the engine makes of documents: every node with the number and the path that logs know it by.
+"""The tree that the engine creates from documents: every node with its number and path in logs.
 
-One invariant: numbers and paths are those of the engine: numbers depth first from 1, with each subtree in the place of
-its SubTree node; a path is that of the SubTree node above and the name, with the number behind it where the node has no
-name of its own.  It knows elements, and nothing of missions.
+One invariant: numbers and paths are those of the engine: numbers depth first from 1, each subtree in place of its
+SubTree node; a path is that of the SubTree node above and the name, followed by the number if the node has no name of
+its own.  It knows elements, and nothing of missions.
 
 Source: XMLParser::PImpl::recursivelyCreateSubtree and createNodeFromXML in src/xml_parsing.cpp.
 """
@@ -21,11 +21,11 @@ class Instance(Record):
     """A node of the tree that runs.
 
     Attributes:
-        uid: its number; None behind a SubTree whose tree is not at hand, for nobody knows how many nodes that has.
+        uid: its number; None after a SubTree whose tree is unknown, for so is its number of nodes.
         path: as the engine's `fullPath`.
-        element: the element that it is made from; one element may be many nodes.
-        callers: the SubTree elements that it is inside of, the outermost first.
-        parent: the number of the node above it; 0 for the root, None where nobody knows it.
+        element: the element that it is created from; one element may become many nodes.
+        callers: the SubTree elements around it, the outermost first.
+        parent: the number of the node above it; 0 for the root, None if that is unknown.
     """
 
     uid: int | None
@@ -71,7 +71,7 @@ def _own_path(element: Element, uid: int | None) -> str:
 
 
 def _children(element: Element) -> list[Element]:
-    """The elements in it, the last one first; an element that a mission spells out is read."""
+    """The child elements, in reverse order; an element that a mission spells out is parsed."""
     found = []
     for child in element.children:
         if isinstance(child, Element):

@@ -1,7 +1,7 @@
-"""Whether the engine can be made to hold a clause: what it needs, or why it is not enforced.
+"""Whether the engine can be made to enforce a clause: what that takes, or why it is not enforced.
 
-One invariant: a build, an overview, an editor and a check ask here, so they say the same.  It is imported by checks of
-small files, so it knows neither elements nor files; what is to stand around nodes is for `enforcement`.
+One invariant: build, overview, editor and check all use this module, so they agree.  Checks of small files import it,
+so it depends on neither elements nor files; what is put around nodes is for `enforcement`.
 """
 
 from __future__ import annotations
@@ -18,26 +18,26 @@ from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Si
 if TYPE_CHECKING:
 
     class Looks(Protocol):
-        """How to look at nodes and at the mission."""
+        """What a judge has to know of nodes and of the mission."""
 
         def waits(self, node: SourceNode) -> bool:
             """Whether a node can be RUNNING."""
 
         def is_skipped(self, node: SourceNode) -> bool:
-            """Whether it may be skipped from within."""
+            """Whether something inside a node can make the engine skip it."""
 
         def of_span(self, span: Span) -> SourceNode | None:
-            """The node whose time a span is; None: there is none."""
+            """The node whose duration a span measures, if there is one."""
 
         def begins(self) -> bool:
             """Whether the mission begins in the files that are judged."""
 
         def mission(self) -> SourceNode | None:
-            """Its root."""
+            """The mission's root."""
 
 
 class Elsewhere(NotEnforced):
-    """A node stands in a file that is not written together with the clause's."""
+    """A node is in a file that is not written together with the clause's."""
 
     def __init__(self, node: SourceNode) -> None:
         super().__init__()
@@ -45,26 +45,27 @@ class Elsewhere(NotEnforced):
 
 
 class NoBeginning(NotEnforced):
-    """Nobody can say which tree is the mission."""
+    """It is not known which tree is the mission."""
 
 
 class Judge:
-    """Whoever judges the clauses that some files see."""
+    """Judges the clauses that some files see."""
 
     def __init__(self, looks: Looks, *, files: Container[str] | None, is_shared: bool) -> None:
         """
         Args:
-            looks: asked only for what matters.
-            files: those that are written together; None: all.
-            is_shared: they are a part of several missions.
+            looks: queried only for what matters.
+            files: that are written together; None: all.
+            is_shared: whether they are a part of several missions.
         """
         self._looks: Final = looks
         self._files: Final = files
         self._is_shared: Final = is_shared
 
     def why_not(self, applied: Applied, claim: Claim) -> str | None:
-        """Why the engine does not hold a clause that it is asked to; None: it does, or nobody can say where the mission
-        begins, and that is told of the mission."""
+        """Why the engine does not enforce a clause that it should; None if it does, or if the mission's root is
+        unknown, which is reported of the mission.
+        """
         if applied.requirement.method in ("review", "test", "analysis"):
             return f"verified by {applied.requirement.method}"
         try:
@@ -76,7 +77,7 @@ class Judge:
         return None
 
     def node(self, applied: Applied, claim: Claim) -> SourceNode:
-        """What the engine holds to a clause.
+        """The node for which the engine enforces a clause.
 
         Raises:
             NotEnforced: there is no such node.
@@ -103,10 +104,10 @@ class Judge:
     def needs(
         self, requirement: Requirement, claim: Claim, node: SourceNode, name: str, stop: str
     ) -> tuple[Guarded, dict[str, str]]:
-        """What a clause needs, and the first values of what its scripts read.
+        """What enforces a clause, and the first values of the signals that its scripts read.
 
         Args:
-            name, stop: as of `guarded`.
+            name, stop: as for `guarded`.
 
         Raises:
             NotEnforced: the engine cannot do it.
@@ -132,17 +133,17 @@ class Judge:
 
 
 def where_else(node: SourceNode, *, is_xml: bool) -> str:
-    """Why nothing is put around a node of another file where each file is written by itself."""
+    """Why a node of another file gets no wrapper if each file is written by itself."""
     if is_xml:
         return f"{node.shown} is in an XML file, which the build does not change; --bundle enforces it"
     return f"{node.shown} is in an included file, which other missions may include; --bundle enforces it"
 
 
 def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
-    """Whether the tree stays as it is with something around a node.
+    """Check that a wrapper around a node does not change the behavior of the tree.
 
     Raises:
-        NotEnforced: it does not.
+        NotEnforced: it would.
     """
     if is_skipped_inside:
         raise NotEnforced(
@@ -153,8 +154,8 @@ def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
         raise NotEnforced(
             f"{node.shown} may be skipped and has `{said}`, so with a guard around it the tree would behave differently"
         )
-    # Nobody resets the condition of these: when it is asked again, an action says what it said before, and `_failureIf`
-    # is not looked at.  With something around it, it would be reset.
+    # These nodes never reset their condition: when it is ticked again, an action repeats its result without evaluating
+    # `_failureIf`.  A wrapper would reset it.
     asks = node.parent if node.parent is not None and node.parent.flow == "choice" else None
     is_asked_anew = node.category in _ASKED_ANEW and "_failureIf" not in names and "_successIf" not in names
     if asks is not None and node.index == 0 and not is_asked_anew:

@@ -1,12 +1,12 @@
 """Names for what a build generates: nodes, and entries of the blackboard.
 
-One invariant: no two clauses share a name, and an entry of the root blackboard has a name that no other file of the
-mission gives.  Names that the user's entries have are not known here: the underscore keeps away from them.
+One invariant: no two clauses share a name, and no two files of a mission share an entry of the root blackboard.  The
+names of the user's entries are not known here: the underscore avoids them.
 
     rq1_limit   a node          @rq1_stop   in the root blackboard         _rq1_done   in that of the tree
 
-An entry of one tree begins with `_`: `_autoremap` leaves such entries alone, so two SubTrees that run at once never
-share one.
+An entry of one tree begins with `_`: `_autoremap` leaves such entries alone, so SubTrees that run at the same time
+never share one.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ class Keys:
 
     def __init__(self) -> None:
         self._taken: Final[set[str]] = set()
-        self._numbers: Final[dict[str, int]] = {}  # all smaller ones are taken
+        self._numbers: Final[dict[str, int]] = {}  # the highest number in use, by stem
         self._stops: Final[dict[str, str]] = {}
 
     def next(self, requirement: str) -> str:
-        """What the names of a clause's nodes and entries begin with; `take` makes it the clause's."""
+        """The prefix for the names of a clause's nodes and entries; `take` reserves it."""
         plain = legal(requirement)
         number = self._numbers.get(plain, 1)
         while (name := plain if number == 1 else f"{plain}_{number}") in self._taken:
@@ -33,11 +33,11 @@ class Keys:
         return name
 
     def take(self, name: str) -> None:
-        """Nobody else gets it from now on."""
+        """Reserve a name."""
         self._taken.add(name)
 
     def stop(self, requirement: str) -> str:
-        """The entry that halts the mission for a requirement, wherever it is broken."""
+        """The entry that halts the mission for a requirement, wherever it is violated."""
         known = self._stops.get(requirement)
         if known is None:
             plain = legal(requirement)
@@ -51,7 +51,7 @@ class Keys:
 
 
 def legal(name: str) -> str:
-    """A name with `_` for all that no script has in its names."""
+    """A name in which `_` replaces each character that scripts do not allow in names."""
     if name.isascii() and name.isidentifier():
         return name
     plain = _OTHER.sub("_", name)

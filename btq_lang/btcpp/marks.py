@@ -1,6 +1,6 @@
-"""The marks by which an import knows what a build has put into the XML, and leaves it out.
+"""The marks by which an import recognizes what a build has added to the XML, and leaves it out.
 
-One invariant: no mark stands in a file that was built with `--verbatim`.
+One invariant: a file built with `--verbatim` has no marks.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable
 from typing import Final
 
-# A line of its own in a `_description`: from here on it is btq's; what stands before, up to the line end, the user's.
+# A line of its own in a `_description`: the text before it, up to the line end, is the user's; the rest is btq's.
 DESCRIPTION_MARK: Final = "[btq]"
 
 
@@ -27,7 +27,7 @@ GUARDS_NOTE: Final = " Nodes with _btq enforce requirements: at tick rate, so th
 
 
 def is_generated_mark(comment: str) -> bool:
-    """Whether the text of a comment is the mark of a generated file, or the note on what enforces."""
+    """Whether the text of a comment is the mark of a generated file, or the note on nodes that enforce requirements."""
     return comment == GUARDS_NOTE or (comment.startswith(_BEGIN) and comment.endswith(_END))
 
 
@@ -38,7 +38,7 @@ def is_generated(xml: str) -> bool:
 
 
 def is_built_of(xml: str, sources: Iterable[str]) -> bool:
-    """Whether a file says that it was built from one of these, named without folders."""
+    """Whether a file's mark names one of these sources, given without folders."""
     found = _FIRST_COMMENT.match(xml)
     return found is not None and any(found[1] == generated_mark(source) for source in sources)
 
@@ -49,12 +49,12 @@ def is_mission(xml: str) -> bool:
 
 
 def marked_description(own: str | None, lines: Iterable[str]) -> str:
-    """A `_description`, as it is spelt: what the user wrote (None: nothing), the mark, what a build has to say."""
+    """A `_description`, escaped: the user's own text (None: nothing), the mark, the lines of a build."""
     return "&#10;".join((*(() if own is None else (own,)), DESCRIPTION_MARK, *lines))
 
 
 def own_description(description: str) -> str | None:
-    """The user's part of a `_description`, as it is spelt in XML or as it reads; None where a build made all of it."""
+    """The user's part of a `_description`, escaped or not; None if a build made all of it."""
     found = _MARK_LINE.search(description)
     if found is None:
         return description

@@ -1,7 +1,7 @@
-"""Models as XML: what stands in `<TreeNodesModel>`, so that Groot shows and edits the nodes of a robot.
+"""Models as XML: the contents of `<TreeNodesModel>`, so that Groot shows and edits the nodes of a robot.
 
-The engine reads only the models of SubTrees.  One invariant: what the file declares stands there in its order, and
-what it uses but nobody declares stands behind it.
+The engine reads only the models of SubTrees.  One invariant: declared nodes come first, in their order; models of
+undeclared nodes follow.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def model_element(source: Source, entry: Entry, model: Model) -> Element:
 
 
 def port_element(source: Source, entry: Entry, port: Port, tree: Word | None = None) -> Element:
-    """`input station : string = "charger" "where to go"`; tree: whose port it is, where it is a tree's."""
+    """`input station : string = "charger" "where to go"`; tree: that has the port, if it is a tree's."""
     said = (("name", port.name), ("type", port.type), ("default", port.default))
     attributes = [Attribute(name, spelt(word)) for name, word in said if word is not None]
     if tree is not None and port.name is not None and port.default is not None and not source.verbatim:
@@ -79,8 +79,8 @@ class Models:
     """The models of a file, as they are found.
 
     Attributes:
-        palettes: the elements `TreeNodesModel` of the file.
-        loose: models that stand in none of them, with their comments.
+        palettes: the `TreeNodesModel` elements of the file.
+        loose: models outside of them, with their comments.
         trees: each tree of the file and its entry.
     """
 
@@ -90,7 +90,7 @@ class Models:
         self.trees: Final[list[tuple[Entry, Tree]]] = []
 
     def rest(self, source: Source, others: Iterable[Element]) -> list[Content]:
-        """What is to be written last, in a TreeNodesModel of the file or else in one of its own.
+        """The contents to write last, in a TreeNodesModel of the file or else in a new one.
 
         Args:
             others: models that the file does not have itself.
@@ -104,7 +104,7 @@ class Models:
         return [Element("TreeNodesModel", (), self.loose)] if self.loose else []
 
     def _add_ports(self, source: Source, entry: Entry, tree: Tree) -> None:
-        """The ports that a tree declares in its block: the engine asks for them at each SubTree."""
+        """Add the ports that a tree declares in its block: the engine requires them at each SubTree."""
         if not tree.ports or tree.name is None:
             return
         raw = source.spelt_tree(tree.name)

@@ -1,4 +1,4 @@
-"""Files as they are on the disk, in this language or in XML, as a workspace."""
+"""Files from the disk, in this language or in XML, as a workspace."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ def open_workspace(*paths: str) -> Workspace:
         ['mission.btq']
 
     Args:
-        paths: files as they are, folders for all .btq files below them; none: the current folder.
+        paths: files, and folders for all .btq files below them; without any, the current folder.
 
     Raises:
-        OSError: a file or folder cannot be read, or is not UTF-8; the message says where.
+        OSError: a file or folder cannot be read, or is not UTF-8; the message names it.
     """
     found = find_project(paths[0] if paths else ".")
     files: dict[str, File] = {}
@@ -42,14 +42,14 @@ def open_workspace(*paths: str) -> Workspace:
 
 
 def file_of(path: str, text: str) -> File:
-    """The file of a text as it is on the disk; XML is read as this language says it, as it is, old or new.
+    """The file for a path and its text; XML is imported without changing it, whatever its version.
 
-    XML is what is called .xml, and what begins with `<` under a name that says nothing: trees for Groot are called
-    .tree or .bt here and there.
+    XML is what is called .xml, and what begins with `<` under an unknown suffix: some projects call trees for Groot
+    .tree or .bt.
     """
     if path.endswith(SUFFIXES) or not (path.endswith(".xml") or text.lstrip().startswith("<")):
         return File(path, text)
-    from btq_lang.btcpp.importing import import_xml  # lxml, which most missions do without
+    from btq_lang.btcpp.importing import import_xml  # needs lxml, which most missions do without
 
     done = import_xml(text, keep_v3=True, for_people=False)
     return File(path, done.text, Origin(text, done.places, done.diagnostics, done.is_complete))

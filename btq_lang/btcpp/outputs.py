@@ -1,6 +1,6 @@
-"""The texts that `btq build` writes: of each mission its XML, and its side file where it says more than that.
+"""The texts that `btq build` writes: the XML of each mission, and its side file if it says more than the XML.
 
-One invariant: the disk is not known here; the same workspace and the same places give the same texts.
+One invariant: it does not use the disk; the same workspace and places give the same texts.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ class Output(Record):
     Attributes:
         path: of the mission.
         place: of its XML.
-        done: the document, and how its requirements are held.
-        text: the XML; empty where `done.export` has problems.
-        side: the side file; None where the XML says everything.
+        done: the document, and how its requirements are enforced.
+        text: the XML; empty if `done.export` has problems.
+        side: the side file; None if the XML says everything.
     """
 
     path: str
@@ -38,8 +38,9 @@ class Output(Record):
 
 
 class Places:
-    """Where the XML of each file is put: beside it, or below a folder, in the places that the files have below the
-    folder that holds them all."""
+    """Where the XML of each file is written: beside it, or below a folder, at the path of the file below the folder
+    common to all.
+    """
 
     def __init__(self, folder: str | None = None, sources: Sequence[str] = ()) -> None:
         """folder: absolute; None: beside the files; sources: all files that are built."""
@@ -53,7 +54,7 @@ class Places:
         return posixpath.normpath(posixpath.join(self._folder, posixpath.relpath(xml_name(source), self._above)))
 
     def seen_from(self, source: str, included: str, workspace: Workspace) -> str:
-        """How the XML of `source` names an included file: that made from it, or an XML file where it is."""
+        """How the XML of `source` names an included file: the XML made from it, or an XML file itself."""
         place = self.of(included) if is_mission(workspace, included) else included
         return posixpath.relpath(place, posixpath.dirname(self.of(source)) or ".")
 
@@ -67,14 +68,14 @@ def outputs(
     verbatim: bool = False,
     enforce: bool = True,
 ) -> tuple[Output, ...]:
-    """What a build writes of missions: of the files that were asked for and of all that they include, or of each
-    mission one file with all of it.
+    """What a build writes: an output for each given file and each file they include, or one for each mission with all
+    of it.
 
     Args:
-        given: the files that were asked for.
-        bundled: all that a mission includes is in its file.
-        verbatim: exactly what the files say, without side files.
-        enforce: put nodes around others that enforce requirements.
+        given: the files to build.
+        bundled: write all that a mission includes into its file.
+        verbatim: write exactly what is in the files, without side files.
+        enforce: add the nodes that enforce requirements.
     """
 
     def made(path: str) -> Enforcement:
@@ -107,11 +108,11 @@ def as_xml(
     enforce: bool = True,
     included_as: IncludedAs | None = None,
 ) -> Enforcement:
-    """A file as a build writes it; what enforces requirements is left out where the file cannot be written.
+    """A file as a build writes it; without the nodes that enforce requirements if the file cannot be written.
 
     Args:
-        bundled, verbatim, enforce: as of `outputs`.
-        included_as: as of `export`; of no bundle.
+        bundled, verbatim, enforce: as for `outputs`.
+        included_as: as for `export`; not for a bundle.
     """
     if bundled:
         done = bundle(workspace, path, verbatim=verbatim)
@@ -123,7 +124,7 @@ def as_xml(
 
 
 def sources(workspace: Workspace, given: Sequence[str]) -> tuple[str, ...]:
-    """The files that were asked for, and all that they include, without XML."""
+    """The given files and all that they include, without XML."""
     found = dict.fromkeys(given)
     for path in given:
         found.update(dict.fromkeys(workspace.closure(path)))
@@ -131,18 +132,18 @@ def sources(workspace: Workspace, given: Sequence[str]) -> tuple[str, ...]:
 
 
 def missions(workspace: Workspace, given: Sequence[str]) -> tuple[str, ...]:
-    """The files that were asked for and that no file includes; all that were asked for, where there are none."""
+    """The given files that no file includes; all given files, if there are none."""
     included = workspace.included_files
     return tuple(path for path in given if path not in included) or tuple(given)
 
 
 def without_tree(workspace: Workspace, given: Sequence[str]) -> Iterator[str]:
-    """The files that were asked for, have no tree, and declare nothing that another file could use."""
+    """The given files that have no tree and declare nothing that another file could use."""
     for path in given:
         if path in workspace.included_files or not is_mission(workspace, path) or workspace.defined_in(path):
             continue
         entries = (entry for each in workspace.closure(path) for entry in workspace.files[each].parsed.entries)
-        if not any(isinstance(entry.item, Tree) for entry in entries):  # a lone one needs no name
+        if not any(isinstance(entry.item, Tree) for entry in entries):  # a single tree needs no name
             yield path
 
 
@@ -156,7 +157,7 @@ def _side_text(
     workspace: Workspace, path: str, place: str, text: str, exports: dict[str, Enforcement], bundled: bool
 ) -> str | None:
     parts: tuple[Export, ...] = (exports[path].export,)
-    if not bundled:  # XML that it includes is read as this language says it
+    if not bundled:  # the XML that it includes is imported
         parts = tuple(
             exports[each].export if each in exports else export(workspace, each) for each in workspace.closure(path)
         )

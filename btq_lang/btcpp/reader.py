@@ -1,10 +1,10 @@
 """XML text to a document, as BehaviorTree.CPP reads it.
 
 One invariant: what the engine's reader (tinyxml2) loads is read, with the elements and values that it sees; what it
-refuses is refused.  It is more generous than the standard in some things (`--` in comments, `<` and `&` in values,
+refuses is refused.  That is more lenient than the standard in some points (`--` in comments, `<` and `&` in values,
 text around the document element) and stricter in others (no processing instruction inside the document element), so
-lxml is asked as well: what only the engine reads is told as a warning.  Every step moves forward, nothing is expanded,
-fetched or nested by recursion.  What the elements mean is not known here.
+lxml reads the text as well: what only the engine accepts is a warning.  Every step moves forward, nothing is expanded,
+fetched or nested by recursion.  It does not know what the elements mean.
 
 Source: tinyxml2 11, `XMLNode::ParseDeep`, `XMLDocument::Identify`, `XMLElement::ParseAttributes`.
 """
@@ -37,19 +37,19 @@ from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Span
 
 if TYPE_CHECKING:
-    # Its name, its attributes (None: it closes an element), whether it opens none, how long it is, whether there may be
-    # text behind it.
+    # Its name, its attributes (None: an end tag), whether it is an empty element, its length, whether text may follow
+    # it.
     Tag: TypeAlias = tuple[str, tuple[Attribute, ...] | None, bool, int, bool]
 
-MAX_DEPTH: Final = 498  # open elements; the engine gives up at the next one
+MAX_DEPTH: Final = 498  # open elements; the engine refuses the next one
 
 
 class Read(Record):
-    """What a file says.
+    """What was read from a file.
 
     Attributes:
-        document: None where no reader could make sense of the text.
-        problems: the mistake that ended the reading, or what other XML tools refuse; spans count from the text's start.
+        document: None if the text cannot be read at all.
+        problems: the error that ended the reading, or what other XML tools refuse; spans count from the text's start.
     """
 
     document: Document | None
@@ -98,30 +98,29 @@ class _Reader:
 
     def __init__(self, text: str, is_strict: bool) -> None:
         self.text: Final = text
-        self.is_strict: Final = is_strict  # no attribute stands twice: that has been looked at
+        self.is_strict: Final = is_strict  # whether duplicate attributes are excluded already
         self.open: Final[list[Element]] = []
-        self.attributes: Final[dict[str, tuple[Attribute, ...]]] = {}  # by their text: many nodes say the same
-        self.is_marked = False  # there was a DOCTYPE, or the like
-        self.has_prefixes = False  # names like `xsi:type`, perhaps: not all tools take all of them
+        self.attributes: Final[dict[str, tuple[Attribute, ...]]] = {}  # by their text: many nodes have the same
+        self.is_marked = False  # whether there was a DOCTYPE or the like
+        self.has_prefixes = False  # whether there may be names like `xsi:type`, which some tools refuse
 
     def contents(self) -> list[Content]:
-        """{ Element | Comment | Text | Declaration | DOCTYPE }: what stands at the top of the document.
+        """{ Element | Comment | Text | Declaration | DOCTYPE }: the top level of the document.
 
-        The text is cut at every `<`, and what a piece says is looked up by its text: most tags of a mission stand
-        there more than once.
+        The text is cut at every `<`, and pieces are cached by their text: most tags of a mission occur more than once.
         """
         text, opened = self.text, self.open
         known: dict[str, Tag] = {}
         top: list[Content] = []
         contents = top  # of the innermost open element
         pieces = chain.from_iterable(_pieces(text))
-        behind = 1 if text.startswith("\ufeff") else 0  # where the last thing ended
-        following = len(next(pieces))  # where the next `<` stands
+        behind = 1 if text.startswith("\ufeff") else 0  # the end of what was read last
+        following = len(next(pieces))  # the offset of the next `<`
         self.characters(behind, following, contents)
         for piece in pieces:
             start = following
             following += len(piece) + 1
-            if start < behind:  # this `<` stands in a comment, or in a value
+            if start < behind:  # this `<` is in a comment, or in a value
                 continue
             said = piece.rstrip(_BLANKS)
             tag = known.get(said)
@@ -139,7 +138,7 @@ class _Reader:
             name, attributes, is_leaf, length, has_text = tag
             behind = start + length
             if attributes is None:
-                if not opened:  # the engine reads no further
+                if not opened:  # the engine stops reading here
                     return top
                 element = opened.pop()
                 if name != element.tag:
@@ -161,7 +160,7 @@ class _Reader:
         return top
 
     def tag(self, match: re.Match[str], start: int, end_of_piece: int) -> Tag:
-        """A tag; there may be text behind it unless it is all of its piece."""
+        """A tag; text may follow it unless it is all of its piece."""
         name, pairs, slash, closing = match.groups()
         end = match.end()
         has_text = end != end_of_piece
@@ -179,11 +178,11 @@ class _Reader:
         return name, attributes, slash == "/", end - start, has_text
 
     def other(self, start: int, behind: int, contents: list[Content], is_first: bool) -> int:
-        """What begins with `<` and is no tag; where it ends.
+        """Read what begins with `<` but is not a tag; return where it ends.
 
         Args:
-            behind: where the last thing ended.
-            is_first: nothing stands before it.
+            behind: the end of what was read last.
+            is_first: whether nothing precedes it.
         """
         text = self.text
         if text.startswith("<!--", start):
@@ -195,7 +194,7 @@ class _Reader:
         self.broken_tag(start)
 
     def characters(self, start: int, end: int, contents: list[Content]) -> None:
-        """Text between tags, if it is not blank; behind the last one the engine cannot end it."""
+        """Add text between tags, if it is not blank; the engine cannot end it after the last tag."""
         if end < 0:
             end = len(self.text)
         between = self.text[start:end]
@@ -210,7 +209,7 @@ class _Reader:
             contents.append(Text(unescape(_line_ends(between)), start))
 
     def mismatched(self, element: Element, span: Span, closing: str) -> NoReturn:
-        """`</b>` where another element is open."""
+        """Refuse `</b>` where another element is open."""
         note = f"write </{element.tag}>"
         if any(other.tag == closing for other in self.open):
             note = f"close <{element.tag}> first: write </{element.tag}>, or /> where it has no children"
@@ -219,7 +218,7 @@ class _Reader:
         raise _Broken(Diagnostic(RULE, span, message, related, (note,)))
 
     def comment(self, start: int, behind: int, contents: list[Content]) -> int:
-        """ "<!--" … "-->"; behind: where the last thing ended"""
+        """ "<!--" … "-->"; behind: the end of what was read last"""
         text = self.text
         end = self.closing("-->", start + 4, start, "missing --> for this comment")
         between = text[behind:start]
@@ -228,7 +227,7 @@ class _Reader:
         return end + 3
 
     def marked(self, start: int, contents: list[Content]) -> int:
-        """ "<![CDATA[" … "]]>", "<!" … ">"; the latter is passed over, as the engine does"""
+        """ "<![CDATA[" … "]]>", "<!" … ">"; the latter is skipped, as the engine does"""
         self.is_marked = True
         text = self.text
         if text.startswith("<![CDATA[", start):
@@ -236,11 +235,11 @@ class _Reader:
             if start + 9 < end:
                 contents.append(Text(_line_ends(text[start + 9 : end]), start))
             return end + 3
-        self.has_prefixes = True  # in a DOCTYPE there may be anything
+        self.has_prefixes = True  # a DOCTYPE may declare anything
         return self.closing(">", start + 2, start, "missing > for this declaration") + 1
 
     def declaration(self, start: int, is_first: bool) -> int:
-        """ "<?" … "?>": the engine takes every one for a declaration, and wants those first"""
+        """ "<?" … "?>": the engine takes each for a declaration, which must come first"""
         end = self.closing("?>", start + 2, start, "missing ?> for this declaration") + 2
         self.has_prefixes = self.has_prefixes or ":" in self.text[start:end]
         if not is_first or self.is_marked:
@@ -263,7 +262,7 @@ class _Reader:
         raise _Broken(Diagnostic(RULE, span, message, notes=(note,)))
 
     def twice(self, tag: str, span: Span) -> NoReturn:
-        """Two values for one attribute."""
+        """Refuse two values for one attribute."""
         first: dict[str, Span] = {}
         for match in attribute_matches(self.text, span.start, span.end):
             name = match[1]
@@ -279,7 +278,7 @@ class _Reader:
         self.broken(Span(element.start, element.end), message, f"write </{element.tag}> where it ends")
 
     def broken_tag(self, start: int) -> NoReturn:
-        """Say where a tag stops making sense: a second look at it, piece by piece."""
+        """Report where a tag is malformed: parse it again, piece by piece."""
         text, size = self.text, len(self.text)
         name = _NAME(text, start + (2 if text.startswith("</", start) else 1))
         if name is None:
@@ -306,7 +305,7 @@ class _Reader:
 
 
 def _pieces(text: str) -> Iterator[list[str]]:
-    """A text cut at every `<`, a part of it at a time: so less memory is touched."""
+    """A text cut at every `<`, in chunks, which touches less memory."""
     start = 0
     while (end := text.find("<", start + _PART)) >= 0:
         yield text[start:end].split("<")
@@ -322,7 +321,7 @@ _TOO_DEEP: Final = f"more than {MAX_DEPTH} nested elements, which BehaviorTree.C
 _PART: Final = 32_000
 _BLANKS: Final = " \t\n\v\f\r"
 _PAIRS: Final = rf"((?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*)"
-# No two parts of it can match the same characters, so there is one way to match: the time is linear.
+# No two parts of it can match the same characters, so there is only one way to match: the time is linear.
 _TAG: Final = re.compile(
     rf"<(?:{SPACE}({WORD})(?!{IN_WORD}){_PAIRS}{SPACE}(/?)>|/({WORD})(?!{IN_WORD})(?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*{SPACE}>)"
 ).match

@@ -1,8 +1,8 @@
-"""The way back: a mission from its XML and the side file beside it, with what the XML has no place for.
+"""A mission restored from its XML and its side file, which has what the XML cannot hold.
 
-One invariant: from the very XML that was built comes the mission as it was, character by character; from XML that
-somebody has changed comes what the XML says now, with the items of the mission that have no element in front of the
-trees, and the clauses at the nodes that are still there.  What is not is told.
+One invariant: XML as it was built gives the mission as it was, character by character; edited XML gives what it says
+now, with the items of the mission that have no element before the trees, and the clauses of nodes that still exist.
+What is lost is reported.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ class Restored(Record):
 
     Attributes:
         text: of the .btq file.
-        is_whole: it is the mission as it was.
-        file: where the mission was, seen from the side file, which may say anything.
-        lost: clauses of nodes that are not there any more.
-        by_hand: what somebody has changed that enforces, which counts for nothing.
-        others: of a whole bundle, the files that it includes: their paths, seen from the mission, and texts.  The paths
-            are whatever the side file says, and may lead anywhere.
+        is_whole: whether it is the mission as it was.
+        file: the mission's path relative to the side file; not validated.
+        lost: clauses of nodes that no longer exist.
+        by_hand: the manual edits of generated nodes, which are ignored.
+        others: if a whole bundle, the paths (relative to the mission) and texts of the files that it includes.  The
+            paths come from the side file and may lead anywhere.
     """
 
     text: str
@@ -66,8 +66,8 @@ class Lost(Record):
 
     Attributes:
         text: as they were written.
-        file: where that was, seen from the mission; None: in the mission.
-        line: from 1 on.
+        file: where, relative to the mission; None: in the mission.
+        line: 1-based.
     """
 
     text: str
@@ -76,11 +76,11 @@ class Lost(Record):
 
 
 def restored(xml: str, imported: str, side: str) -> Restored | None:
-    """A mission from the XML that was built from it, or from what became of that; None: the side file is no such one.
+    """A mission from the XML that was built from it, edited or not; None if the side file cannot be read.
 
     Args:
-        xml: the XML file as it stands.
-        imported: what an import makes of it, without the marks of a build.
+        xml: the XML file as it is now.
+        imported: its import, without the marks of a build.
         side: the side file.
     """
     import hashlib
@@ -109,12 +109,12 @@ def restored(xml: str, imported: str, side: str) -> Restored | None:
 
 
 def _is_text(value: object) -> bool:
-    """Whether it can be written into a file: JSON can name half a character."""
+    """Whether it can be written into a file: JSON can contain half a character."""
     return isinstance(value, str) and not any("\ud800" <= char <= "\udfff" for char in value)
 
 
 def _merged(now: Parsed, sources: Sequence[tuple[str | None, Parsed]], place: str) -> Restored:
-    """What the XML says now, with what the mission and the files of its bundle said beyond it."""
+    """The XML as it is now, with what the mission and the files of its bundle said beyond it."""
     edits: list[Edit] = []
     lost: list[Lost] = []
     for file, then in sources:
@@ -163,7 +163,7 @@ def _trees(parsed: Parsed) -> Iterator[tuple[Entry, str]]:
 
 
 def _nodes(entry: Entry) -> dict[tuple[str, str, int], tuple[Entry, Node]]:
-    """The nodes of a tree by what they are, what they are called, and which of those they are."""
+    """The nodes of a tree by kind, name, and number among the nodes that share those."""
     found: dict[tuple[str, str, int], tuple[Entry, Node]] = {}
     assert isinstance(entry.item, Tree)
     for node in entry.item.walk():
@@ -176,7 +176,7 @@ def _nodes(entry: Entry) -> dict[tuple[str, str, int], tuple[Entry, Node]]:
 
 
 def _called(node: Node) -> tuple[str, str]:
-    """The ID and the name that a node has in XML."""
+    """The ID and the name of a node in XML."""
     name = node.name.text if node.name is not None else ""
     if is_placeholder(node):
         ID = legal_name(name)
@@ -186,7 +186,7 @@ def _called(node: Node) -> tuple[str, str]:
 
 
 def _place_of_items(parsed: Parsed) -> int:
-    """Behind the Root line and the includes, at the start of a line."""
+    """The offset after the Root line and the includes, at the start of a line."""
     at = 0
     for entry in parsed.entries:
         if isinstance(entry.item, Root | Include):
@@ -198,7 +198,7 @@ def _place_of_items(parsed: Parsed) -> int:
 
 
 def _lines(parsed: Parsed, entry: Entry) -> str:
-    """An item with its block and the comments in it, at the left margin."""
+    """An item with its block and its comments, without indentation."""
     start = entry.start + entry.item.start
     end = parsed.text.find("\n", max(start, entry.start + entry.item.end - 1))
     margin = parsed.text[entry.start : start]
@@ -207,7 +207,7 @@ def _lines(parsed: Parsed, entry: Entry) -> str:
 
 
 def _clauses(parsed: Parsed, entry: Entry, clauses: tuple[NodeClause, ...]) -> str:
-    """Clauses on one line; those that define requirements last, for nothing else can stand behind them."""
+    """Clauses on one line; those that define requirements last, for nothing else can follow them."""
     ordered = sorted(clauses, key=lambda clause: isinstance(clause, Satisfies) and _defines(clause))
     return " ".join(_on_one_line(parsed.text[entry.start + each.start : entry.start + each.end]) for each in ordered)
 
@@ -229,7 +229,7 @@ def _on_one_line(text: str) -> str:
 
 
 def _tree_clauses(parsed: Parsed, entry: Entry, text: str) -> Edit | None:
-    """Clauses of a tree on a line of their own, above its node."""
+    """The edit that puts clauses of a tree on a line of their own, above its node."""
     tree = entry.item
     if not isinstance(tree, Tree) or not tree.children:
         return None

@@ -1,8 +1,8 @@
-"""`<name>.qreq.json`: what a mission says beyond its XML, for the tools that read logs, and for the way back.
+"""`<name>.qreq.json`: what a mission says beyond its XML, for tools that read logs, and for restoring the mission.
 
-The engine's logs drop descriptions and know nodes by number and path only; so the file says for each node of the tree
-that runs where it is written, and which requirements and qualities hold for it.  `qreq.schema.json` is its format.  One
-invariant: it speaks of one XML file, byte for byte, whose SHA-256 it holds.  It judges nothing.
+The engine's logs drop descriptions and know nodes by number and path only; so the file lists for each node of the
+running tree where it is written, and which requirements and qualities apply to it.  `qreq.schema.json` is its format.
+One invariant: it describes one XML file, byte for byte, whose SHA-256 it holds.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ class Built(Record):
     Attributes:
         path: of the mission.
         place: of the XML file.
-        text: what is in it.
-        documents: the mission's and those of all that it includes, included ones first; a bundle is one.
-        elements: of every node in them, by `id(node)`.
-        held: how the clauses of what is applied are held, in its order; empty where nothing is enforced.
+        text: of the XML file.
+        documents: the mission's and those of all that it includes, included ones first; a bundle has one.
+        elements: of every node, by `id(node)`.
+        held: how the clauses of each applied requirement are enforced, in order; empty if enforcement is off.
     """
 
     path: str
@@ -66,12 +66,12 @@ def xml_path(side: str) -> str:
 
 
 def is_side_file(text: str) -> bool:
-    """Whether a file is a side file, seen without reading it."""
+    """Whether a file looks like a side file, without parsing it."""
     return text.startswith(f'{{\n"format": "{FORMAT}",\n')
 
 
 def side_file(workspace: Workspace, built: Built) -> str | None:
-    """The text of the side file; None where the mission says nothing that its XML does not."""
+    """The text of the side file; None if the mission says nothing beyond its XML."""
     paths = workspace.closure(built.path)
     if not any(_says_more(entry) for path in paths for entry in workspace.files[path].parsed.entries):
         return None
@@ -118,7 +118,7 @@ def side_file(workspace: Workspace, built: Built) -> str | None:
 
 
 def _sources(workspace: Workspace, paths: tuple[str, ...]) -> list[Json]:
-    """What a bundle was made of beside the mission: its XML names none of these files."""
+    """The files that a bundle was made of beside the mission: its XML does not name them."""
     *others, mission = paths
     folder = posixpath.dirname(mission) or "."
     return [{"file": posixpath.relpath(path, folder), "text": workspace.files[path].source} for path in others]
@@ -133,7 +133,7 @@ def _says_more(entry: Entry) -> bool:
 
 
 def _text(data: dict[str, Json]) -> str:
-    """JSON, a line for each thing in a list, so that differences can be read."""
+    """JSON with a line for each item of a list, so that differences are readable."""
     import json
 
     def one_line(value: Json) -> str:
@@ -151,10 +151,10 @@ def _text(data: dict[str, Json]) -> str:
 
 
 class RunningTree:
-    """The nodes of the tree that runs.
+    """The nodes of the running tree.
 
     Attributes:
-        all: each with what it was written as; None where that is not a node of a mission.
+        all: each with the written node; None if that is not a node of a mission.
     """
 
     def __init__(self, built: Built, nodes: Nodes, main: str | None) -> None:
@@ -175,15 +175,15 @@ class RunningTree:
                 self._of.setdefault(id(node), []).append(instance)
 
     def uids(self, target: Target) -> list[Json]:
-        """The numbers of a node's instances, of those that the path goes through."""
+        """The numbers of a node's instances that the path leads through."""
         return [each.uid for each in self.instances(target)]
 
     def instances(self, target: Target) -> list[Instance]:
-        """A node's instances, of those that the path goes through."""
+        """A node's instances that the path leads through."""
         return [each for each in self._of.get(id(target.node), ()) if self._leads_to(each, target.through)]
 
     def _leads_to(self, instance: Instance, through: tuple[str, ...]) -> bool:
-        """Whether the names are met, in their order, on the way to an instance."""
+        """Whether the way to an instance passes the names, in order."""
         left = list(through)
         for caller in reversed(instance.callers):
             at = self._written.get(id(caller))
@@ -195,7 +195,7 @@ class RunningTree:
 
 
 def _guards(root: Element) -> dict[str, Json]:
-    """What enforces in the file, by the nodes that it stands at."""
+    """The checksums of the guards in the file, by the nodes that they are at."""
     found: list[Json] = [{"node": each.node, "guards": dict(each.guards)} for each in node_guards(root)]
     return {"guards": found} if found else {}
 
@@ -233,7 +233,7 @@ def _applied(applied: Applied, held: tuple[Held, ...], running: RunningTree, pla
 
 
 def _concerns(workspace: Workspace, paths: tuple[str, ...], nodes: Nodes, running: RunningTree) -> Iterator[Json]:
-    """What `satisfices` says, of a tree as of its node."""
+    """The concerns that `satisfices` names, for a tree as for its node."""
     for path in paths:
         for entry in workspace.files[path].parsed.entries:
             if not isinstance(entry.item, Tree):
@@ -255,7 +255,7 @@ def _concerns(workspace: Workspace, paths: tuple[str, ...], nodes: Nodes, runnin
 
 
 class _Places:
-    """Places as the file says them: the name of the file, seen from the side file, and the line."""
+    """Places as the file writes them: the path of the file, relative to the side file, and the line."""
 
     def __init__(self, workspace: Workspace, folder: str) -> None:
         self._workspace = workspace
@@ -273,13 +273,13 @@ class _Places:
             return {}
         file = self._workspace.files[place.path]
         start = place.span.start + (file.start_of(place.anchor) if place.anchor is not None else 0)
-        if file.origin is not None:  # XML is read as this language would say it: its lines are others
+        if file.origin is not None:  # it was imported from XML, so its lines differ
             return {"file": self.name(place.path)}
         return {"file": self.name(place.path), "line": file.lines.position(start).line + 1}
 
 
 def _plain(value: object, place: _Places) -> Json:
-    """A value of the model: its fields, `is` says what it is; signals, contexts and nodes by what they are called."""
+    """A value of the model: its fields, and its type as `is`; signals, contexts and nodes by name."""
     if value is None or isinstance(value, bool | int | str):
         return value
     if isinstance(value, float):

@@ -1,6 +1,6 @@
-"""The file that is being written as XML: what all parts of an export ask, and where they say what they did.
+"""The file that is being exported: what all parts of an export look up, and where they record remarks.
 
-One invariant: asking changes nothing; only `repair` and `problem` remember, once a message and a place.
+One invariant: only `repair` and `problem` change it; they keep one remark for a message and a place.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 class Remark(Record):
-    """Something that an export has to say, and the place it is about, counted from the start of the file."""
+    """A remark of an export, and the place it is about, counted from the start of the file."""
 
     path: str
     span: Span
@@ -42,13 +42,13 @@ class Remark(Record):
 
 
 class Source:
-    """One file on its way.
+    """One file while it is exported.
 
     Attributes:
-        target: the version of the engine that it is written for.
-        verbatim: exactly what the file says is written, and nothing else.
-        is_bundled: XML that the file includes is written, too, and does not stay as it is.
-        comments: where the file's comments belong, by the element.
+        target: the version of the engine.
+        verbatim: whether to write exactly what is in the file, and nothing else.
+        is_bundled: whether XML that the file includes is written too, instead of staying as it is.
+        comments: of the file, by the element that they belong to.
     """
 
     def __init__(self, workspace: Workspace, path: str, target: str, verbatim: bool, is_bundled: bool) -> None:
@@ -67,15 +67,15 @@ class Source:
         self._changed_comments: list[SourceComment] = []
 
     def repair(self, entry: Entry, part: Part, message: str) -> None:
-        """What the file says was mended, for the engine would refuse it."""
+        """Record a change that was made because the engine would refuse the file otherwise."""
         self.repairs[Remark(self.path, Span(part.start, part.end).shifted(entry.start), message)] = None
 
     def problem(self, entry: Entry, part: Part, message: str) -> None:
-        """What the file says cannot be written."""
+        """Record what cannot be written."""
         self.problems[Remark(self.path, Span(part.start, part.end).shifted(entry.start), message)] = None
 
     def tree_id(self, name: str) -> str:
-        """The ID under which a tree is written, wherever it is named, in every file."""
+        """The ID under which a tree is written, in every file and wherever it is named."""
         known = self._tree_ids.get(name)
         if known is None:
             refused = not self.verbatim and model_name_problem(name, self.target) is not None
@@ -83,7 +83,7 @@ class Source:
         return known
 
     def _stays(self, tree: str) -> bool:
-        """Whether a tree is in XML that nobody writes, so that its name cannot be mended."""
+        """Whether a tree is in XML that is not written, so that its name cannot change."""
         found = None if self.is_bundled else self.scope.find(Kind.TREE, tree)
         return found is not None and found.path != self.path and found.path in self.workspace.origins
 
@@ -97,14 +97,14 @@ class Source:
         return self.comments.get(entry.start + part.start, NO_COMMENTS)
 
     def types_below(self, tree: str, port: str) -> tuple[str, ...]:
-        """The types that a port of a tree meets, as `constants` finds them."""
+        """The types as which a port of a tree is read, as `constants` finds them."""
         known = self._types.get((tree, port))
         if known is None:
             known = self._types[tree, port] = types_below(self.scope, self.target, tree, port)
         return known
 
     def respelt(self, entry: Entry, part: Part, said: str, written: str) -> None:
-        """A constant of a subtree's port is spelt as another type."""
+        """Record that a constant of a subtree's port is spelt as another type."""
         why = "4.9.1 and later would read it as another type than the node below expects"
         self.repair(entry, part, f"`{said}` is written as `{written}`: {why}")
 
@@ -116,7 +116,7 @@ class Source:
         return Raw(text)
 
     def put(self, contents: list[Content], element: Content, around: Comments) -> None:
-        """An element with the comments before and behind it."""
+        """Add an element with the comments before and after it."""
         contents += self.written(around.before)
         contents += self.written(around.within)
         contents.append(element)
@@ -135,7 +135,7 @@ class Source:
         return made
 
     def finish(self) -> None:
-        """Tell what holds for the file as a whole."""
+        """Record what concerns the file as a whole."""
         if self._changed_comments:
             first = self._changed_comments[0]
             number = len(self._changed_comments)

@@ -1,7 +1,7 @@
 """How words of a `.btq` file are spelt in XML: attribute values, texts, comments, names.
 
-One invariant: a line end and a tab that stand in the source stay as they are, and `\\n` and `\\t`, the escapes, become
-`&#10;` and `&#9;`: the two are different for the readers that follow the XML standard, and alike for the engine.
+One invariant: a line end and a tab in the source stay as they are, and the escapes `\\n` and `\\t` become `&#10;` and
+`&#9;`: readers that follow the XML standard distinguish them, the engine does not.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from btq_lang.syntax.tree import Word
 
 
 def spelt(word: Word) -> str:
-    """A word as it stands between the quotes of an attribute."""
+    """A word as it is spelt between the quotes of an attribute."""
     raw = word.raw
     if word.kind != STRING:
         return escape_text(raw).replace('"', "&quot;") if _SPECIAL(raw) else raw  # a tab in `{a	b}` stays
@@ -30,7 +30,7 @@ def spelt(word: Word) -> str:
 
 
 def in_unit(word: Word, unit: str | None) -> str | None:
-    """A quantity as the number that a port in `unit` takes; None where it is none: the unit is another or unknown."""
+    """A quantity as the number that a port in `unit` takes; None if its unit is another or unknown."""
     if word.kind != QUANTITY or unit is None:
         return None
     quantity, wanted = parse_quantity(word.raw), parse_unit(unit)
@@ -43,7 +43,7 @@ def in_unit(word: Word, unit: str | None) -> str | None:
 
 
 def as_comment(text: str) -> str:
-    """A text as it stands in an XML comment, where no two `-` may meet, nor one and the end."""
+    """A text as it is spelt in an XML comment, which must not contain `--` or end with `-`."""
     if "-" in text:
         text = text.replace("--", "- -").replace("--", "- -")
         text = f"{text} " if text.endswith("-") else text
@@ -54,11 +54,11 @@ def _spelt_in_string(match: re.Match[str]) -> str:
     return _SPELT[match[0]]
 
 
-# What XML 1.0 has no place for, in whatever spelling.
+# Characters that XML 1.0 allows in no spelling.
 FORBIDDEN: Final = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 _LARGE: Final = 1e300
-_TINY: Final = 1e-9  # what is lost in converting; the checks call such a number whole, too
+_TINY: Final = 1e-9  # the rounding error of a conversion; the checks call such a number whole, too
 _SPECIAL: Final = re.compile(r'[&<>"\\\r]').search
 _IN_STRING: Final = re.compile(r'\\["\'\\nt]|[&<>"]|\r\n?')
 _SPELT: Final = {

@@ -1,7 +1,7 @@
-"""What other XML tools refuse, though the engine reads it: lxml's word, and what to write instead.
+"""What other XML tools refuse, though the engine reads it: lxml's message, and what to write instead.
 
-One invariant: lxml is given bytes and no leave: no network, no files, no entities, no huge documents.  It is imported
-only when there is XML to judge.
+One invariant: lxml gets bytes and may use no network, no files, no entities and no huge documents.  It is imported only
+if there is XML to check.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from btq_lang.util.text import LineIndex, Position, Span
 
 
 def not_well_formed(text: str, with_prefixes: bool = False) -> tuple[Diagnostic, ...] | None:
-    """A warning where lxml refuses a text, at the place where it stops; None where it reads it.
+    """A warning at the place where lxml refuses a text; None if it reads it.
 
-    Nothing is said where it gave up by limits of its own, which XML does not have.
+    Empty if lxml only reached limits of its own, which XML does not have.
 
     Args:
-        with_prefixes: what stands before a colon in a name is judged, too, which takes three times as long.
+        with_prefixes: check prefixes of names too, which takes three times as long.
     """
     from lxml import etree
 
@@ -43,7 +43,7 @@ def not_well_formed(text: str, with_prefixes: bool = False) -> tuple[Diagnostic,
 
 
 class _Nobody:
-    """Whom lxml tells of nothing that it reads, so that it builds nothing; such a parser looks at no prefixes."""
+    """A target that ignores what lxml reads, so that no tree is built; such a parser does not check prefixes."""
 
     def close(self) -> None:
         """The end of the document."""
@@ -59,9 +59,9 @@ def _refused(text: str, message: str, line: int, column: int) -> Diagnostic:
 
 
 _POSITION: Final = re.compile(r", line \d+, column \d+.*\Z", re.DOTALL)
-_LIMITS: Final = (1, 114)  # XML_ERR_INTERNAL_ERROR, with which older versions of libxml2 say XML_ERR_RESOURCE_LIMIT
+_LIMITS: Final = (1, 114)  # XML_ERR_INTERNAL_ERROR, which older versions of libxml2 report for XML_ERR_RESOURCE_LIMIT
 
-# What libxml2 says, and what to do about it.
+# Messages of libxml2, and what to do about each.
 _MENDING: Final = (
     ("Unescaped '<'", "write `<` in a value as `&lt;`"),
     ("EntityRef", "write `&` as `&amp;`"),

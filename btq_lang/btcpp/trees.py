@@ -1,7 +1,7 @@
 """Trees as XML: one element a node, in order (docs/language.md).
 
-One invariant: what was changed so that the engine takes it is told as a repair, and with `verbatim` nothing is.  It
-does not know what stands around the trees, nor what a requirement asks of the engine.
+One invariant: each change that makes the engine accept the file is recorded as a repair; with `verbatim`, nothing is
+changed.  It knows neither what is around the trees nor requirements.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ class Trees:
         self.elements: Final[dict[int, Element]] = {}
         self._source: Final = source
         self._tags: Final[dict[str, tuple[str, NodeKind | None]]] = {}
-        self._placeholders: Final[dict[str, tuple[str, str]]] = {}  # what a name says and becomes, by its spelling
+        self._placeholders: Final[dict[str, tuple[str, str]]] = {}  # the text and the ID of a name, by spelling
         self._said_elsewhere: Final = {} if source.verbatim else said_elsewhere(source)
-        self._names: set[str] = set()  # of the SubTrees of the tree that is being made
+        self._names: set[str] = set()  # of the SubTrees in the current tree
 
     def element(self, entry: Entry, tree: Tree) -> Element:
-        """A tree with all that is in it."""
+        """The element of a tree with all that is in it."""
         source = self._source
         attributes = []
         if tree.name is not None:
@@ -51,7 +51,7 @@ class Trees:
                 source.repair(entry, tree.name, message)
         attributes += attributes_of(source, entry, tree.attributes)
         if tree.name is None and not source.verbatim and not any(each.name == "ID" for each in attributes):
-            attributes.insert(0, Attribute("ID", "BehaviorTree_0"))  # as the engine calls it, where it stands alone
+            attributes.insert(0, Attribute("ID", "BehaviorTree_0"))  # the name that the engine gives a tree without one
         top = Element("BehaviorTree", only_first(attributes))
         self._describe(entry, tree, top)
         self._names = set()
@@ -61,7 +61,7 @@ class Trees:
         return top
 
     def _fill(self, entry: Entry, part: Node | Tree, element: Element) -> Iterator[tuple[Node, Element]]:
-        """Put into an element what stands in the block of a part; what comes out has a block of its own."""
+        """Fill an element with the nodes in the block of a part; yield those that have a block of their own."""
         source = self._source
         comments = source.comments
         contents = element.children
@@ -200,7 +200,7 @@ class Trees:
         return attributes
 
     def _constant(self, entry: Entry, node: Node, tree: str, attribute: Attribute) -> Attribute:
-        """What a SubTree says for a port of its tree, spelt so that every version of the engine takes it."""
+        """The value of a SubTree's port, spelt so that every version of the engine accepts it."""
         if not is_number(attribute.raw) or not is_port_name(attribute.name):
             return attribute
         source = self._source
@@ -212,7 +212,7 @@ class Trees:
         return Attribute(attribute.name, raw)
 
     def _with_unique_name(self, entry: Entry, name: Word, attributes: list[Attribute]) -> list[Attribute]:
-        """The engine refuses a second SubTree of one name in a tree, and one whose name is empty."""
+        """Give a SubTree a name that is unique in its tree and not empty, as the engine demands."""
         text = name.text
         if text and text not in self._names:
             self._names.add(text)
@@ -232,7 +232,7 @@ class Trees:
         return [Attribute("name", escape(unique)) if each.name == "name" else each for each in attributes]
 
     def _describe(self, entry: Entry, part: Node | Tree, element: Element) -> None:
-        """Put what the clauses of a part say into the element's `_description`."""
+        """Put the clauses of a part into the element's `_description`."""
         if self._source.verbatim:
             return
         attributes = element.attributes

@@ -1,7 +1,7 @@
 """Models of nodes that are used and nowhere declared: Groot opens no tree with a node that it does not know.
 
-One invariant: such a model says what the uses suggest and no more, so it can be told from one that somebody wrote; the
-files of a mission suggest the same of a node, and nothing of one that a file which they are included by declares.
+One invariant: such a model says what the uses suggest and no more, so it can be told from one that a user wrote; it is
+the same in all files of a mission, and omitted if a file that includes this one declares the node.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def undeclared(workspace: Workspace, path: str) -> dict[str, CustomNode]:
-    """The nodes that a file uses and that nobody declares: neither it, nor what it includes, nor what includes it."""
+    """The nodes that a file uses and that neither it, nor what it includes, nor what includes it declares."""
     scope = workspace.scope(path)
     used = custom_nodes_of(workspace.files[path])
     missing = [name for name in used if scope.find(Kind.MODEL, name) is None]
@@ -39,7 +39,7 @@ def suggested_model(name: str, node: CustomNode) -> Element:
 
 
 def made_models(workspace: Workspace, path: str) -> frozenset[str]:
-    """The nodes of an XML file whose models are such as a build adds by itself."""
+    """The nodes of an XML file whose models look like those that a build adds."""
     known = custom_nodes(workspace, path)
     return frozenset(
         name for name, model in _models(workspace.files[path]) if name in known and _may_be_made(model, known[name])
@@ -55,7 +55,7 @@ def _models(file: File) -> Iterator[tuple[str, Model]]:
 
 
 def _may_be_made(model: Model, node: CustomNode) -> bool:
-    """Whether a model says no more than a node's uses suggest; files that are not here may use more of its ports."""
+    """Whether a model says no more than a node's uses suggest; unseen files may use more of its ports."""
     names = {port.name.text for port in model.ports if port.name is not None}
     used = {port.name for port in node.ports}
     says_more = any(port.type or port.default or port.attributes or port.text for port in model.ports)

@@ -1,6 +1,6 @@
-"""What version 3 of the engine said in other words, said as version 4 does.
+"""Files for version 3 of the engine, translated to version 4.
 
-One invariant: every change is told.  The engine's own converter (convert_v3_to_v4.py) is not followed where it is
+One invariant: every change is reported.  The engine's own converter (convert_v3_to_v4.py) is not followed where it is
 wrong: it puts braces round the `name` of a SubTree, forgets the explicit form of SequenceStar, and does not know the
 ports of Parallel.
 
@@ -21,10 +21,10 @@ from btq_lang.util.text import Span
 
 
 class Change(Record):
-    """Something that is said otherwise than in the XML.
+    """A difference from the XML.
 
     Attributes:
-        span: where it stands in the XML.
+        span: in the XML.
     """
 
     span: Span
@@ -32,7 +32,7 @@ class Change(Record):
 
 
 def is_version_3(root: Element) -> bool:
-    """Whether a file is meant for version 3: it does not say that it is for version 4, and says nothing new."""
+    """Whether a file is meant for version 3: it does not declare version 4, and uses nothing new."""
     format_ = root.get("BTCPP_format")
     if format_ is not None:
         return format_.strip() == "3"
@@ -40,7 +40,7 @@ def is_version_3(root: Element) -> bool:
 
 
 def translated(root: Element, changes: list[Change]) -> None:
-    """Say it as version 4 does, in place."""
+    """Translate it to version 4, in place."""
     span = Span(root.start + 1, root.end - 1)
     kept = [each for each in root.attributes if each.name != "BTCPP_format"]
     if len(kept) < len(root.attributes):
@@ -54,7 +54,7 @@ def translated(root: Element, changes: list[Change]) -> None:
 
 
 class _Translator:
-    """An element on its way."""
+    """Translates one element."""
 
     def __init__(self, element: Element, changes: list[Change]) -> None:
         self.element: Final = element
@@ -94,7 +94,9 @@ class _Translator:
             element.tag = new
 
     def subtree(self, is_plus: bool) -> None:
-        """A SubTree maps keys to keys, a SubTreePlus keys to values as SubTree does now."""
+        """Translate a SubTree, which maps keys to keys, or a SubTreePlus, which maps keys to values as SubTree does
+        now.
+        """
         element = self.element
         if is_plus:
             self.tell("SubTreePlus is now SubTree")
@@ -122,7 +124,7 @@ class _Translator:
         element.attributes = tuple(found)
 
     def subtree_model(self) -> None:
-        """Version 4 asks for every port of a SubTree's model; these two are no ports any more."""
+        """Remove two ports from the model of a SubTree: version 4 would require them at each use."""
         element = self.element
         for child in list(element.elements):
             if child.get("name") in ("__shared_blackboard", "__autoremap"):
@@ -139,7 +141,7 @@ class _Translator:
         return Attribute(attribute.name if name is None else name, attribute.raw if raw is None else raw, place)
 
     def tell(self, message: str, attribute: Attribute | None = None) -> None:
-        """Report a change: of an attribute, or of the element's tag."""
+        """Report a change of an attribute, or of the element's tag."""
         if attribute is None:
             start = self.element.start + 1
             self.changes.append(Change(Span(start, start + len(self.element.tag)), message))
@@ -149,7 +151,7 @@ class _Translator:
 
 
 def _is_new(element: Element) -> bool:
-    """Whether only version 4 understands an element: its node, or one of its attributes."""
+    """Whether only version 4 understands an element: its tag, or one of its attributes."""
     if element.tag in _NEW_NODES:
         return True
     return any(attribute.name in _NEW_ATTRIBUTES for attribute in element.attributes)
@@ -168,7 +170,7 @@ def _is_true(said: str) -> bool:
     return said.strip().lower() in ("true", "1")
 
 
-# Nodes of version 3 that version 4 has no word for.
+# Nodes of version 3 that version 4 does not have.
 _GONE: Final = frozenset(
     ("ManualSelector", "BlackboardCheckInt", "BlackboardCheckDouble", "BlackboardCheckString", "BlackboardCheckBool")
 )
@@ -180,7 +182,7 @@ _OLD_NODES: Final = frozenset(
         *("AlwaysFailure", "SetBlackboard", "SubTree"),
     )
 )
-# The tags of what may have to be said otherwise, itself or by its ID.
+# The tags of elements that may have to be translated because of their tag or their ID.
 _MAY_BE_OLD: Final = frozenset((*KNOWN_WORDS, *(tag for tag, _ in OLD_PORTS), *CATEGORIES))
 _NEW_NODES: Final = frozenset(BUILTINS) - _OLD_NODES
 _NEW_ATTRIBUTES: Final = frozenset(

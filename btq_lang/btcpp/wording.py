@@ -1,8 +1,8 @@
-"""How what XML says is spelt in a .btq file: names, values, node kinds and comments.
+"""How names, values, node kinds and comments of XML are spelt in a .btq file.
 
-One invariant: what is spelt here reads as what it was made of, and a value written in XML with a line end or a tab as
-it stands keeps it, while one written as a reference (`&#10;`) becomes an escape (`\\n`): so the way back is the same.
-It knows words, and neither elements nor lines.
+One invariant: the spelling reads as what it was made of: a literal line end or tab in a value of the XML stays literal,
+while one written as a reference (`&#10;`) becomes an escape (`\\n`), so the way back gives the same XML. It knows
+neither elements nor lines.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def value(raw: str) -> str:
     """A Value: blackboard entries and numbers bare, everything else in quotes.
 
     Args:
-        raw: as it stands between the quotes of the XML.
+        raw: the text between the quotes of the XML.
     """
     match = _SIMPLE(raw)
     if match is not None:
@@ -38,25 +38,25 @@ def value(raw: str) -> str:
 
 @lru_cache(maxsize=4096)
 def pair(key: str, raw: str) -> str:
-    """A Pair, from an attribute; most of a file's are there more than once."""
+    """A Pair, from an attribute; cached, for most of a file's occur more than once."""
     return f"{name(key)} = {value(raw)}"
 
 
 def string(raw: str) -> str:
-    """A STRING, from what stands between the quotes of the XML."""
+    """A STRING, from the text between the quotes of the XML."""
     if _PLAIN(raw):
         return f'"{raw}"'
     return _quoted("".join(_written(part) for part in _PARTS(raw)))
 
 
 def string_of(text: str) -> str:
-    """A STRING that says a text, its line ends and tabs as they are."""
+    """A STRING for a text, its line ends and tabs kept as they are."""
     return _quoted(_LINE_END.sub("\n", text).replace("\\", "\\\\"))
 
 
 @lru_cache(maxsize=4096)
 def name(raw: str) -> str:
-    """A Name that may stand for a label, an ID or a key."""
+    """A Name for a label, an ID or a key."""
     text = unescape(raw) if "&" in raw else raw
     return text if is_name(text) and text not in NODE_CLAUSES else string(raw)
 
@@ -66,9 +66,9 @@ def kind(tag: str, category: bool = False, has_code: bool = True, symbols: bool 
     """The kind of a node: a symbol where it has one, and in quotes where the bare word would mean something else.
 
     Args:
-        category: the word stands behind `Action`, `Control` …, where symbols do not.
+        category: the word follows `Action`, `Control` …, where symbols are not allowed.
         has_code: the node has a script: without one, `Script` is a placeholder.
-        symbols: whether they are wanted.
+        symbols: whether to write symbols.
     """
     builtin = BUILTINS.get(tag)
     if builtin is not None and builtin.symbols and symbols and not category:
@@ -84,7 +84,7 @@ def type_(raw: str) -> str:
 
 
 def comment(text: str) -> str:
-    """A comment, from what stands between `<!--` and `-->` (docs/language.md)."""
+    """A comment, from the text between `<!--` and `-->` (docs/language.md)."""
     if "\n" not in text and "*/" in text:
         return f"#{text.rstrip(_BLANKS)}"
     if "\n" not in text:
@@ -96,7 +96,7 @@ def comment(text: str) -> str:
 
 
 def is_kept(text: str) -> bool:
-    """Whether `comment` keeps all of a comment: `*/` and blanks at its end do not go together."""
+    """Whether `comment` keeps all of a comment: it cannot keep both `*/` and trailing blanks."""
     written = comment(text)
     if written.startswith("/*"):
         return written[2:-2] == text

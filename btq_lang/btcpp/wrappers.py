@@ -1,8 +1,8 @@
-"""Elements around the element of a node, and how they are taken out again.
+"""Puts elements around the element of a node, and removes them.
 
-One invariant: `unwrapped` is the inverse of `wrapped`, and knows what it needs from the elements alone: all that is put
-around a node carries the attribute `_btq`, with the requirement that asks for it, and the outermost element says which
-attributes it took from the node and where they stood.  It does not know why something is put around a node.
+One invariant: `unwrapped` is the inverse of `wrapped`, and knows what it needs from the elements alone: every added
+element has the attribute `_btq`, with the requirement that it enforces, and the outermost one records which attributes
+it took from the node and their positions.  It does not know why an element is added.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ MOVED: Final = "_btq_moved"
 
 
 def wrapped(element: Element, wrappers: Sequence[Wrapper]) -> Element:
-    """The outermost of the elements around a node's, which loses its first conditions where it may be skipped.
+    """The outermost of the elements around a node's, which takes over the conditions by which the node may be skipped.
 
     Args:
         wrappers: at least one, in the order of the definitions of the requirements.
@@ -36,11 +36,11 @@ def wrapped(element: Element, wrappers: Sequence[Wrapper]) -> Element:
 
 
 def unwrapped(element: Element, holding: Container[Element]) -> list[Content] | None:
-    """What stands in a wrapper: the node as it was, with the comments around it, and no node for a Script or a
-    ScriptCondition that was put there; None: somebody has put another node there.
+    """The contents of a wrapper: the node as it was, with the comments around it, and nothing for an added Script or
+    ScriptCondition; None if a user has added another node.
 
     Args:
-        holding: those in the document that hold a node.
+        holding: the elements of the document that hold a node.
     """
     nodes = [child for child in element.elements if child in holding]
     if len(nodes) > 1:
@@ -51,7 +51,7 @@ def unwrapped(element: Element, holding: Container[Element]) -> list[Content] | 
 
 
 def holding_nodes(root: Element) -> set[Element]:
-    """The elements that are nodes themselves, or stand around one."""
+    """The elements that are nodes themselves, or around one."""
     outside_in = [root]
     for element in outside_in:
         outside_in += element.elements
@@ -63,7 +63,9 @@ def holding_nodes(root: Element) -> set[Element]:
 
 
 def _moved(element: Element) -> list[tuple[int, Attribute]]:
-    """The conditions that a node loses, with their places: where it may be skipped, what is around it must be."""
+    """The conditions that a node loses, with their positions: the wrapper of a node that may be skipped must be skipped
+    instead.
+    """
     names = [attribute.name for attribute in element.attributes]
     if not may_be_skipped(names):
         return []
@@ -105,7 +107,7 @@ def _first_values(first: FirstValues, mark: Attribute) -> Element:
         )
         for entry, value in first.values
     ]
-    # All of them are asked, whoever fails.
+    # All of them are evaluated, whichever fails.
     inside = Element("ForceSuccess", [mark], [Element("ParallelAll", [mark], [*asked])])
     return Element("RunOnce", [Attribute("name", "btq_first"), mark], [inside])
 
