@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final
-from weakref import WeakKeyDictionary
 
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.literals import check_literal
@@ -17,7 +16,9 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, xml_tag
 from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.syntax.tree import Node, Tree, Word
 from btq_lang.util.record import Record
+from btq_lang.workspace import inputs
 from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -71,16 +72,18 @@ class CustomNode:
 
 def custom_nodes(workspace: Workspace, path: str) -> Mapping[str, CustomNode]:
     """The custom nodes in all files that are linked by includes with a file, by ID."""
-    missions = _MISSIONS.setdefault(workspace, {})
-    mission = workspace.missions[path]
-    if mission not in missions:
-        found = missions[mission] = {}
-        for other in sorted(workspace.linked(path)):
-            for node in _nodes(workspace.files[other]):
-                name, said = _named(node)
-                if name and name not in BUILTINS:
-                    found.setdefault(name, CustomNode()).add(node, said)
-    return missions[mission]
+    return workspace.store.ask(_custom_nodes, workspace.missions[path])
+
+
+def _custom_nodes(store: Store[Workspace], mission: str) -> dict[str, CustomNode]:
+    workspace = inputs.everything(store, mission)
+    found: dict[str, CustomNode] = {}
+    for path in sorted(workspace.linked(mission)):
+        for node in _nodes(workspace.files[path]):
+            name, said = _named(node)
+            if name and name not in BUILTINS:
+                found.setdefault(name, CustomNode()).add(node, said)
+    return found
 
 
 def custom_node(workspace: Workspace, path: str, name: str) -> CustomNode:
@@ -145,6 +148,4 @@ def _takes(type_: str, value: Word) -> bool:
     return check_literal(type_, value.text) is None
 
 
-# What was found once, for as long as anybody has the workspace.
-_MISSIONS: Final[WeakKeyDictionary[Workspace, dict[str, dict[str, CustomNode]]]] = WeakKeyDictionary()
 _TYPES: Final = ("bool", "int", "double", "string")  # the narrowest first
