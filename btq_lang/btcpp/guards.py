@@ -169,8 +169,7 @@ class _Draft:
 
     def cell(self, what: str, first: str, with_node: SourceNode | None = None) -> str:
         """A variable that outlives the node: the tree's, if the node `with_node` above it in the tree initializes it;
-        else the mission's.
-        """
+        else the mission's."""
         if with_node is not None and _is_above(with_node, self.node):
             return f"_{self.name}_{what}"
         tree = f"_{legal(self.node.tree or '')}" if self._shared else ""

@@ -505,8 +505,7 @@ def _is_main_tree(attribute: Attribute) -> bool:
 
 def _may_stand_behind(element: Element) -> bool:
     """Whether a comment at the end of an element's line keeps its place: after the whole element, or first in an
-    otherwise empty block.
-    """
+    otherwise empty block."""
     return not element.children or any(isinstance(child, Element) for child in element.children)
 
 

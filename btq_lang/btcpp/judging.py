@@ -64,8 +64,7 @@ class Judge:
 
     def why_not(self, applied: Applied, claim: Claim) -> str | None:
         """Why the engine does not enforce a clause that it should; None if it does, or if the mission's root is
-        unknown, which is reported of the mission.
-        """
+        unknown, which is reported of the mission."""
         if applied.requirement.method in ("review", "test", "analysis"):
             return f"verified by {applied.requirement.method}"
         try:

@@ -39,8 +39,7 @@ class Output(Record):
 
 class Places:
     """Where the XML of each file is written: beside it, or below a folder, at the path of the file below the folder
-    common to all.
-    """
+    common to all."""
 
     def __init__(self, folder: str | None = None, sources: Sequence[str] = ()) -> None:
         """folder: absolute; None: beside the files; sources: all files that are built."""

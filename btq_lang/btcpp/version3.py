@@ -95,8 +95,7 @@ class _Translator:
 
     def subtree(self, is_plus: bool) -> None:
         """Translate a SubTree, which maps keys to keys, or a SubTreePlus, which maps keys to values as SubTree does
-        now.
-        """
+        now."""
         element = self.element
         if is_plus:
             self.tell("SubTreePlus is now SubTree")

@@ -64,8 +64,7 @@ def holding_nodes(root: Element) -> set[Element]:
 
 def _moved(element: Element) -> list[tuple[int, Attribute]]:
     """The conditions that a node loses, with their positions: the wrapper of a node that may be skipped must be skipped
-    instead.
-    """
+    instead."""
     names = [attribute.name for attribute in element.attributes]
     if not may_be_skipped(names):
         return []

@@ -1,20 +1,20 @@
-"""What an editor asks of a workspace: `f(workspace, path, offset, …)` to frozen data, one module a feature.
+"""Editor features: functions of `(workspace, path, offset, …)` that return frozen data, one module a feature.
 
-One invariant: a feature is a pure function that answers for every text and every offset, and "nothing" is None or ().
-Offsets are Python indices; no editor, no protocol and no line is known here.
+One invariant: a feature is a pure function that works for every text and every offset; without a result it returns None
+or (). Offsets are Python indices; nothing here knows editors, the protocol or lines.
 
-What the server asks is imported when it is asked for the first time: an editor waits for a server to start, and all
-features with the checks they show take a third of that time.
+Features that the server calls are imported at their first call: an editor waits for the server to start, and importing
+all features and the checks that they use takes a third of that time.
 
-    place.py, meaning.py   where somebody types, and what a word there means: the features below ask these two
+    place.py, meaning.py   where the cursor is, and what the word there means: the features below use these two
     completion.py          with completion_list, proposals, clause_words, measures, snippets, ports, documentation
     hover.py, signature.py   with describe and held
     navigation.py, relations.py, calls.py, node_path.py   from a name to its definition, its uses and its callers
     rename.py, moves.py    edits in every file that names a thing
     actions.py             with refactor, block, short_form and unused
-    on_type.py, structure.py, outline.py, hints.py   while one types, folding, outline, inlay hints and lenses
+    on_type.py, structure.py, outline.py, hints.py   edits while typing, folding, outline, inlay hints and lenses
     semantic_tokens.py     with colours, stretches, looks and legend
-    readiness.py           what is made before it is asked for
+    readiness.py           computes results before they are requested
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ def __getattr__(name: str) -> object:
     if home is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module = import_module(f"{__name__}.{home}")
-    # All of them: of a module with the name of a function, Python has put itself where that is looked for.
+    # All of them: importing a module that has the name of its function binds that name to the module.
     globals().update({each: getattr(module, _CALLED.get(each, each)) for each in _HOMES[home]})
     found: object = globals()[name]
     return found

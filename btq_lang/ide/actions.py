@@ -23,14 +23,14 @@ QUICK_FIX, REFACTOR, FIX_ALL, ORGANIZE = "quickfix", "refactor", "source.fixAll.
 
 
 class Action(Record):
-    """Something that can be done.
+    """A code action.
 
     Attributes:
-        kind: as LSP has them, dots between: quickfix, refactor.extract, refactor.inline, refactor.rewrite,
-            source.fixAll.btq, source.organizeImports.btq.
-        edits: what it changes, by file.
-        diagnostic: what it mends.
-        preferred: it is the one obvious repair; an editor may apply it without asking which.
+        kind: of LSP: quickfix, refactor.extract, refactor.inline, refactor.rewrite, source.fixAll.btq,
+            source.organizeImports.btq.
+        edits: by file.
+        diagnostic: that it fixes.
+        preferred: whether it is the one obvious fix, which an editor may apply without offering a choice.
     """
 
     title: str
@@ -43,11 +43,11 @@ class Action(Record):
 def code_actions(
     workspace: Workspace, path: str, span: Span, only: Sequence[str] = (), found: Sequence[Diagnostic] | None = None
 ) -> tuple[Action, ...]:
-    """What can be done at a stretch of a file.
+    """The code actions for a span of a file.
 
     Args:
-        only: kinds that are wanted, with all below them; none: everything.
-        found: the diagnostics of the file, if somebody has them already.
+        only: the kinds to return, with all their subkinds; none: every kind.
+        found: the diagnostics of the file, if they are known already.
     """
 
     def wanted(kind: str) -> bool:
@@ -90,20 +90,21 @@ def _fixes(workspace: Workspace, path: str, diagnostic: Diagnostic) -> Iterator[
 
 
 def _obvious(diagnostic: Diagnostic, text: str) -> Fix | None:
-    """The one repair that needs no choice: a safe one, or the only near name of a misspelt word, offered first."""
+    """The one fix that needs no choice: a safe one, or the only similar name for a misspelt word, if it is offered
+    first."""
     safe = [fix for fix in diagnostic.fixes if fix.safe]
     respelt = [fix for fix in diagnostic.fixes if _respells(fix, diagnostic, text)]
     return next(iter(safe), respelt[0] if len(respelt) == 1 and respelt[0] is diagnostic.fixes[0] else None)
 
 
 def _respells(fix: Fix, diagnostic: Diagnostic, text: str) -> bool:
-    """Whether a fix replaces a word by a near name, or by the one that the message asks about."""
+    """Whether a fix replaces a word by a similar name, or by the one that the message suggests."""
     if len(fix.changes) != 1 or fix.changes[0].place.path is not None:
         return False
     (start, end), name = fix.changes[0].place.span, fix.changes[0].text.strip(_QUOTES)
     word = text[start:end].strip(_QUOTES)
     if not word or not (name[:1].isalpha() or name[:1] == "_"):
-        return False  # a number that another one replaces is not misspelt
+        return False  # a number that is replaced by another is not misspelt
     return bool(near(word, (name,))) or diagnostic.message.endswith(did_you_mean((name,)))
 
 
@@ -118,7 +119,7 @@ def _removal(workspace: Workspace, path: str, diagnostic: Diagnostic) -> Iterato
 
 
 def edits_of(fix: Fix, path: str) -> dict[str, tuple[Edit, ...]]:
-    """What a fix of a diagnostic changes, by file."""
+    """The edits of a fix, by file."""
     edits: dict[str, tuple[Edit, ...]] = {}
     for change in fix.changes:
         target = change.place.path or path
@@ -127,7 +128,7 @@ def edits_of(fix: Fix, path: str) -> dict[str, tuple[Edit, ...]]:
 
 
 def _silencing(workspace: Workspace, path: str, found: Sequence[Diagnostic]) -> Iterator[Action]:
-    """A comment at the end of the line that silences a rule there, where one can be written and is heeded."""
+    """A comment at the end of the line that silences a rule there, if it can be written and has an effect."""
     file = workspace.files[path]
     for diagnostic in found:
         line = file.lines.position(diagnostic.span.start).line
@@ -143,14 +144,14 @@ def _silencing(workspace: Workspace, path: str, found: Sequence[Diagnostic]) -> 
 
 
 def _runs_on(text: str, kind: int) -> bool:
-    """Whether nothing can be written behind a token on its line: a comment, or a text that goes on or is not closed."""
+    """Whether nothing can follow a token on its line: it is a comment, or a text that goes on or is not closed."""
     if kind == STRING and string_end(text, 1, text[0]) < 0:
         return True
     return kind == COMMENT or ("\n" in text.strip() or "\r" in text.strip())
 
 
 def _fix_all(workspace: Workspace, path: str, diagnostics: Sequence[Diagnostic]) -> Iterator[Action]:
-    """All safe fixes at once; those that touch a place that another one changes come in further rounds."""
+    """All safe fixes at once; fixes that overlap with others come in further rounds."""
     before = workspace.files[path].text
     total = 0
     while True:

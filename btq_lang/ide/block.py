@@ -1,6 +1,6 @@
-"""Blocks of lines: a node with all that belongs to it as text, moved to another depth or another place.
+"""Blocks of lines: the text of a node and all below it, at another depth or another place.
 
-One invariant: what stands in a string or a comment over several lines keeps its blanks, for there they are text.
+One invariant: a multi-line string or comment keeps its blanks, which belong to its text.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ class Block(Record):
 
     Attributes:
         span: from its first word to the end of its last line, without the line end.
-        blanks: what its first line begins with.
-        begins_its_line: no comment is in front of its first word.
+        blanks: the indentation of its first line.
+        begins_its_line: whether no comment precedes its first word.
     """
 
     span: Span
@@ -32,7 +32,7 @@ class Block(Record):
 
 
 class Standing(Record):
-    """A node and where it stands."""
+    """A node and its place."""
 
     node: Node
     parent: Node | None
@@ -65,7 +65,7 @@ def block_of(file: File, entry: Entry, node: Node) -> Block:
 
 
 def moved(file: File, block: Block, blanks: str) -> str:
-    """The text of a block with its first line at other blanks; its first line's own are left out."""
+    """The text of a block, reindented so that its first line has other blanks; the first line's own are left out."""
     text = file.text[block.span.start : block.span.end]
     pieces: list[str] = []
     at = 0
@@ -80,7 +80,7 @@ def moved(file: File, block: Block, blanks: str) -> str:
 
 
 def shifts(file: File, block: Block, blanks: str) -> Iterator[Edit]:
-    """The edits that move a block where it stands to other blanks, its first line too."""
+    """The edits that reindent a block in place, its first line too."""
     text = file.text
     first = block.span.start - len(block.blanks)
     for start in (first, *_line_starts(file, block.span)):
@@ -89,19 +89,19 @@ def shifts(file: File, block: Block, blanks: str) -> Iterator[Edit]:
 
 
 def blanks_before(text: str, start: int) -> str:
-    """What the line of an offset begins with."""
+    """The indentation of the line with an offset."""
     line = text[_line_start(text, start) : start]
     return line[: len(line) - len(line.lstrip(" \t"))]
 
 
 def deeper(text: str, blanks: str) -> str:
-    """One level below a line that begins with these; if with none, in the characters of the first line with some."""
+    """The indentation one level below this one; if this one is empty, in the characters of the first indented line."""
     indented = _INDENTED.search(text) if not blanks else None
     return blanks + ("\t" if "\t" in (indented[1] if indented else blanks) else STEP)
 
 
 def _line_starts(file: File, span: Span) -> list[int]:
-    """The starts of the lines in a stretch, but of those that begin inside a text."""
+    """The starts of the lines in a span, except those that begin inside a text."""
     texts = [
         token
         for token in file.parsed.tokens

@@ -13,7 +13,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class TreeItem(Record):
-    """A tree; `name_span` is where to stand."""
+    """A tree; `name_span` is the span to select."""
 
     name: str
     path: str
@@ -30,7 +30,7 @@ class Call(Record):
 
 
 def prepare_calls(workspace: Workspace, path: str, offset: int) -> TreeItem | None:
-    """The tree that is named at a place, or in which the place is a node."""
+    """The tree named at a place, or the tree around the node there."""
     found = at(workspace, path, offset)
     if found is not None:
         wanted = subject(workspace, found)
@@ -56,7 +56,7 @@ def callers(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
 
 
 def called(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
-    """The trees that a tree runs, in the order in which they are named first."""
+    """The trees that a tree runs, in the order of their first call."""
     file = workspace.files.get(tree.path)
     found: dict[str, tuple[Definition, list[Span]]] = {}
     for entry in file.parsed.entries if file is not None else ():
@@ -73,7 +73,7 @@ def called(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
 
 
 def _tree_of(workspace: Workspace, found: Found) -> Definition | None:
-    """The tree in which a mention stands."""
+    """The tree in which a reference is."""
     for place in workspace.defined_in(found.path):
         if place.symbol.kind is Kind.TREE and place.entry is found.entry:
             return place

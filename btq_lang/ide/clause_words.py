@@ -14,16 +14,16 @@ from btq_lang.util.record import Record, replace
 
 
 class Expected(Record):
-    """What may stand at a place.
+    """What may follow at a place.
 
     Attributes:
-        words: words of the grammar, or several of them that go together.
-        condition: a condition begins: contexts, signals, `not` …
-        operand: what is compared or added: parameters, signals, `max()` …
-        value: a value of a bound: parameters and signals.
+        words: words and phrases of the grammar.
+        condition: the beginning of a condition: contexts, signals, `not` …
+        operand: an operand of a comparison or sum: parameters, signals, `max()` …
+        value: the value of a bound: parameters and signals.
         signal: the name of a signal.
         node: a path to a node.
-        clause: another clause may begin.
+        clause: another clause.
     """
 
     words: tuple[str, ...] = ()
@@ -70,7 +70,7 @@ def expected(words: Sequence[Token]) -> Expected:
 
 
 def opens_condition(words: Sequence[Token]) -> bool:
-    """Whether a bracket behind these words is one of a condition: around a part of it, or behind a function."""
+    """Whether a bracket after these words belongs to a condition: around a part of it, or after a function."""
     if words and words[-1].kind == OPEN:
         return True
     if not any(word.text in _BEFORE_CONDITIONS for word in words):
@@ -80,7 +80,7 @@ def opens_condition(words: Sequence[Token]) -> bool:
 
 
 def is_count(words: Sequence[str]) -> bool:
-    """Whether a number at the end of these words says how often: `tries at most 3`, `runs at least 9`."""
+    """Whether a number at the end of these words is a count: `tries at most 3`, `runs at least 9`."""
     head = _begins_last(words, _CLAUSES)
     if head not in _COUNTED:
         return False
@@ -89,12 +89,12 @@ def is_count(words: Sequence[str]) -> bool:
 
 
 def is_window(words: Sequence[str]) -> bool:
-    """Whether a number at the end of these words says over what is judged: `over last 200 runs`, `over last 7 d`."""
+    """Whether a number at the end of these words is a window: `over last 200 runs`, `over last 7 d`."""
     return _begins_last(words, _CLAUSES) == "over"
 
 
 def _in_brackets(words: Sequence[Token], opened: int) -> Expected:
-    """What may follow in the brackets of a condition that were opened last: no clause, for they are still open."""
+    """What may follow in the innermost open brackets of a condition: no clause, for they are still open."""
     is_behind = opened < len(words) - 1
     if opened and _is_function(words[opened - 1]):
         return Expected(signal=not is_behind)
@@ -105,7 +105,7 @@ def _in_brackets(words: Sequence[Token], opened: int) -> Expected:
 
 
 def _at_bracket(words: Sequence[Token]) -> Expected:
-    """What may stand in a bracket behind these words of a condition, that of which it is a part."""
+    """What may follow in a bracket after these words of a condition."""
     end = len(words)
     while end and words[end - 1].kind == OPEN:
         end -= 1
@@ -123,7 +123,7 @@ def sorted_words(words: Sequence[str] | frozenset[str]) -> tuple[str, ...]:
 
 
 def _begins_last(words: Sequence[str], heads: Sequence[str]) -> str:
-    """Which of some words stands last."""
+    """The one of some words that occurs last."""
     return next((word for word in reversed(words) if word in heads), "")
 
 
@@ -174,7 +174,7 @@ _OPERANDS = {
     "condition": _CONDITION,
     "event": _EVENT,
 }
-# What a mission does once, from its start to its end.
+# The verbs of things that a mission does once, from its start to its end.
 _OF_MISSIONS = [verb.word for verb in VERBS.values() if verb.judged in ("at its end", "while it runs")]
 _AFTER = {
     **{verb.word: _OPERANDS[verb.operand] for verb in VERBS.values()},

@@ -1,7 +1,7 @@
-"""The semantic tokens of a file as an editor takes them, made of parts that are kept with its items.
+"""The semantic tokens of a file as an editor takes them, made of parts that are cached with its items.
 
-One invariant: `data` is the same whatever was kept.  An edit makes anew the parts that it touches; of the others
-nothing changes but the number of lines before them.
+One invariant: `data` does not depend on the cache.  An edit recomputes the parts that it touches; of the others, only
+the number of lines before them changes.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ T = TypeVar("T")
 
 
 class Part(Record):
-    """The tokens of a stretch.
+    """The encoded tokens of a stretch.
 
     Attributes:
-        size: how many integers they are, five a token.
-        first: the first one: how many lines of the stretch stand before its first token.
-        shown: the others as JSON has them, each behind its comma.
-        rest: how many lines the stretch has from its last token on, or all in all.
+        size: number of integers, five a token.
+        first: the first integer: how many lines of the stretch precede its first token.
+        shown: the other integers in JSON, each after its comma.
+        rest: number of lines from the last token on; without tokens, of all lines.
     """
 
     size: int
@@ -39,11 +39,11 @@ class Part(Record):
 
 
 class Kept:
-    """A part, and what it holds for.
+    """A cached part, and what it depends on.
 
     Attributes:
         items: those of the stretch.
-        names: what was asked of the rest of the workspace; `answers`: what that said; `world`: all that it could say.
+        names: looked up in the rest of the workspace; `answers`: the results; `world`: all that they could depend on.
     """
 
     __slots__ = ("answers", "encoding", "items", "names", "part", "world")
@@ -57,15 +57,15 @@ class Kept:
         self.part = part
 
     def holds(self, entries: Sequence[Entry], encoding: Encoding, known: Known) -> bool:
-        """Whether the part would be made again as it is."""
+        """Whether the part is still valid."""
         items = self.items
         if self.encoding != encoding or len(items) != len(entries):
             return False
         if len(items) > 1 and not all(map(is_, items, [entry.item for entry in entries])):
-            return False  # of one it is known, for these are the facts of the first
+            return False  # of an equal item, the facts may be known of the first only
         if self.world is not known.world:
             if self.world == known.world:
-                known.world = self.world  # so that those behind it need not be compared name by name
+                known.world = self.world  # so that later parts need not compare name by name
             elif self.answers != known.answers(self.names):
                 return False
             else:
@@ -81,19 +81,19 @@ class Colours(Record):
 
     @property
     def data(self) -> list[int]:
-        """Five integers a token."""
+        """The integers, five a token."""
         data: list[int] = json.loads(self.as_json)
         return data
 
     @property
     def as_json(self) -> str:
-        """The same, as JSON has a list of it."""
+        """`data` as a JSON list."""
         return _as_json(self, 0, len(self.parts))
 
 
 class Change(Record):
-    """An edit of `data`: from where, how many integers go, and what comes for them; what it counts is there before
-    any other edit is made."""
+    """An edit of `data`: its start, the number of integers to delete, and those to insert; offsets count before any
+    other edit."""
 
     start: int
     gone: int
@@ -116,15 +116,15 @@ def colours(workspace: Workspace, path: str, encoding: Encoding) -> Colours:
 
 
 def making(workspace: Workspace, path: str, encoding: Encoding) -> Iterator[None]:
-    """Make the parts of a file before they are asked for: of a large one that takes longer than anybody waits, so
-    whoever does it may do something else between two steps."""
+    """Compute the parts of a file in advance: for a large file that takes noticeable time, so the caller may do
+    something else between two steps."""
     for done, _ in enumerate(_parts(workspace, path, encoding), 1):
         if done % _A_STEP == 0:
             yield
 
 
 def _parts(workspace: Workspace, path: str, encoding: Encoding) -> Iterator[Part]:
-    """The parts of a file's stretches, made anew where what is kept does not hold."""
+    """The parts of a file's stretches; those that are no longer valid are recomputed."""
     file = workspace.files[path]
     known = known_of(workspace, path)
     facts = file.facts
@@ -154,8 +154,8 @@ def _made(whole: str, stretch: Stretch, known: Known, encoding: Encoding) -> Par
 
 
 def delta(before: Colours, after: Colours) -> list[Change]:
-    """What to replace in the data of `before` to have that of `after`, in the order of the text.  A part that is the
-    same object is no further looked at, however many have changed before and behind it."""
+    """The edits that turn the data of `before` into that of `after`, in the order of the text.  Parts that are the same
+    object are not compared further, however many changed around them."""
     places = {id(part): index for index, part in enumerate(before.parts)}
     size, other_size = len(before.parts), len(after.parts)
     changes: list[Change] = []
@@ -183,13 +183,13 @@ def delta(before: Colours, after: Colours) -> list[Change]:
 
 
 def _same(first: Colours, start: int, second: Colours, other_start: int) -> int:
-    """How many parts are the same from two of them on, with as many lines before them."""
+    """The number of parts that are the same from two of them on, with as many lines before them."""
     parts = _alike(first.parts[start:], second.parts[other_start:], is_not)
     return min(parts, _alike(first.firsts[start:], second.firsts[other_start:], ne))
 
 
 def difference(before: Sequence[int], after: Sequence[int]) -> Change | None:
-    """The one change that makes the second of the first, from token to token; None: they are the same."""
+    """The one change that turns the first into the second, in whole tokens; None if they are equal."""
     shorter = min(len(before), len(after))
     start = _alike(before, after, ne)
     if start == len(before) == len(after):
@@ -201,7 +201,7 @@ def difference(before: Sequence[int], after: Sequence[int]) -> Change | None:
 
 
 def _alike(first: Sequence[T], second: Sequence[T], differ: Callable[[T, T], bool]) -> int:
-    """How many are the same from the start on."""
+    """The length of the common prefix."""
     return next(compress(count(), map(differ, first, second)), min(len(first), len(second)))
 
 

@@ -1,7 +1,7 @@
-"""Completion: what may stand where somebody types, best first; its documentation is made when it is asked for.
+"""Completion: what may follow at the cursor, best first; documentation is computed on request.
 
-One invariant: what is proposed depends on the place alone, never on the letters typed so far: an editor filters them,
-each in its own way.  What the letters leave of it is for `completion_list` to say.
+One invariant: the proposals depend on the place alone, never on the letters typed so far, for each editor filters by
+these in its own way.  How they narrow the list is for `completion_list`.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class Completion(Record):
-    """What may stand at a place, best first.  span: what each proposal replaces, where it does not say it itself."""
+    """What may follow at a place, best first.  span: what a proposal replaces unless it has a span of its own."""
 
     span: Span
     proposals: tuple[Proposal, ...]
@@ -54,12 +54,12 @@ class Completion(Record):
 def complete(
     workspace: Workspace, path: str, offset: int, *, asked: bool = True, trigger: str = "", snippets: bool = True
 ) -> Completion:
-    """What may stand where an offset is.
+    """What may follow at an offset.
 
     Args:
-        asked: somebody asks for it; otherwise the editor does, because of what was typed.
-        trigger: the character that the editor asks because of.
-        snippets: the editor has places to fill in.
+        asked: whether the user requests it; otherwise the editor does, because of what was typed.
+        trigger: the character that made the editor request it.
+        snippets: whether the editor supports snippets.
     """
     place = place_at(workspace, path, offset)
     text = workspace.files[path].text
@@ -74,12 +74,12 @@ def complete(
 
 
 def _ends_something(place: Place, before: str, trigger: str) -> bool:
-    """Whether a typed character closes a string or belongs to a number, so that nothing begins with it."""
+    """Whether a typed character closes a string or belongs to a number, so that nothing begins after it."""
     return (trigger == '"' and place.inside != "string") or (trigger == "." and before[-2:-1].isdecimal())
 
 
 def _is_typed_here(workspace: Workspace, path: str, span: Span, one: Proposal) -> bool:
-    """Whether a name is known from nothing but the word that is being typed."""
+    """Whether a name occurs only in the word that is being typed."""
     name = one.label.strip("{}")
     if one.kind not in ("node", "instance", "tag", "key") or one.include or lookup(name) is not None:
         return False
@@ -91,7 +91,7 @@ def _is_typed_here(workspace: Workspace, path: str, span: Span, one: Proposal) -
 
 
 def _is_elsewhere(file: File, span: Span, name: str) -> bool:
-    """Whether a name is also mentioned outside a span.  Mostly the tokens tell: all words of a tree are many."""
+    """Whether a name also occurs outside a span.  Mostly the tokens suffice: a tree has many words."""
     if is_name(name):
         for found in re.finditer(rf"(?<!\w){re.escape(name)}(?!\w)", file.text):
             if span.start <= found.start() < span.end:
@@ -100,7 +100,7 @@ def _is_elsewhere(file: File, span: Span, name: str) -> bool:
             token = tokens[bisect_right(tokens, found.start(), key=lambda token: token.start) - 1]
             if token.kind == NAME and token.text == name:
                 return True
-            if token.kind not in (NAME, COMMENT):  # in quotes or braces it depends on what they hold
+            if token.kind not in (NAME, COMMENT):  # for quotes and braces, that depends on their contents
                 break
         else:
             return False
@@ -124,7 +124,7 @@ def _unique(found: Iterable[Proposal]) -> tuple[Proposal, ...]:
     return tuple({one.label: one for one in reversed(tuple(found))}.values())[::-1]
 
 
-# ---- inside comments, braces, strings, and behind numbers ----
+# ---- inside comments, braces, strings, and after numbers ----
 
 
 def _in_comment(place: Place, offset: int) -> Completion | None:
@@ -139,7 +139,7 @@ def _in_comment(place: Place, offset: int) -> Completion | None:
 
 
 def _in_braces(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
-    """`{` and what may follow: entries of the blackboard; `{@` those of the root's."""
+    """`{` and what may follow: entries of the blackboard; after `{@` those of the root's."""
     line = text[_line_start(text, offset) : offset]
     begun = re.search(r"\{(@?)([^{}\"'\s]*)$", line)
     if begun is None or place.inside == "comment":
@@ -176,12 +176,12 @@ def _in_string(workspace: Workspace, path: str, place: Place, text: str, offset:
 
 
 def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
-    """Behind a number: units; those that a port, a signal or a verb asks for first.  Behind a count none, and behind
-    the number of a window first what may be counted."""
+    """Units after a number; those that fit the port, signal or verb come first.  After a count none; after the number
+    of a window, what it may count comes first."""
     line = text[_line_start(text, offset) : offset]
     begun = re.search(rf"(?:^|[^\w.])\d+(?:\.\d+)?(?:[eE][+-]?\d+)?([ \t]*)({_BEGUN_UNIT}|)$", line)
     if begun is not None:
-        place = _before_unit(place_at(workspace, path, offset - len(begun[2])))  # `/` in a unit divides nothing
+        place = _before_unit(place_at(workspace, path, offset - len(begun[2])))  # `/` in a unit is not a division
     if begun is None or place.inside != "code" or not place.words or place.block in ("items", "none", "ports"):
         if begun is None or place.inside != "code" or not place.words:
             return None
@@ -199,7 +199,7 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
             else place.key or (before[-2] if len(before) > 1 else "")
         )
         unit = offer.port_unit(workspace, path, place.node, key)
-        wanted = Measured("s" if unit == "ms" else unit, is_certain=True)  # btq writes the milliseconds
+        wanted = Measured("s" if unit == "ms" else unit, is_certain=True)  # btq adds the milliseconds
         if begun[1] and wanted.unit is None:
             return None  # `num_attempts = 6 |`: the next attribute
     else:
@@ -214,7 +214,7 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
 
 
 def _before_unit(place: Place) -> Place:
-    """The place as it is while the unit of its last number is not there yet."""
+    """The place as it would be without the unit of its last number."""
     if not place.words or place.words[-1].kind != QUANTITY:
         return place
     whole = place.words[-1]
@@ -300,7 +300,7 @@ def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Itera
 
 
 def _others(found: Iterable[Proposal], place: Place) -> Iterator[Proposal]:
-    """What is not the quality or the context that the line defines."""
+    """All but the quality or the context that the line defines."""
     own = [word_text(word) for word in place.words[1:2]]
     yield from (one for one in found if one.label not in own or one.kind not in ("quality", "context"))
 
@@ -335,7 +335,7 @@ def _in_apply(workspace: Workspace, path: str, place: Place) -> Iterator[Proposa
 
 
 def _in_requirement(workspace: Workspace, path: str, place: Place) -> Iterator[Proposal]:
-    """Behind `QualityReq`, on its line, in brackets, or in its block."""
+    """What may follow `QualityReq` on its line, in brackets, or in its block."""
     words = place.group
     at = next((index for index in reversed(range(len(words))) if words[index].text == "QualityReq"), None)
     if at is not None:
@@ -421,7 +421,7 @@ def _in_node(workspace: Workspace, path: str, place: Place, first: str) -> Itera
 
 
 def _open_list(place: Place) -> str | None:
-    """The list of qualities, requirements or tags that goes on here: behind its word, a comma, a `.` or `Quality =`."""
+    """The list of qualities, requirements or tags that goes on here: after its word, a comma, a `.` or `Quality =`."""
     words = place.group
     if not words or words[-1].kind == CLOSE:
         return None
@@ -451,4 +451,4 @@ _DECLARED = {
     "signal": (Kind.SIGNAL, What.VALUE),
     "context": (Kind.CONTEXT, What.VALUE),
     "quality": (Kind.QUALITY, What.QUALITY),
-}  # the words that a name is declared after, and the mentions that may name it
+}  # the words that declare a name, and the kinds of references to it

@@ -1,7 +1,7 @@
 """The list of a completion, as an editor narrows it with every letter and takes its first entry at Enter.
 
-One invariant: Enter after a complete word is a line break.  A word leaves the list with its last letter, and the list
-closes where it was the last one.  A word that an editor still finds in another one, `string` in `std::vector<string>`,
+One invariant: Enter after a complete word is a line break.  A word leaves the list when its last letter is typed, and
+the list closes when it is empty.  A word that an editor still finds in another one, `string` in `std::vector<string>`,
 stays first and as it is typed, so that accepting it changes nothing.
 """
 
@@ -19,13 +19,13 @@ def listed(proposals: Sequence[Proposal], typed: str, asked: bool) -> tuple[Prop
 
     Args:
         typed: the part of the word before the cursor.
-        asked: somebody asks for the list; otherwise it opens by itself, and never over a complete word.
+        asked: whether the user requests the list; otherwise it opens by itself, but never at a complete word.
     """
     begun = _begun(proposals)
     is_word = any(one.label == typed and one.kind != "snippet" for one in proposals)
     if is_word and not asked and typed.lower() not in begun:
         return ()
-    order: list[tuple[int, int, int]] = []  # each goes before all that its word begins
+    order: list[tuple[int, int, int]] = []  # each precedes all labels that begin with one of its words
     for place, one in enumerate(proposals):
         order.append((min(place, begun.get(one.label.lower(), place)), len(one.label), place))
     ordered = [proposals[place] for _, _, place in sorted(order)]
@@ -37,10 +37,10 @@ def _entries(one: Proposal, typed: str, asked: bool, is_found: bool) -> Iterator
     """The entries of one proposal: none, the proposal, or also its bare word.
 
     Args:
-        is_found: an editor finds the word in another one.
+        is_found: whether an editor finds the word in another one.
     """
     if one.kind in ("keyword", "snippet") and one.label[:1].islower() and typed[:1].isupper():
-        return  # an editor ignores case, and a name begins that is no keyword
+        return  # editors ignore case; a name that is not a keyword begins here
     if one.kind == "snippet":
         yield one
         return
@@ -61,15 +61,16 @@ def _entries(one: Proposal, typed: str, asked: bool, is_found: bool) -> Iterator
 
 
 def _shortened(one: Proposal, typed: str) -> str:
-    """What the typed letters are compared with: the label, or each word of the filter, without its last letter, unless
-    that is there already."""
+    """What the typed letters are compared with: the label, or each word of the filter, without the last letter unless
+    it is typed already."""
     words = one.filter.split(" ") if one.filter else [one.label]
     return " ".join([word if word == typed else word[:-1] or word for word in words])
 
 
 def _found_in(proposals: Sequence[Proposal], typed: str) -> set[str]:
-    """The labels that go on as it is typed and that an editor finds in the text of another proposal: it looks for their
-    letters in this order, the first one where a word begins.  Of a long list all: each with each takes long."""
+    """The labels that continue the typed letters and that an editor finds in the text of another proposal: it looks for
+    their letters in this order, the first one at the start of a word.  All labels of a long list, where comparing each
+    with each takes long."""
     if len(proposals) > _MANY:
         return {one.label.lower() for one in proposals}
     texts = [f"{one.label} {one.filter}" for one in proposals]
@@ -99,11 +100,11 @@ def _holds(text: str, letters: str) -> bool:
 
 
 def _begun(proposals: Sequence[Proposal]) -> Mapping[str, int]:
-    """The labels that words of other proposals begin with, each with the first place of such a proposal; case does not
-    count."""
+    """The labels that words of other proposals begin with, ignoring case, each with the first index of such a
+    proposal."""
     labels = {one.label.lower(): place for place, one in reversed([*enumerate(proposals)])}
     found: dict[str, int] = {}
-    beginnings: list[str] = []  # of the word that is looked at, each one of the next
+    beginnings: list[str] = []  # of the current word, each a prefix of the next
     for word, place in sorted([(word, place) for place, one in enumerate(proposals) for word in _words(one)]):
         while beginnings and not word.startswith(beginnings[-1]):
             beginnings.pop()
@@ -122,5 +123,5 @@ def _words(one: Proposal) -> list[str]:
     return [one.label.lower(), *(one.filter.lower().split(" ") if one.filter else ())]
 
 
-_INITIAL = re.compile(r"(?:(?<![^\W_])|(?<=[^\W_])(?=[A-Z]))\S")  # the first of a word, or a capital inside one
+_INITIAL = re.compile(r"(?:(?<![^\W_])|(?<=[^\W_])(?=[A-Z]))\S")  # the first letter of a word, or a capital inside one
 _MANY = 200  # all of the engine's nodes, all units, and as many names of a project again

@@ -1,4 +1,4 @@
-"""What things are, in Markdown: for hover, and for the documentation beside a completion."""
+"""Markdown descriptions for hovers and for the documentation of completions."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _MOST_USES = 12
 
 
 def node_kind(workspace: Workspace, path: str, name: str, quoted: bool = False, children: int | None = None) -> str:
-    """A built-in, a model in scope, or what is known of a word that is neither."""
+    """A built-in node, a model in scope, or what is known of any other node kind."""
     kind = lookup(name, quoted, children)
     if kind is not None:
         ports = ports_of_kind(workspace, path, name, quoted, children)
@@ -69,7 +69,7 @@ def port(one: NodePort) -> str:
 
 
 def tree(workspace: Workspace, path: str, name: str) -> str:
-    """A tree: its ports, what is attached to it, and who runs it."""
+    """A tree: its ports, what is attached to it, and its callers."""
     found = workspace.scope(path).find(Kind.TREE, name) or next(defined_elsewhere(workspace, Kind.TREE, name), None)
     if found is None:
         return f"`{name}`: unknown tree."
@@ -84,11 +84,11 @@ def tree(workspace: Workspace, path: str, name: str) -> str:
 
 
 def requirement(workspace: Workspace, path: str, found: Definition) -> str:
-    """A requirement as its file has it with its values in SI units, its quality, what a build does about each clause,
+    """A requirement as it is written, with its values in SI units, its quality, what a build does about each clause,
     and where it is used.
 
     Args:
-        path: the file that is looked at.
+        path: the file with the hover.
     """
     item = found.symbol.target
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
@@ -114,7 +114,7 @@ def requirement(workspace: Workspace, path: str, found: Definition) -> str:
 
 
 def _parameters(workspace: Workspace, found: Definition, item: Requirement) -> str:
-    """`` `(limit : m/s = 0.25 m/s)` ``, as it is written; empty where it has none."""
+    """`` `(limit : m/s = 0.25 m/s)` ``, as it is written; empty if it has none."""
     text = workspace.files[found.path].text
     shown = []
     for one in item.parameters:
@@ -124,7 +124,7 @@ def _parameters(workspace: Workspace, found: Definition, item: Requirement) -> s
 
 
 def _clause(workspace: Workspace, found: Definition, span: Span) -> str:
-    """A clause on one line, and in a comment what its quantities are in SI units, where they are typed in others."""
+    """A clause on one line, and a comment with its quantities in SI units if they are written in others."""
     file = workspace.files[found.path]
     text = " ".join(file.text[slice(*span.shifted(found.entry.start))].split())
     typed = [one.name for one in file.mentions_of(found.entry) if one.what is What.QUANTITY and _is_in(one.span, span)]
@@ -139,7 +139,7 @@ def _is_in(inner: Span, outer: Span) -> bool:
 
 
 def used(workspace: Workspace, wanted: Subject, heading: str) -> str:
-    """Where something is used: a list that names the nodes; empty where it is nowhere."""
+    """Where something is used: a list of nodes; empty if it is not used."""
     uses = [found for found in everywhere(workspace, wanted) if not found.mention.defines or found.mention.node]
     lines = [f"- {place_of(workspace, found)}" for found in uses[:_MOST_USES]]
     if len(uses) > _MOST_USES:
@@ -148,7 +148,7 @@ def used(workspace: Workspace, wanted: Subject, heading: str) -> str:
 
 
 def place_of(workspace: Workspace, found: Found) -> str:
-    """Where a mention stands: `` `MoveBase ToWard` in `Deliver` (deliver.btq) ``, or the `apply` that it is in."""
+    """The place of a reference: `` `MoveBase ToWard` in `Deliver` (deliver.btq) ``, or the `apply` that it is in."""
     node = found.mention.node
     item = found.entry.item if found.entry is not None else None
     if isinstance(item, Apply) and found.entry is not None:
@@ -191,14 +191,14 @@ def own_quality(workspace: Workspace, found: Definition) -> str:
 
 
 def declared(workspace: Workspace, found: Definition) -> str:
-    """A signal or a context, as its file has it."""
+    """A signal or a context, as it is written."""
     item = found.symbol.target
     text = workspace.files[found.path].text[found.entry.start + item.start : found.entry.start + item.end]
     return f"```btq\n{text}\n```\n\n_{workspace.project.shown(found.path)}_"
 
 
 def key(workspace: Workspace, wanted: Subject, writes: Iterable[Found], reads: Iterable[Found]) -> str:
-    """An entry of the blackboard: who writes it, and who reads it."""
+    """An entry of the blackboard: what writes it, and what reads it."""
     where = "of the root blackboard" if wanted.home.startswith(ROOT_BLACKBOARD) else "of this tree's blackboard"
     lines = [f"**{wanted.name}** · entry {where}"]
     for heading, places in (("Written by", writes), ("Read by", reads)):
@@ -208,7 +208,7 @@ def key(workspace: Workspace, wanted: Subject, writes: Iterable[Found], reads: I
 
 
 def quantity(text: str, port_unit: str | None = None) -> str | None:
-    """A quantity in SI units, and in the unit of the port that it is given to."""
+    """A quantity in SI units, and in the unit of the port that it is assigned to."""
     read = parse_quantity(text)
     if read is None:
         return None
@@ -218,13 +218,13 @@ def quantity(text: str, port_unit: str | None = None) -> str | None:
 
 
 def in_si(text: str) -> str:
-    """A quantity in SI units; empty for what is no quantity."""
+    """A quantity in SI units; empty if it is not a quantity."""
     read = parse_quantity(text)
     return f"{number(to_si(read[0], read[1]))} {si_symbol(read[1])}".rstrip() if read is not None else ""
 
 
 def unit(text: str) -> str | None:
-    """A unit: what it measures, and how much one of it is in SI units."""
+    """A unit: what it measures, and its value in SI units."""
     read = parse_unit(text)
     if read is None:
         return None
@@ -233,7 +233,7 @@ def unit(text: str) -> str | None:
 
 
 def in_unit(text: str, port_unit: str | None) -> str | None:
-    """The number that stands for a quantity on a port of a unit; None where that makes no sense."""
+    """The number for a quantity on a port with a unit; None if they do not fit."""
     read = parse_quantity(text)
     target = parse_unit(port_unit) if port_unit else None
     if read is None or target is None or read[1].dimension != target.dimension:
@@ -262,12 +262,12 @@ def _powers(unit: Unit) -> Iterator[str]:
 
 
 def rule(name: str) -> str | None:
-    """The page of a rule; None: there is no such rule."""
+    """The page of a rule; None if it does not exist."""
     return page(name).rstrip() if name in RULES else None
 
 
 def words(name: str) -> str | None:
-    """What words of the language mean, in each of the places where they may stand; None: they are none."""
+    """The meanings of words of the language, in each place where they may occur; None if there are none."""
     found = (f"**{one.words}** ({one.part}) · `{one.form}`\n\n{one.sentence}" for one in phrases_of(name))
     return "\n\n".join(found) or None
 

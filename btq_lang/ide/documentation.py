@@ -1,4 +1,4 @@
-"""The documentation beside a completion, made when an editor asks for it."""
+"""The documentation of a completion, computed when an editor requests it."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str | None:
-    """What a proposal is, in Markdown; None where there is nothing to say.
+    """A description of a proposal in Markdown, if there is one.
 
     Args:
-        path: the file that it is offered in.
+        path: of the file in which it is offered.
         kind, name: the proposal's own.
     """
     if kind == "node":
@@ -51,10 +51,10 @@ def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str 
 
 
 def include_edits(workspace: Workspace, path: str, other: str) -> tuple[Edit, ...]:
-    """What brings a proposal that the file cannot see yet into its scope.
+    """The edits that bring a proposal into the file's scope.
 
     Args:
-        other: the file that defines it; empty: the file sees it.
+        other: the file that defines it; empty if it is in scope.
     """
     if other not in workspace.files:
         return ()

@@ -1,6 +1,6 @@
 """What `btq build` does about the clauses of a requirement, for a hover.
 
-One invariant: it says what the build itself plans, in its words; nothing is judged here.
+One invariant: it reports the plan of the build itself, in its words.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ _MOST_NODES = 4
 
 
 def held(workspace: Workspace, path: str, found: Definition, *, is_attached: bool) -> str:
-    """For each clause a line: enforced, monitored or reviewed, where that is not so everywhere, and why; empty where
-    the requirement holds for nothing.
+    """A line for each clause: enforced, monitored or reviewed, with the node if that differs between nodes, and why;
+    empty if the requirement applies to nothing.
 
     Args:
-        path: the file that is looked at; where it is a part of missions, some of those are planned.
+        path: the file with the hover; if it is a part of missions, some of those are planned.
         found: the requirement.
-        is_attached: something refers to it.
+        is_attached: whether something refers to it.
     """
     item = found.symbol.target
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
     ways: dict[str, dict[tuple[str, str], dict[str, None]]] = {}
     known = None if item.text is not None and constraints(item.text) else unasked(*_asked(item))
-    if known is not None:  # and in a large mission a plan takes long
+    if known is not None:  # and for a large mission that takes long
         text = workspace.files[found.path].text
         for claim in item.clauses:
             if isinstance(claim, Claim) and (is_attached or claim.subject is not None):
@@ -58,7 +58,7 @@ def _asked(item: Requirement) -> tuple[str | None, str | None]:
 
 
 def _missions(workspace: Workspace, path: str, found: Definition) -> tuple[str, ...]:
-    """The missions in which the requirement is looked at: the file itself, or those that it is a part of."""
+    """The missions for which the requirement is planned: the file itself, or some that it is a part of."""
     missions = (one for one in missions_of(workspace, path) if found.path in workspace.scope(one).paths)
     return tuple(missions)[:_MOST_MISSIONS]
 

@@ -1,4 +1,4 @@
-"""What an editor may write between the lines: inlay hints and code lenses."""
+"""What an editor may show between the lines: inlay hints and code lenses."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _MOST_MISSIONS = 4  # resolving one takes long, and a library may be in hundreds
 
 
 class Hint(Record):
-    """A remark behind a word.  tooltip: more about it."""
+    """A remark after a word.  tooltip: more about it."""
 
     offset: int
     label: str
@@ -39,7 +39,8 @@ class Lens(Record):
 
 
 def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ...]:
-    """The quality of each requirement that is only named, and what is written to the port for a quantity."""
+    """The quality of each requirement that is only referred to, and the number that is written to a port for a
+    quantity."""
     file = workspace.files[path]
     found: list[Hint] = []
     for entry in file.parsed.entries:
@@ -66,8 +67,8 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
 def code_lenses(workspace: Workspace, path: str) -> tuple[Lens, ...]:
     """How many places use a requirement, how many nodes it names itself, how many nodes call a tree; the main tree.
 
-    What a reader counts: a requirement that is defined at a node is used there, and has a lens only where there is more
-    to see; the `Root` that names the main tree does not call it.
+    As a reader counts: a requirement that is defined at a node is used there, and has a lens only if there are more
+    uses; the `Root` that names the main tree does not call it.
     """
     found: list[Lens] = []
     for place in workspace.defined_in(path):
@@ -119,7 +120,7 @@ def _names_its_subject(found: Definition) -> bool:
 
 
 def _held(workspace: Workspace, mission: str, found: Definition) -> tuple[tuple[str, Span], ...]:
-    """The nodes that the claims of a requirement name themselves."""
+    """The nodes that the claims of a requirement name."""
     return workspace.store.ask(_by_subject, mission).get((found.symbol.name, found.path), ())
 
 

@@ -1,4 +1,4 @@
-"""Hover: what stands here, explained where it stands."""
+"""Hover: explains what is at the cursor."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class Hover(Record):
-    """What to show beside a word, in Markdown."""
+    """What to show for a word, in Markdown."""
 
     span: Span
     markdown: str
 
 
 def hover(workspace: Workspace, path: str, offset: int) -> Hover | None:
-    """What stands at a place: a node with its ports and semantics, a requirement with its text and its nodes, a quality
+    """The hover at a place: a node with its ports and semantics, a requirement with its text and its nodes, a quality
     with its definition, an entry with its readers and writers, a quantity in SI units, a rule's page, a word of the
     language."""
     found = at(workspace, path, offset)

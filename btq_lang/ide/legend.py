@@ -1,4 +1,4 @@
-"""What a coloured word can be: the words of LSP 3.16, and `label` of 3.18 for instance names."""
+"""What a coloured word can be: the token types of LSP 3.16, and `label` of 3.18 for instance names."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""How each word looks, by what it names, or else by its token.
+"""The appearance of each word: its token type and modifiers, by what it names, or else by its token.
 
-One invariant: a look is the end of a semantic token as JSON has it: the number of its type and a bit for each modifier,
-each behind a comma.  What they mean the legend says, which editors are told first.
+One invariant: an appearance is the end of a semantic token in JSON: the number of its type and a bit for each modifier,
+each after a comma.  The legend, which editors get first, gives their meaning.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ from btq_lang.syntax.tokens import (
 from btq_lang.workspace.references import What
 
 
-@lru_cache(2_000)  # most kinds stand in a file many times
+@lru_cache(2_000)  # most kinds occur in a file many times
 def look_of_node(name: str, kind: int) -> str:
-    """How what a node is looks, by its name and the kind of its token."""
+    """The appearance of a node's kind, by its name and the kind of its token."""
     if kind == SYMBOL:
         return _SIGN
     builtin = lookup(name, kind == STRING)
@@ -42,7 +42,7 @@ def look_of_node(name: str, kind: int) -> str:
 
 
 def plain_look(kind: int, raw: str, before: str) -> str | None:
-    """How a token looks that names nothing, behind another one; None: it has no colour."""
+    """The appearance of a token that names nothing, after another one; None if it has no colour."""
     if kind != NAME:
         return PLAIN.get(kind)
     if before == "=":
@@ -95,7 +95,7 @@ _TYPES: Final = {
 }
 USED: Final = {what: _look(type_) for what, type_ in _TYPES.items()}
 DEFINED: Final = {what: _look(type_, "definition") for what, type_ in _TYPES.items()}
-# Every word that the grammar knows by its place; a name that looks like one is told as what it names.
+# Every word that the grammar knows by its place; a name that looks like one has the colour of what it names.
 KEYWORDS: Final = frozenset(
     {"BehaviorTree", "Root", "include", "signal", "context", "apply", "quality", "qualities", "QualityReq"}
     | {"TreeNodesModel", "xml", "parameters", "metadata", "Quality", "ID", "description", "true", "false"}

@@ -1,6 +1,6 @@
-"""What stands here: a word under the cursor, and what it means in its file.
+"""What a word under the cursor means in its file.
 
-One invariant: two mentions mean the same if and only if their subjects are equal, in whatever files they stand.
+One invariant: two references mean the same if and only if their subjects are equal, in whatever files they are.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ ROOT_BLACKBOARD = "@"
 
 
 class Subject(Record):
-    """What is named.
+    """What a reference names.
 
     Attributes:
-        name: of a built-in node its tag, of a standard quality its id, of a file its path.
-        home: what tells it from others of its name: where it is defined; empty where it is defined nowhere, or where
-            its name alone is what it is.
+        name: the tag of a built-in node, the id of a standard quality, the path of a file.
+        home: what distinguishes it from others of its name: where it is defined; empty if it is defined nowhere, or if
+            its name alone identifies it.
     """
 
     what: What
@@ -41,7 +41,7 @@ class Subject(Record):
 
 
 class Found(Record):
-    """A mention in a file; `entry`: where it stands, None in a comment."""
+    """A reference in a file; `entry`: around it, None in a comment."""
 
     path: str
     entry: Entry | None
@@ -54,10 +54,10 @@ class Found(Record):
 
 
 def at(workspace: Workspace, path: str, offset: int) -> Found | None:
-    """The mention that an offset is in, or that ends there.
+    """The reference that an offset is in, or that ends there.
 
     Raises:
-        KeyError: there is no such file.
+        KeyError: the file does not exist.
     """
     entry = entry_at(workspace, path, offset)
     touching = []
@@ -66,7 +66,7 @@ def at(workspace: Workspace, path: str, offset: int) -> Found | None:
         for mention in workspace.files[path].mentions_of(entry):
             if mention.span.start <= inside <= mention.span.end:
                 touching.append(mention)
-    if touching:  # of two that touch, `{a}` and the word behind it, the one that begins here
+    if touching:  # of two that touch, like `{a}` and the word after it, the one that begins here
         best = min(touching, key=lambda mention: (mention.span.end == inside, -mention.span.start))
         return Found(path, entry, best)
     return _rule_at(workspace, path, offset)
@@ -80,7 +80,7 @@ def entry_at(workspace: Workspace, path: str, offset: int) -> Entry | None:
 
 
 def subject(workspace: Workspace, found: Found) -> Subject:
-    """What a mention means."""
+    """What a reference means."""
     path, entry, mention = found.path, found.entry, found.mention
     if mention.what in (What.RULE, What.EDITION, What.TAG, What.QUANTITY, What.UNIT, What.ATTRIBUTE) or entry is None:
         return Subject(mention.what, mention.name)
@@ -109,7 +109,7 @@ def subject(workspace: Workspace, found: Found) -> Subject:
 
 
 def definition(workspace: Workspace, path: str, wanted: Subject) -> Definition | None:
-    """The definition of what has one in the symbols of a file's scope, or else anywhere in the project."""
+    """The definition of a subject in the symbols of a file's scope, or else anywhere in the project."""
     kind = _KINDS.get(wanted.what)
     if kind is None or wanted.home in (ENGINE, STANDARD):
         return None
@@ -120,17 +120,17 @@ def definition(workspace: Workspace, path: str, wanted: Subject) -> Definition |
 
 
 def defined_elsewhere(workspace: Workspace, kind: Kind, name: str, home: str = "") -> Iterator[Definition]:
-    """The definitions of a name in the whole project; with a home, the one that is there."""
+    """The definitions of a name in the whole project; given a home, only the one there."""
     return (one for one in workspace.defined_anywhere(kind, name) if not home or home_of(one) == home)
 
 
 def home_of(found: Definition) -> str:
-    """Where a definition is at home, as its subject says it."""
+    """The home of a definition, as in its subject."""
     return f"{found.path}:{found.span.start}"
 
 
 def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | None = None) -> Iterator[Found]:
-    """Every mention of a subject, file by file, in the order of their texts.
+    """Every reference to a subject, file by file, in the order of their texts.
 
     Args:
         paths: the files to look in; None: all.
@@ -139,7 +139,7 @@ def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | N
     for path in paths if paths is not None else _paths(workspace, wanted):
         file = workspace.files[path]
         if words and not any(word in file.text for word in words):
-            continue  # and need not be parsed to know it
+            continue  # that is known without parsing it
         if words:
             found = [Found(path, *one) for word in words for one in file.mentioned(word)]
             if len(words) > 1:
@@ -155,7 +155,7 @@ def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | N
 
 
 def _paths(workspace: Workspace, wanted: Subject) -> list[str]:
-    """The files that may name a subject: those linked with its home, or all where it has none."""
+    """The files that may name a subject: those linked with its home, or all if it has none."""
     home = wanted.home.removeprefix(ROOT_BLACKBOARD).rpartition(":")[0] or wanted.home.removeprefix(ROOT_BLACKBOARD)
     if home not in workspace.files:
         return sorted(workspace.files)
@@ -163,7 +163,7 @@ def _paths(workspace: Workspace, wanted: Subject) -> list[str]:
 
 
 def _spellings(wanted: Subject) -> tuple[str, ...]:
-    """All words by which a subject can be named; none where they cannot be listed."""
+    """All words by which a subject can be named; empty if they cannot be listed."""
     if wanted.what is What.NODE and wanted.home == ENGINE:
         kind = lookup(wanted.name, quoted=True)
         return spellings(kind) if kind is not None else ()
@@ -173,7 +173,7 @@ def _spellings(wanted: Subject) -> tuple[str, ...]:
 
 
 def _may_mean(wanted: Subject, mention: Mention) -> bool:
-    """Whether a mention may mean a subject that has many spellings."""
+    """Whether a reference may mean a subject that has many spellings."""
     if wanted.what not in (What.QUALITY, What.INCLUDE):
         return mention.name == wanted.name
     if mention.what is not wanted.what or wanted.what is What.INCLUDE or wanted.home == STANDARD:
@@ -182,7 +182,7 @@ def _may_mean(wanted: Subject, mention: Mention) -> bool:
 
 
 def quality_of(requirement: Definition) -> QualityPath | None:
-    """The quality of a requirement: its own, or in the classic form the one that encloses it."""
+    """The quality of a requirement: its own, or in the classic form the enclosing one."""
     item, owner = requirement.symbol.target, requirement.entry.item
     if not isinstance(item, Requirement) or item.quality is not None or not isinstance(owner, Tree):
         return item.quality if isinstance(item, Requirement) else None
@@ -203,11 +203,11 @@ def edition(workspace: Workspace, path: str) -> str:
 
 
 def quality_match(workspace: Workspace, path: str, name: str) -> QualityMatch:
-    """What the standard's names say of a quality."""
+    """The match of a quality name in the standard."""
     return match_of(name, edition(workspace, path))
 
 
-@lru_cache(2_000)  # a colouring asks for each quality of a file, and a misspelt one is compared with all names
+@lru_cache(2_000)  # colouring looks up each quality of a file, and a misspelt one is compared with all names
 def match_of(name: str, edition: str) -> QualityMatch:
     """As `quality_match`, in an edition."""
     return find(tuple(name.split(".")), EDITIONS[edition])
@@ -243,7 +243,7 @@ def _quality(workspace: Workspace, path: str, mention: Mention) -> Subject:
 
 
 def own_quality(workspace: Workspace, path: str, name: str) -> Definition | None:
-    """The declaration of a quality of one's own, compared as names of qualities are."""
+    """The declaration of a custom quality, compared as names of qualities are."""
     scope = workspace.scope(path)
     folded = fold(name)
     for own in scope.names(Kind.QUALITY):
@@ -308,15 +308,15 @@ def _port(workspace: Workspace, found: Found) -> Subject:
 
 
 def _blackboard(workspace: Workspace, path: str, entry: Entry, root: bool) -> str:
-    """The blackboard that a key is of: each tree has one, and the main tree's is the root's; files that include each
-    other run together."""
+    """The blackboard that a key belongs to: each tree has one, and the main tree's is the root's; files that include
+    each other run together."""
     if root or is_main(workspace, path, entry):
         return f"{ROOT_BLACKBOARD}{workspace.missions[path]}"
     return f"{path}:{entry.start}"
 
 
 def is_main(workspace: Workspace, path: str, entry: Entry) -> bool:
-    """Whether a tree is a mission: its file's main tree, and the file is none that is only included."""
+    """Whether a tree is a mission: its file's main tree, in a file that is not merely included."""
     main = workspace.main_tree(path)
     if main is None or main.path != path or main.entry is not entry:
         return False

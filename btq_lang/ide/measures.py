@@ -1,5 +1,4 @@
-"""What a value measures where somebody types it: what the verb demands, or the signal or parameter that it is compared
-with."""
+"""What a value at the cursor measures: what the verb demands, or the signal or parameter that it is compared with."""
 
 from __future__ import annotations
 
@@ -20,15 +19,15 @@ class Measured(Record):
     """What a value measures.
 
     Attributes:
-        unit: the unit, or one of its dimension; None: nobody knows.
-        is_certain: a value that measures anything else is wrong; else more may follow that makes it right.
+        unit: the unit, or one of its dimension; None if it is unknown.
+        is_certain: whether a value of another dimension is wrong; else what follows may make it right.
     """
 
     unit: str | None = None
     is_certain: bool = False
 
     def fits(self, unit: str) -> bool:
-        """Whether something of a unit measures it; what has none may."""
+        """Whether a value in a unit may be meant; one without a unit may."""
         if self.unit is None or not unit:
             return True
         wanted, given = parse_unit(self.unit), parse_unit(unit)
@@ -36,7 +35,7 @@ class Measured(Record):
 
 
 def measured_at(workspace: Workspace, path: str, place: Place) -> Measured:
-    """What a value measures at a place of a clause, of a signal, or of what a requirement is given."""
+    """What a value measures at a place of a clause, of a signal, or of a requirement's argument."""
     declared = _of_argument(workspace, path, place) or _of_first_value(workspace, path, place)
     if declared is not None:
         return Measured(declared, is_certain=True)
@@ -56,7 +55,7 @@ def measured_at(workspace: Workspace, path: str, place: Place) -> Measured:
 
 
 def parameters_at(place: Place) -> dict[str, str]:
-    """The parameters of the requirement in which a place is, with their units: `QualityReq slow(limit : m/s)`."""
+    """The parameters of the requirement around a place, with their units: `QualityReq slow(limit : m/s)`."""
     line = next((line for line in (place.words, place.parent) if any(word.text == "QualityReq" for word in line)), ())
     texts = [word.text for word in line]
     opened = texts.index("(") + 1 if "(" in texts else len(texts)
@@ -70,11 +69,11 @@ def parameters_at(place: Place) -> dict[str, str]:
 
 
 def _of_argument(workspace: Workspace, path: str, place: Place) -> str | None:
-    """The unit of the parameter whose value, or what it is by default, is being written."""
+    """The unit of the parameter whose argument or default is being written."""
     words = [word.text for word in place.group] if place.callee else []
     at = _last(words, "=")
     if at < 1 or next((word for word in reversed(words[at:]) if word in ("if", "else", ",")), "") == "if":
-        return None  # what is compared in a condition is no value of the parameter
+        return None  # operands of a condition are not arguments
     if place.is_of_parameters:
         return parameters_at(place).get(words[_last(words[:at], ":") - 1])
     found = workspace.scope(path).find(Kind.REQUIREMENT, place.callee)
@@ -84,7 +83,7 @@ def _of_argument(workspace: Workspace, path: str, place: Place) -> str | None:
 
 
 def _last(words: list[str], word: str) -> int:
-    """Where a word stands last; -1: nowhere."""
+    """The last index of a word; -1 if there is none."""
     return next((index for index in reversed(range(len(words))) if words[index] == word), -1)
 
 
@@ -97,7 +96,7 @@ def _of_first_value(workspace: Workspace, path: str, place: Place) -> str | None
 
 
 def _of_goal(workspace: Workspace, path: str, place: Place) -> Measured:
-    """A goal stands beside the bound of a claim, perhaps on another line."""
+    """The unit of a goal: that of the bound of its claim, perhaps on another line."""
     entry = entry_at(workspace, path, place.span.start)
     clauses = entry.item.clauses if entry is not None and isinstance(entry.item, Requirement) else ()
     verbs = {clause.verb.raw for clause in clauses if isinstance(clause, Claim)} | {word.text for word in place.words}

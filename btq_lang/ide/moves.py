@@ -12,7 +12,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def moved_files(workspace: Workspace, moves: Mapping[str, str]) -> dict[str, tuple[Edit, ...]]:
-    """The edits, by the files as they are called before, that keep every include leading where it leads.
+    """The edits, by the old paths of files, that keep every include leading to the same file.
 
     Args:
         moves: new paths of files and folders by old ones.
@@ -39,7 +39,7 @@ def moved_files(workspace: Workspace, moves: Mapping[str, str]) -> dict[str, tup
 
 
 def _after(path: str, moves: Mapping[str, str]) -> str:
-    """Where a file is when it, or a folder above it, was moved."""
+    """The path of a file after it, or a folder above it, was moved."""
     for old, new in moves.items():
         if path == old or path.startswith(f"{old.rstrip('/')}/"):
             return new.rstrip("/") + path[len(old.rstrip("/")) :]
@@ -47,7 +47,7 @@ def _after(path: str, moves: Mapping[str, str]) -> str:
 
 
 def _shown(workspace: Workspace, path: str, target: str) -> str:
-    """A file as an include in another one names it, from an include path where one leads there."""
+    """A file as an include in another one names it: relative to an include path if one leads there."""
     ways = [posixpath.relpath(target, posixpath.dirname(path) or ".")]
     ways += [posixpath.relpath(target, folder) for folder in workspace.project.include_paths]
     return min(ways, key=lambda way: (way.startswith(".."), len(way)))

@@ -1,4 +1,4 @@
-"""Definition, declaration, references and highlights of what stands at a place."""
+"""Definition, declaration, references and highlights of the word at a place."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ class Target(Record):
     """A place to go to.
 
     Attributes:
-        span: what is to be seen there as a whole.
-        name: the word to stand on.
-        origin: the word that was asked about.
+        span: all of what is defined there.
+        name: the word to select.
+        origin: the word at the cursor.
     """
 
     path: str
@@ -26,16 +26,16 @@ class Target(Record):
 
 
 class Highlight(Record):
-    """A mention in the same file; `writes`: it gives the name or the value, and does not only use it."""
+    """A reference in the same file; `writes`: whether it gives the name or the value, instead of using it."""
 
     span: Span
     writes: bool
 
 
 def goto_definition(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...]:
-    """Where what stands here is defined; of a name that the file cannot see, where else in the project it is.
+    """Where the word at a place is defined; for a name out of scope, its definitions elsewhere in the project.
 
-    A blackboard entry is defined where its tree declares it as a port, or else where it is written first.
+    A blackboard entry is defined where its tree declares it as a port, or else where it is first written.
     """
     found = at(workspace, path, offset)
     if found is None:
@@ -61,7 +61,7 @@ def goto_definition(workspace: Workspace, path: str, offset: int) -> tuple[Targe
 def find_references(
     workspace: Workspace, path: str, offset: int, include_definition: bool = True
 ) -> tuple[tuple[str, Span], ...]:
-    """Every place, in every file, that names what stands here."""
+    """Every reference, in every file, to what the word at a place means."""
     found = at(workspace, path, offset)
     if found is None or found.entry is None or found.mention.what in _WITHOUT_REFERENCES:
         return ()
@@ -71,7 +71,7 @@ def find_references(
 
 
 def highlights(workspace: Workspace, path: str, offset: int) -> tuple[Highlight, ...]:
-    """The mentions in this file of what stands here."""
+    """The references in this file to what the word at a place means."""
     found = at(workspace, path, offset)
     if found is None or found.entry is None or found.mention.what in _WITHOUT_REFERENCES:
         return ()
@@ -81,7 +81,7 @@ def highlights(workspace: Workspace, path: str, offset: int) -> tuple[Highlight,
 
 
 def is_definition(workspace: Workspace, found: Found) -> bool:
-    """Whether a mention is the definition that counts, and not one of the repeats of classic files."""
+    """Whether a reference is the definition that counts, and not one of the repetitions of classic files."""
     if not found.mention.defines:
         return False
     place = definition(workspace, found.path, subject(workspace, found))
@@ -89,7 +89,7 @@ def is_definition(workspace: Workspace, found: Found) -> bool:
 
 
 def writes(workspace: Workspace, found: Found) -> bool:
-    """Whether the entry of the blackboard that is named here gets its value here."""
+    """Whether the blackboard entry named here gets its value here."""
     mention = found.mention
     if mention.what not in (What.KEY, What.PORT):
         return False
@@ -102,7 +102,7 @@ def writes(workspace: Workspace, found: Found) -> bool:
 
 
 def direction(workspace: Workspace, path: str, node: Node, port: str) -> str | None:
-    """Where the value of a node's port flows; None where nobody says."""
+    """The direction of a node's port; None if it is unknown."""
     from btq_lang.ide.ports import ports_of
 
     return next((one.direction for one in ports_of(workspace, path, node) if one.name == port), None)

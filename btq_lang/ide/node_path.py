@@ -9,8 +9,8 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def node_path(workspace: Workspace, path: str, offset: int) -> str | None:
-    """The names of the tree and of all nodes down to the one at a place, instance names before kinds; a control node
-    that is a symbol and has no name is left out, for no path can name it.  None: there is no node here."""
+    """The names of the tree and of all nodes down to the one at a place, instance names before kinds; unnamed control
+    nodes that are symbols are left out, for no path can name them.  None if there is no node."""
     entry = entry_at(workspace, path, offset)
     standing = node_at(workspace.files[path], entry, offset) if entry is not None else None
     if standing is None or entry is None or not isinstance(entry.item, Tree):

@@ -1,4 +1,4 @@
-"""While one types: the indentation of a new line, the place of a `)`, and names that are written together."""
+"""Edits while typing: the indentation of a new line, the place of a `)`, and names that change together."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[Edit, ...]:
-    """What to change after a character was typed: the blanks that the line of the offset begins with.
+    """The edits after a character was typed: to the indentation of the line with the offset.
 
-    A new line, or the rest of one that was parted, goes one level deeper behind what opens a block, a tree, a
-    requirement, a control or a decorator, and in brackets; else it stands as the line above.  A line that was only
-    moved down stands as before, for its indentation says what it belongs to.  A level is a tab where the file is
-    indented with tabs, whatever the editor would rather: the language takes no mixture.  A `)` that begins a line
-    stands as the line that opened the brackets.
+    A new line, or the rest of one that was split, goes one level deeper after what opens a block (a tree, a
+    requirement, a control or a decorator) and in brackets; else it is indented as the line above.  A line that was only
+    moved down keeps its indentation, which determines what it belongs to.  A level is a tab if the file is indented
+    with tabs, whatever the editor's setting, for the language allows no mixture.  A `)` that begins a line is indented
+    as the line that opened the brackets.
     """
     text = workspace.files[path].text
     start = max(text.rfind("\n", 0, offset), text.rfind("\r", 0, offset)) + 1
@@ -35,7 +35,7 @@ def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[E
     blanks = line[: len(line) - len(line.lstrip(" \t"))]
     moved_from = _moved_from(workspace.files[path], start) if typed == "\n" else None
     if moved_from is not None:
-        wanted = blanks if offset > start else moved_from + blanks  # it is the editor that indented, or nobody
+        wanted = blanks if offset > start else moved_from + blanks  # whether or not the editor indented it
     elif typed == ")":
         if text[start:offset].strip() != ")" or not place.words:
             return ()
@@ -53,8 +53,8 @@ def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[E
 
 
 def linked_ranges(workspace: Workspace, path: str, offset: int) -> tuple[Span, ...]:
-    """The places that change together with the name at a place, where all of them are in sight: the parameter of a
-    requirement in its clauses, an entry of a tree's blackboard, an instance name and the paths that name it."""
+    """The places that change together with the name at a place, if all of them are near: the parameter of a requirement
+    in its clauses, an entry of a tree's blackboard, an instance name and the paths that name it."""
     found = at(workspace, path, offset)
     if found is None:
         return ()
@@ -68,15 +68,15 @@ def linked_ranges(workspace: Workspace, path: str, offset: int) -> tuple[Span, .
 
 
 def _moved_from(file: File, start: int) -> str | None:
-    """Where Enter was typed in front of all words of a line: the blanks that it left on the line above; None where it
-    parted a line between words, or made an empty one."""
+    """If Enter was typed before all words of a line, the blanks that it left on the line above; None if it split a line
+    between words, or made an empty one."""
     number = file.lines.position(start).line
     above = file.lines.line(number - 1) if number else ""
     return None if above.strip() or not file.lines.line(number).strip() else above
 
 
 def _line_above(workspace: Workspace, path: str, start: int) -> tuple[Token, ...]:
-    """The words of the last logical line before an offset that has any."""
+    """The words of the last logical line with words before an offset."""
     tokens = item_tokens(workspace.files[path], start)
     index = bisect_left(tokens, start, key=lambda token: token.start) - 1
     while index >= 0:
@@ -88,7 +88,7 @@ def _line_above(workspace: Workspace, path: str, start: int) -> tuple[Token, ...
 
 
 def _opens(workspace: Workspace, path: str, words: tuple[Token, ...]) -> bool:
-    """Whether a line asks for a block."""
+    """Whether a line needs a block."""
     first = words[0]
     if any(word.kind == NAME and word.text == "QualityReq" for word in words):
         depth = sum((word.kind == OPEN) - (word.kind == CLOSE) for word in words)

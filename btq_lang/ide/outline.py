@@ -1,4 +1,4 @@
-"""What a file and a project consist of: the outline of a file, and the search for names in all of them."""
+"""The outline of a file, and the search for names in all files."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class Outline(Record):
-    """A thing in the outline of a file.
+    """An entry in the outline of a file.
 
     Attributes:
-        kind: mission, include, tree, control, decorator, action, condition, subtree, node (nobody says which), port,
+        kind: mission, include, tree, control, decorator, action, condition, subtree, node (of unknown kind), port,
             model, requirement, signal, context, quality or apply.
-        detail: what stands beside the name, shorter.
-        span: all of it, with its block; `name_span`: the word to stand on.
+        detail: a short text beside the name.
+        span: all of it, with its block; `name_span`: the word to select.
     """
 
     name: str

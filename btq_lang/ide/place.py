@@ -1,7 +1,7 @@
-"""The place where somebody types: what stands before the cursor on its logical line, and in which block.
+"""The place of the cursor: what precedes it on its logical line, and the block it is in.
 
-One invariant: only what stands before the cursor counts, so an answer does not depend on what is still to come; and
-it is made of tokens, not of the tree, for the line that is being typed has none yet.
+One invariant: only the text before the cursor counts, so results do not depend on what is still to come; they come from
+tokens, not from the tree, which does not have the line that is being typed yet.
 """
 
 from __future__ import annotations
@@ -49,19 +49,19 @@ class LineNode(Record):
 
 
 class Place(Record):
-    """Where the cursor is.
+    """The place of the cursor.
 
     Attributes:
-        inside: code, comment or string; `text`: what of the comment or string stands before the cursor.
-        span: the word that is being typed, which a completion replaces; `prefix`: what of it stands before the cursor.
+        inside: code, comment or string; `text`: the part of the comment or string before the cursor.
+        span: the word that is being typed, which a completion replaces; `prefix`: the part before the cursor.
         block: items (of a file or a Root), models (of a TreeNodesModel), ports (of a model), tree, node or clauses
             (of a requirement).
-        parent: the words of the line that opened the block; none for the file's own.
+        parent: the words of the line that opened the block; none at the top level.
         words: the words of the logical line before the one that is being typed.
-        group: those in the innermost open brackets; brackets of a condition are words of it as others are.
-        depth: how many brackets are open.
-        callee: the name behind which the innermost brackets were opened, where they are no node's.
-        node: the node in whose brackets or behind whose kind one is; None at the start of a line.
+        group: those in the innermost open brackets; brackets of a condition are ordinary words of it.
+        depth: number of open brackets.
+        callee: the name before the innermost open brackets, if they are not a node's.
+        node: the node in whose brackets or after whose kind the cursor is; None at the start of a line.
     """
 
     inside: str
@@ -105,10 +105,10 @@ class Place(Record):
 
 
 def place_at(workspace: Workspace, path: str, offset: int) -> Place:
-    """Where an offset is.
+    """The place of an offset.
 
     Raises:
-        KeyError: there is no such file.
+        KeyError: the file does not exist.
     """
     file = workspace.files[path]
     tokens = item_tokens(file, offset)
@@ -140,19 +140,19 @@ def place_at(workspace: Workspace, path: str, offset: int) -> Place:
 
 
 def item_tokens(file: File, offset: int) -> Sequence[Token]:
-    """The tokens around an offset that its place depends on: those of the item that it is in, or behind, and of a tree
-    only the lines of the nodes around it, and all from the last node before it up to the next one."""
+    """The tokens that the place of an offset depends on: those of the item around it or before it; of a tree only the
+    lines of the nodes around it, and all from the last node before it up to the next one."""
     found: list[Token] = []
     for start, end in _stretches(file, offset):
         if found:
-            found.append(Token(NEWLINE, start, ""))  # a line that lacks its end, as in open brackets, ends all the same
+            found.append(Token(NEWLINE, start, ""))  # a line without a line end, as in open brackets, ends all the same
         cut = tokens_of(file.text[start:end])
         found += [Token(token.kind, token.start + start, token.text) for token in cut] if start else cut
     return found
 
 
 def _stretches(file: File, offset: int) -> list[Span]:
-    """What of a text the place of an offset depends on."""
+    """The spans of a text that the place of an offset depends on."""
     entries = file.parsed.entries
     index = bisect_right(entries, offset, key=lambda entry: entry.start)
     start = base = entries[index - 1].start if index else 0
@@ -173,7 +173,7 @@ def _stretches(file: File, offset: int) -> list[Span]:
 
 
 def word_text(token: Token) -> str:
-    """What a word says."""
+    """The text of a word, unquoted."""
     return unquote(token.text) if token.kind == STRING else token.text
 
 
@@ -192,7 +192,7 @@ def words_before(tokens: Sequence[Token], index: int) -> tuple[Token, ...]:
 
 
 def _innermost(words: tuple[Token, ...]) -> tuple[tuple[Token, ...], int]:
-    """The words in the innermost brackets that are open, those of conditions left aside, and how many are open."""
+    """The words in the innermost open brackets, other than those of conditions, and the number of open brackets."""
     opened: list[list[Token]] = [[]]
     of_condition: list[bool] = []
     for word in words:
@@ -201,7 +201,7 @@ def _innermost(words: tuple[Token, ...]) -> tuple[tuple[Token, ...], int]:
             opened.append([*opened[-1], word] if of_condition[-1] else [])
         elif word.kind != CLOSE:
             opened[-1].append(word)
-        elif of_condition:  # what stands in closed brackets is over
+        elif of_condition:  # words in closed brackets do not count
             opened.pop()
             if of_condition.pop():
                 opened[-1].append(word)
@@ -209,7 +209,7 @@ def _innermost(words: tuple[Token, ...]) -> tuple[tuple[Token, ...], int]:
 
 
 def _length(words: tuple[Token, ...]) -> int:
-    """How many words stand in the innermost brackets that are open, those in closed ones too."""
+    """The number of words in the innermost open brackets, including those in closed ones."""
     depth = 0
     for count, word in enumerate(reversed(words)):
         depth += (word.kind == CLOSE) - (word.kind == OPEN)
@@ -223,14 +223,14 @@ def _is_clause_word(word: Token) -> bool:
 
 
 def line_blanks(text: str, start: int) -> str:
-    """What a line begins with."""
+    """The indentation of a line."""
     begin = max(text.rfind("\n", 0, start), text.rfind("\r", 0, start)) + 1
     line = text[begin:start]
     return line[: len(line) - len(line.lstrip(" \t"))]
 
 
 def _parents(text: str, tokens: Sequence[Token], start: int, blanks: str) -> list[tuple[Token, ...]]:
-    """The lines in whose blocks a line stands, the nearest first."""
+    """The lines in whose blocks a line is, the nearest first."""
     found: list[tuple[Token, ...]] = []
     width = len(blanks.expandtabs(4))
     index = bisect_left(tokens, start, key=lambda token: token.start) - 1

@@ -1,4 +1,4 @@
-"""The ports of a node, whoever declares them: the engine, a model, or the tree behind a SubTree."""
+"""The ports of a node, whether the engine, a model, or the tree of a SubTree declares them."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class NodePort(Record):
-    """A port that a node has.
+    """A port of a node.
 
     Attributes:
-        default: the value where none is given; None: there is none.
-        unit: of a number in it, where one is known.
+        default: the value if none is given; None if there is none.
+        unit: of a number in it, if known.
         content: value, script or key.
     """
 
@@ -35,7 +35,7 @@ class NodePort(Record):
 
 
 def ports_of(workspace: Workspace, path: str, node: Node) -> tuple[NodePort, ...]:
-    """The ports of a node; none where nobody knows."""
+    """The ports of a node; empty if they are unknown."""
     name = node.id
     is_subtree = node.category is not None and node.category.raw == "SubTree"
     if is_subtree and name is not None:

@@ -33,17 +33,17 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class Proposal(Record):
-    """A word that may stand at a place.
+    """A word that may follow at a place.
 
     Attributes:
         kind: keyword, node, tree, requirement, quality, signal, context, parameter, port, attribute, key, unit, file,
             rule, tag, instance, enum or snippet.
-        detail: what stands beside it in the list.
-        insert: what is written for it; `snippet`: the same with places to fill in, as LSP writes them.
-        filter: what the typed letters are compared with, where that is not the label.
-        name: what `documentation` asks for; empty: there is none.
-        include: the file to include for it, for what this file cannot see yet.
-        old: it is offered, but there is a newer way.
+        detail: shown beside it in the list.
+        insert: the text to insert; `snippet`: the same as a snippet of LSP.
+        filter: the text that the typed letters are compared with, if not the label.
+        name: the key for `documentation`; empty if there is none.
+        include: the file to include for it, if it is out of scope.
+        old: whether there is a newer way.
     """
 
     label: str
@@ -58,7 +58,7 @@ class Proposal(Record):
 
 
 def words(found: Iterable[str], kind: str) -> Iterator[Proposal]:
-    """Words of the language; the cursor goes into quotes, brackets and braces that they bring."""
+    """Words of the language; the cursor goes into the quotes, brackets and braces in them."""
     for word in found:
         at = next((word.index(pair) + 1 for pair in ('""', "()", "{}") if pair in word), None)
         snippet = f"{escaped(word[:at])}$0{escaped(word[at:])}" if at is not None else None
@@ -72,17 +72,17 @@ def keyword(label: str, snippet: str | None = None) -> Proposal:
 
 
 def quoted(text: str) -> str:
-    """A word in quotes, unless it is."""
+    """A word in quotes, unless it has them already."""
     return text if text.startswith(('"', "'")) else quote(text)
 
 
 def written(name: str) -> str:
-    """A name as it stands in a file."""
+    """A name as it is written in a file."""
     return name if is_name(name) else quote(name)
 
 
 def escaped(text: str) -> str:
-    """Text in a snippet."""
+    """Text escaped for a snippet."""
     return text.replace("\\", "\\\\").replace("$", "\\$").replace("}", "\\}")
 
 
@@ -116,7 +116,8 @@ def port_words(place: Place) -> Iterator[Proposal]:
 
 
 def clauses(given: tuple[str, ...]) -> Iterator[Proposal]:
-    """Verbs and heads of clauses, in the order in which a requirement is written; what stands once is left out."""
+    """Verbs and heads of clauses, in the order in which a requirement is written; those that may occur once and do are
+    left out."""
     for word, snippet in _CLAUSES:
         head = word.split()[0]
         if head not in _ONCE or head not in given:
@@ -127,7 +128,7 @@ def clauses(given: tuple[str, ...]) -> Iterator[Proposal]:
 
 
 def requirements(workspace: Workspace, path: str) -> Iterator[Proposal]:
-    """Requirements of every file, those in scope first; one that the file cannot see brings its include."""
+    """Requirements of every file, those in scope first; one out of scope comes with its include."""
     for found, include in _defined(workspace, path, Kind.REQUIREMENT):
         item = found.symbol.target
         text = requirement_detail(item) if isinstance(item, Requirement) else ""
@@ -151,7 +152,7 @@ def trees(workspace: Workspace, path: str) -> Iterator[Proposal]:
 
 
 def undeclared(workspace: Workspace, path: str, kind: Kind, what: What) -> Iterator[Proposal]:
-    """The names that the file, or one that it is linked with, refers to and that no file declares yet."""
+    """The names that the file or a linked one refers to and that no file declares yet."""
     found: set[str] = set()
     for other in workspace.linked(path):
         file = workspace.files[other]
@@ -188,8 +189,8 @@ def _contexts(workspace: Workspace, path: str) -> Iterator[Proposal]:
 def operands(
     workspace: Workspace, path: str, place: Place, wanted: Measured, contexts: bool = True
 ) -> Iterator[Proposal]:
-    """What may be compared: the requirement's parameters, contexts, signals; those first that measure what is wanted,
-    and no others where that is certain."""
+    """Operands of a comparison: the requirement's parameters, contexts, signals; those that measure what is wanted come
+    first and, if that is certain, alone."""
     named = parameters_at(place)
     found = [Proposal(name, "parameter", "parameter", name) for name in named]
     found += _contexts(workspace, path) if contexts else ()
@@ -233,7 +234,7 @@ def node_names(workspace: Workspace, path: str) -> Iterator[Proposal]:
 
 
 def kinds(workspace: Workspace, path: str) -> Iterator[Proposal]:
-    """What may stand behind `every`: kinds of nodes, be they only declared; a tree where its name is one."""
+    """What may follow `every`: kinds of nodes, even if only declared; a tree whose name is one."""
     known = workspace.store.ask(nodes_in_scope, path)
     names = [one for one in node_names(workspace, path) if one.kind == "node" or known.every(one.label)]
     yield from (one for one in names if one.kind != "tree")
@@ -244,7 +245,7 @@ def kinds(workspace: Workspace, path: str) -> Iterator[Proposal]:
 
 
 def keys(workspace: Workspace, path: str, entry: Entry, root: bool) -> Iterator[Proposal]:
-    """The entries of a tree's blackboard, and with `@` those of the root's; or the root's alone, without."""
+    """The entries of a tree's blackboard, and with `@` those of the root's; without an item, only the root's."""
     of_root = _keys_of_root(workspace, path)
     if root or not isinstance(entry.item, Tree):
         yield from (Proposal(name, "key", "root blackboard", name) for name in of_root)
@@ -274,7 +275,7 @@ def _keys_of_root(workspace: Workspace, path: str) -> list[str]:
 
 
 def includes(workspace: Workspace, path: str, quoted: bool) -> Iterator[Proposal]:
-    """The project's other files, as an include names them: from an include path where one leads there."""
+    """The project's other files, as an include names them: relative to an include path if one leads there."""
     folder = posixpath.dirname(path) or "."
     for other in sorted(workspace.files):
         if other == path:
@@ -340,7 +341,7 @@ def ports(known: tuple[NodePort, ...], given: tuple[str, ...], node: LineNode) -
 
 
 def attributes(given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
-    """`name`, and what the engine reads at every node."""
+    """`name`, and the attributes that the engine reads at every node."""
     if "name" not in given:
         yield Proposal("name", "attribute", "instance name", "name = ", 'name = "$0"')
     for kind in RESERVED_ATTRIBUTES.values():
@@ -351,7 +352,7 @@ def attributes(given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
 
 
 def attribute_values(key: str) -> Iterator[Proposal]:
-    """What may be given to an attribute that is no port; entries may not."""
+    """The values of an attribute that is not a port; entries are not allowed there."""
     if RESERVED_ATTRIBUTES[key].is_script:
         yield from words(('""',), "keyword")
     elif key == "_autoremap":
@@ -359,7 +360,7 @@ def attribute_values(key: str) -> Iterator[Proposal]:
 
 
 def port_values(workspace: Workspace, path: str, entry: Entry | None, port: NodePort | None) -> Iterator[Proposal]:
-    """What may be given to a port."""
+    """The values of a port."""
     if port is not None and port.content == "script":
         yield from words(('""',), "keyword")
         return
@@ -371,7 +372,7 @@ def port_values(workspace: Workspace, path: str, entry: Entry | None, port: Node
     if port is not None and port.type == "bool":
         yield from words(("true", "false"), "enum")
     if port is not None and port.type.endswith("NodeStatus"):
-        said = [word for word in port.doc.replace(",", " ").split() if word in _STATUSES]  # by the engine's table
+        said = [word for word in port.doc.replace(",", " ").split() if word in _STATUSES]  # from the engine's table
         yield from words(said if port.type.startswith("BT::") and said else _STATUSES, "enum")
 
 
@@ -399,7 +400,7 @@ def port_unit(workspace: Workspace, path: str, node: LineNode, key: str) -> str 
 
 
 def qualities(workspace: Workspace, path: str, place: Place) -> Iterator[Proposal]:
-    """Qualities: one's own, then characteristics, then their parts; after `performance-efficiency.`, its parts alone.
+    """Qualities: custom ones, then characteristics, then their parts; after `performance-efficiency.`, its parts alone.
 
     A part is found by its own name and by its characteristic's.  Some editors compare the typed letters with the start
     of the filter text alone, so the name that begins with these letters comes first in it.
@@ -437,8 +438,8 @@ def _short_names(part: str, chosen: str) -> Iterator[Proposal]:
 
 
 def units(wanted: Measured) -> Iterator[Proposal]:
-    """Units, those first that measure what is wanted, and of them the one that is spelt so; no others where that is
-    certain."""
+    """Units; those that measure what is wanted come first, beginning with the one that is spelt the same; if that is
+    certain, they come alone."""
     compounds = dict.fromkeys((*_COMPOUNDS, wanted.unit or "1"))
     known = [*symbols(), *(unit for text in compounds if text != "1" and (unit := parse_unit(text)) is not None)]
     known = list({unit.symbol: unit for unit in known}.values())
@@ -450,7 +451,7 @@ def units(wanted: Measured) -> Iterator[Proposal]:
 
 
 def units_of_names() -> Iterator[Proposal]:
-    """What may stand behind the `:` of a signal or a parameter."""
+    """What may follow the `:` of a signal or a parameter."""
     yield from units(Measured())
     yield from words(("bool", "text", "1"), "unit")
 
@@ -464,8 +465,8 @@ def rules() -> Iterator[Proposal]:
 
 
 def _defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Definition, str]]:
-    """Every definition of a kind: those in scope, then those of other files with the file to include, where including
-    it defines nothing twice and goes in no circle."""
+    """Every definition of a kind: those in scope, then those of other files with the file to include, unless including
+    it duplicates a definition or makes a circle."""
     scope = workspace.scope(path)
     for name in scope.names(kind):
         if (found := scope.find(kind, name)) is not None:
@@ -483,7 +484,7 @@ def _defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Defi
 
 
 def _clashes(workspace: Workspace, path: str, other: str) -> bool:
-    """Whether a file, or one that it includes, defines anew what is in scope; or includes the one that is looked at."""
+    """Whether a file, or one that it includes, redefines what is in scope, or includes this file."""
     scope = workspace.scope(path)
     brought = workspace.closure(other)
     known = [workspace.files[each].defined_names for each in scope.paths]
@@ -506,7 +507,7 @@ def _is_same_model(workspace: Workspace, path: str, other: str, kind: Kind, name
 
 
 def _mentioned(workspace: Workspace, paths: Iterable[str], *kinds: What) -> Iterator[Mention]:
-    """What is mentioned of one or two kinds, in the order of the text."""
+    """The references of one or two kinds, in the order of the text."""
     first, last = kinds[0], kinds[-1]
     for path in paths:
         file = workspace.files[path]
@@ -562,7 +563,7 @@ def _with_ports(head: str, needed: Iterable[NodePort]) -> str | None:
 
 
 def _hole(index: int, port: NodePort) -> str:
-    """A place to fill in with what the port takes."""
+    """A snippet's placeholder for a value of the port."""
     if port.content == "script":
         return f'"${{{index}:true}}"'
     if port.unit == "ms":

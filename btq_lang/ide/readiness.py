@@ -1,6 +1,6 @@
-"""What the first questions about a file would wait for, made before they are asked.
+"""Computes in advance what the first requests about a file would wait for.
 
-One invariant: no answer changes by it, only the time to the first one; what is made is what a question would make.
+One invariant: it changes no result, only the time of the first one.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _A_STEP = 50  # items, of some 20 nodes each: a few milliseconds
 
 
 def getting_ready(workspace: Workspace, path: str) -> Iterator[None]:
-    """Get ready for questions about a file; whoever does it may do something else between two steps."""
+    """Prepare for requests about a file; the caller may do something else between two steps."""
     for name in ("ports", "proposals", "completion", "hover", "navigation"):
         import_module(f"{__package__}.{name}")
         yield
@@ -24,7 +24,7 @@ def getting_ready(workspace: Workspace, path: str) -> Iterator[None]:
         _ = facts.kinds
         if done % _A_STEP == 0:
             yield
-    from btq_lang.ide.completion import complete  # they are there by now
+    from btq_lang.ide.completion import complete  # imported already when this runs
     from btq_lang.ide.hover import hover
 
     line = _INDENTED.search(file.text)
@@ -35,4 +35,4 @@ def getting_ready(workspace: Workspace, path: str) -> Iterator[None]:
         complete(workspace, path, line.end())
 
 
-_INDENTED = re.compile(r"^[ \t]+(?=[^\s])", re.MULTILINE)  # as most lines are where somebody types
+_INDENTED = re.compile(r"^[ \t]+(?=[^\s])", re.MULTILINE)  # as most lines that are being typed

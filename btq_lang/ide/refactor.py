@@ -1,6 +1,6 @@
-"""Refactorings of a tree: a subtree taken out or put in, a node wrapped or unwrapped, a requirement lifted.
+"""Refactorings of a tree: extract or inline a subtree, wrap or unwrap a node, lift a requirement.
 
-One invariant: what the mission does stays what it does; a refactoring that cannot promise it is not offered.
+One invariant: the behavior of the mission does not change; a refactoring that cannot guarantee it is not offered.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class Refactoring(Record):
-    """A change that keeps the meaning.  kind: as LSP has it."""
+    """A change that keeps the meaning.  kind: of LSP."""
 
     title: str
     kind: str
@@ -50,7 +50,7 @@ class Refactoring(Record):
 
 
 def refactorings(workspace: Workspace, path: str, offset: int) -> Iterator[Refactoring]:
-    """What can be done with the node, or the requirement, at a place."""
+    """The refactorings of the node, or the requirement, at a place."""
     file = workspace.files[path]
     entry = entry_at(workspace, path, offset)
     if entry is None or file.origin is not None or any(one.rule == "syntax-error" for one in entry.diagnostics):
@@ -66,7 +66,7 @@ def refactorings(workspace: Workspace, path: str, offset: int) -> Iterator[Refac
         yield from _wrap(workspace, path, standing)
 
 
-# ---- a subtree taken out ----
+# ---- extract a subtree ----
 
 
 def _extract(workspace: Workspace, path: str, standing: Standing) -> Iterator[Refactoring]:
@@ -92,8 +92,8 @@ def _extract(workspace: Workspace, path: str, standing: Standing) -> Iterator[Re
 
 
 def _keys_in(workspace: Workspace, path: str, entry: Entry, top: Node) -> dict[str, str] | None:
-    """The entries of the tree's blackboard that nodes below one use, each with input, output or inout; None where one
-    cannot be passed on by its name."""
+    """The entries of the tree's blackboard that the nodes below one use, each with input, output or inout; None if one
+    cannot be passed on under its name."""
     nodes = {id(node) for node in top.walk()}
     found: dict[str, set[str]] = {}
     for mention in workspace.files[path].mentions_of(entry):
@@ -116,11 +116,11 @@ def _way(workspace: Workspace, path: str, mention: Mention) -> str:
 
 
 def _free_name(workspace: Workspace, path: str, node: Node) -> str:
-    """The node's name, made one that the engine takes for a tree; where it has none, or it is a skill's, `Extracted`.
-    It is free in all files of the mission, for a build puts their trees and nodes side by side."""
+    """The node's name, adapted so that the engine accepts it for a tree; `Extracted` if it has none or a skill has that
+    name. It is free in all files of the mission, for a build puts their trees and nodes side by side."""
     own = node.name.text if node.name is not None and not is_placeholder(node) else ""
     base = legal_name(own) if is_name(own) else "Extracted"
-    taken = {*taken_names(workspace.store, path, ""), *NODE_CLAUSES}  # a clause behind SubTree is one, and no name
+    taken = {*taken_names(workspace.store, path, ""), *NODE_CLAUSES}  # a clause after SubTree is not taken for a name
     taken.update(*(names_of_nodes(workspace.files[each]) for each in workspace.linked(path)))
     name, number = base, 2
     while name in taken or lookup(name) is not None:
@@ -129,17 +129,17 @@ def _free_name(workspace: Workspace, path: str, node: Node) -> str:
 
 
 def names_of_nodes(file: File) -> set[str]:
-    """The IDs of a file's nodes and of the trees that it runs, and those that its placeholders become."""
+    """The IDs of a file's nodes, of the trees that it runs, and of its placeholders."""
     found = {name for kind, name in file.used_names if kind in (Kind.MODEL, Kind.TREE)}
-    if not found.isdisjoint(PLACEHOLDERS):  # else its tree is not asked for: it may have been let go
+    if not found.isdisjoint(PLACEHOLDERS):  # else the tree is not requested: it may have been released
         nodes = (node for tree in _trees(file) for node in tree.walk() if is_placeholder(node))
         found |= {legal_name(node.name.text) for node in nodes if node.name is not None}
     return found
 
 
 def _parts_a_time(workspace: Workspace, path: str, top: Node) -> bool:
-    """Whether a build enforces the time between two nodes, and only one of them is among those below a node: in
-    another tree than the other one, no node would be left whose time that is."""
+    """Whether a build enforces the time between two nodes of which only one is below the extracted node: with the other
+    in another tree, no node is left whose duration that is."""
     inside = {id(node) for node in top.walk()}
     return any(
         len({id(node.node) in inside for node in applied.nodes}) > 1
@@ -151,7 +151,7 @@ def _parts_a_time(workspace: Workspace, path: str, top: Node) -> bool:
 
 
 def _has_hard_span(file: File) -> bool:
-    """Whether a requirement in a file enforces a time between two events: few do, and all others are not resolved."""
+    """Whether a requirement in a file enforces a time between two events: few do, and others need not be resolved."""
     targets = (symbol.target for symbol in file.names.symbols[Kind.REQUIREMENT])
     clauses = [target.clauses for target in targets if isinstance(target, Requirement)]
     return any(
@@ -177,7 +177,7 @@ def _item_end(file: File, entry: Entry) -> int:
 _ENFORCED = ("fail", "halt")
 
 
-# ---- a subtree put in ----
+# ---- inline a subtree ----
 
 
 def _inline(workspace: Workspace, path: str, standing: Standing) -> Iterator[Refactoring]:
@@ -235,7 +235,7 @@ def _applied(text: str, edits: list[Edit]) -> str:
     return text
 
 
-# ---- a node wrapped and unwrapped ----
+# ---- wrap and unwrap a node ----
 
 
 def _wrap(workspace: Workspace, path: str, standing: Standing) -> Iterator[Refactoring]:
@@ -273,7 +273,7 @@ _WRAPPERS = (
 )
 
 
-# ---- a requirement lifted to the file's level ----
+# ---- lift a requirement to the file's level ----
 
 
 def _lift(workspace: Workspace, path: str, entry: Entry, offset: int) -> Iterator[Refactoring]:
@@ -289,7 +289,7 @@ def _lift(workspace: Workspace, path: str, entry: Entry, offset: int) -> Iterato
             if not entry.start + requirement.start <= offset <= entry.start + requirement.end:
                 continue
             if quality is not None and workspace.scope(path).is_repeated(Kind.REQUIREMENT, requirement.name.text):
-                continue  # the item says its quality, which the other places leave to what encloses them
+                continue  # the item names its quality, which the other places leave to what encloses them
             name = _written(requirement.name.text)
             start = entry.start + tree.start
             margin = blanks_before(file.text, start)  # in a Root block, items are indented
@@ -317,7 +317,7 @@ def _defined_in(clause: object) -> Iterator[tuple[Requirement, Quality | None]]:
 
 
 def _item(file: File, entry: Entry, requirement: Requirement, quality: QualityPath | None, margin: str) -> str:
-    """The requirement as an item.  margin: what its first line is to stand behind, and the others begin with."""
+    """The requirement as an item.  margin: its indentation."""
     assert requirement.name is not None, "what has no name cannot be referred to"
     path = requirement.quality or quality
     shown = f" : {'.'.join(_written(name.text) for name in path.names)}" if path is not None else ""

@@ -1,4 +1,4 @@
-"""From a requirement to the nodes at which it is named, and from a name to what says of which kind it is."""
+"""From a requirement to the nodes that refer to it, and from a name to the declaration of its type."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def goto_implementation(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...]:
-    """The nodes at which the requirement that stands here is named; of everything else, its definition."""
+    """The nodes that refer to the requirement at a place; for everything else, the definition."""
     found = at(workspace, path, offset)
     wanted = subject(workspace, found) if found is not None else None
     if found is None or wanted is None or wanted.what is not What.REQUIREMENT:
@@ -28,7 +28,7 @@ def goto_implementation(workspace: Workspace, path: str, offset: int) -> tuple[T
 
 
 def goto_type(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...]:
-    """The model or the tree of the node that an instance name is of; the declaration of a requirement's own quality."""
+    """The model or the tree of a named node; the declaration of a requirement's custom quality."""
     found = at(workspace, path, offset)
     if found is None:
         return ()

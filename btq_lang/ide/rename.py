@@ -1,7 +1,7 @@
-"""Renaming what stands here: in every file, or not at all and with the reason.
+"""Renaming: in every file, or not at all, with the reason.
 
-One invariant: after a rename every word that meant the thing means it still, and no other word has come to mean it;
-where that cannot be had, nothing is renamed.  The proof is made on the texts themselves, after the edits.
+One invariant: after a rename every word that meant the thing still does, and no other word does; where that is
+impossible, nothing is renamed.  It is proved on the texts themselves, after the edits.
 """
 
 from __future__ import annotations
@@ -23,26 +23,26 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class Renamable(Record):
-    """A name that can be changed: where it stands, and what it says now."""
+    """A name that can be changed: its place and its text."""
 
     span: Span
     name: str
 
 
 class Refusal(Record):
-    """Why something is not renamed, as a sentence."""
+    """The reason why something cannot be renamed, as a sentence."""
 
     reason: str
 
 
 class Renaming(Record):
-    """What to change in which file."""
+    """The edits of a rename, by file."""
 
     edits: dict[str, tuple[Edit, ...]]
 
 
 def prepare_rename(workspace: Workspace, path: str, offset: int) -> Renamable | Refusal:
-    """Whether what stands here can be renamed."""
+    """Whether the word at a place can be renamed."""
     found = at(workspace, path, offset)
     if found is None:
         return Refusal("nothing to rename here")
@@ -52,10 +52,10 @@ def prepare_rename(workspace: Workspace, path: str, offset: int) -> Renamable | 
 
 
 def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming | Refusal:
-    """The edits that give what stands here another name.
+    """The edits that rename what the word at a place means.
 
     Args:
-        name: as it is meant; quotes are put where the place asks for them.
+        name: without quotes, which are added where needed.
     """
     ready = prepare_rename(workspace, path, offset)
     found = at(workspace, path, offset)
@@ -68,18 +68,18 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
         return Refusal(reason)
     places = tuple(everywhere(workspace, wanted))
     foreign = next((place.path for place in places if not is_btq(place.path)), None)
-    if foreign is not None:  # a node without a model means the same in files that know nothing of each other
+    if foreign is not None:  # a node without a model is the same in unrelated files
         shown = workspace.project.shown(foreign)
         return Refusal(f"cannot rename `{wanted.name}`: {shown}, which is not a .btq file, also uses it")
     if not (name.isascii() and name.isidentifier()) and any(_is_in_script(place.mention) for place in places):
         return Refusal("a name in a script may contain only the letters A to Z, digits and `_`")
-    # In a tree that runs itself, an entry may be a port as well: `{=}` then stays what it is.
+    # In a tree that runs itself, an entry may be a port as well: `{=}` then stays as it is.
     pairs = [
         {id(place.mention.pair) for place in places if place.mention.what is what} for what in (What.PORT, What.KEY)
     ]
     both = pairs[0] & pairs[1]
     reasons: list[str] = []
-    for in_quotes in (False, True):  # a word that the language knows is a name where it is quoted
+    for in_quotes in (False, True):  # a word of the language is a name if it is quoted
         edits: dict[str, tuple[Edit, ...]] = {}
         for place in places:
             edits[place.path] = (*edits.get(place.path, ()), *_edits(place, wanted, name, in_quotes, both))
@@ -92,7 +92,7 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
 
 
 def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
-    """Why a subject is renamed by nobody; empty where it can be."""
+    """Why a subject cannot be renamed; empty if it can."""
     mention = found.mention
     if wanted.what in _FIXED:
         return f"cannot rename {_FIXED[wanted.what]}"
@@ -120,7 +120,7 @@ def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
 
 
 def _unfit(wanted: Subject, name: str) -> str:
-    """Why a name cannot be one of such a thing; empty where it can."""
+    """Why a name is not allowed for such a thing; empty if it is."""
     if not name.strip() or "\n" in name or "\r" in name:
         return "a name needs at least one character, on one line"
     if wanted.what in _PLAIN and not is_name(name):
@@ -140,7 +140,7 @@ def _unfit(wanted: Subject, name: str) -> str:
 
 
 def _is_the_other(workspace: Workspace, path: str, wanted: Subject, name: str) -> str:
-    """Why a signal cannot have the name of a context, nor a context that of a signal; empty where it can."""
+    """Why a signal cannot have the name of a context, or a context that of a signal; empty if it can."""
     other = {What.SIGNAL: Kind.CONTEXT, What.CONTEXT: Kind.SIGNAL}.get(wanted.what)
     taken = workspace.scope(path).find(other, name) if other is not None else None
     if taken is None or other is None:
@@ -150,7 +150,7 @@ def _is_the_other(workspace: Workspace, path: str, wanted: Subject, name: str) -
 
 
 def _is_in_script(mention: Mention) -> bool:
-    """Whether it is an entry's name in a script, and neither a value by itself nor in braces."""
+    """Whether it is an entry's name in a script, neither a value by itself nor in braces."""
     text = mention.word.text
     return mention.what is What.KEY and text != mention.name and not text.startswith("{")
 
@@ -169,7 +169,7 @@ def _edits(place: Found, wanted: Subject, name: str, in_quotes: bool, both: set[
     value = pair.value if pair is not None else None
     is_same = value is not None and value.text.strip("{} ") == "="
     if mention.what is What.PORT and value is not None and is_same and id(pair) not in both:
-        # `{=}` is the entry called as the port was: the entry has not changed its name.
+        # `{=}` is the entry named as the port was: the entry keeps its name.
         yield Edit(value.span.shifted(start), f"{{{wanted.name}}}")
 
 
@@ -181,7 +181,7 @@ def _changes_meaning(
     edits: dict[str, tuple[Edit, ...]],
     name: str,
 ) -> str:
-    """Why the texts after the edits do not mean the same; empty where they do."""
+    """Why the texts after the edits have another meaning; empty if they do not."""
     after = workspace
     for changed, made in edits.items():
         after = after.with_file(changed, apply_edits(workspace.files[changed].text, made))
@@ -205,7 +205,7 @@ def _is_called(mention: Mention, name: str) -> bool:
 
 
 def _after(offset: int, edits: tuple[Edit, ...]) -> int:
-    """Where an offset is after some edits."""
+    """The position of an offset after some edits."""
     moved = offset
     for edit in edits:
         if edit.span.end <= offset:

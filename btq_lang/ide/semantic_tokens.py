@@ -1,4 +1,4 @@
-"""Semantic tokens: what each word is, for colouring, in the five integers a token of LSP 3.16."""
+"""Semantic tokens: the type of each word, for colouring, as LSP 3.16 encodes it, in five integers a token."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def encoded_within(workspace: Workspace, path: str, within: Span, encoding: Encoding) -> list[int]:
-    """The tokens on the lines that a span touches; what stands before them is not looked at."""
+    """The tokens on the lines that a span touches; computed without those before them."""
     file = workspace.files[path]
     known = known_of(workspace, path)
     first, last = (file.lines.position(offset).line for offset in within)
@@ -45,8 +45,8 @@ def known_of(workspace: Workspace, path: str) -> Known:
 
 
 def groups(parsed: Parsed) -> list[tuple[int, int]]:
-    """The entries of each stretch of a file: the first one, and the one behind the last.  Joined, the stretches are the
-    file; what stands before the first item has none."""
+    """The entries of each stretch of a file: the indices of the first and after the last.  Joined, the stretches are
+    the file; there are none before the first item."""
     entries = parsed.entries
     begins = [index for index, start in enumerate(parsed.starts) if start is not None or index == 0]
     found = [*pairwise((*begins, len(entries)))]

@@ -23,10 +23,10 @@ _Rewrites: TypeAlias = Mapping[int, tuple[Edit, ...]]
 def short_form(
     workspace: Workspace, path: str, offset: int, found: Sequence[Diagnostic] | None = None
 ) -> Iterator[Refactoring]:
-    """The node at a place, and the whole file, in the short form; nothing where they are.
+    """The refactorings of the node at a place, and of the whole file, to the short form, unless they have it already.
 
     Args:
-        found: the diagnostics of the file, if somebody has them already.
+        found: the diagnostics of the file, if they are known already.
     """
     file = workspace.files[path]
     entry = entry_at(workspace, path, offset)
@@ -43,7 +43,7 @@ def short_form(
 
 
 def _placeholders(workspace: Workspace, path: str, found: Sequence[Diagnostic] | None) -> _Rewrites:
-    """How the rule about classic placeholders rewrites them, by the places where they begin."""
+    """The rewrites of classic placeholders, as their rule offers them, by start."""
     if not any(word in workspace.files[path].text for word in PLACEHOLDERS):
         return {}
     return {

@@ -1,4 +1,4 @@
-"""Signature help: the ports of the node in whose brackets one types."""
+"""Signature help: the ports of the node in whose brackets the cursor is."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ class Parameter(Record):
 
 
 class Signature(Record):
-    """The ports of a node on one line.  active: which one is being given; None: one that it has not."""
+    """The ports of the node on one line.  active: the one that is being given a value; None: a name that is not a
+    port."""
 
     label: str
     documentation: str

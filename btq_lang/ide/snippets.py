@@ -1,4 +1,4 @@
-"""Snippets: whole constructs with places to fill in, proposed where such a construct may begin."""
+"""Snippets: whole constructs with placeholders, proposed where such a construct may begin."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The semantic tokens of a stretch of a file, an item mostly: the words that its tree tells of, and what is between.
+"""The semantic tokens of a stretch of a file, mostly an item: the words that its tree names, and the text between.
 
-One invariant: tokens are in the order of the text, none overlaps another, none goes over a line end.  Between two words
-of the tree there stands nearly always what stands between most: of each such text the tokens are made once.
+One invariant: tokens are in the order of the text, none overlaps another, none crosses a line end.  The text between
+two words of a tree is nearly always one of a few, so its tokens are cached by text.
 """
 
 from __future__ import annotations
@@ -37,16 +37,16 @@ if TYPE_CHECKING:
     from btq_lang.util.text import Encoding
     from btq_lang.workspace.references import Mention, Owner
 
-    Token: TypeAlias = tuple[int, int, str]  # where it starts and ends, and its look
+    Token: TypeAlias = tuple[int, int, str]  # start, end and appearance
     World: TypeAlias = tuple[str, tuple[str, ...], tuple[str, ...]]
 
 
 class Known:
-    """What is asked of the rest of the workspace to colour a file.
+    """What colouring a file needs to know of the rest of the workspace.
 
     Attributes:
-        world: all that there is to know: the edition of the quality model, the names of trees, and one's own qualities.
-        asked: the names that were asked for.
+        world: all that it may use: the edition of the quality model, the names of trees, and custom qualities.
+        asked: the names that were looked up.
     """
 
     def __init__(self, world: World) -> None:
@@ -60,17 +60,17 @@ class Known:
         return name in self._trees
 
     def is_standard(self, name: str) -> bool:
-        """Whether a quality is one of the standard, and not one's own."""
+        """Whether a quality is a standard one, and not a custom one."""
         self.asked.add(name)
         return name not in self._qualities and match_of(name, self._edition).quality is not None
 
     def answers(self, names: frozenset[str]) -> tuple[str, frozenset[str], frozenset[str]]:
-        """What changes when an answer about one of these names does."""
+        """A value that changes when a look-up of one of these names does."""
         return self._edition, names & self._trees, names & self._qualities
 
 
 class Stretch(Record):
-    """A part of a file that can be cut into tokens by itself: an item, seldom more, and what stands behind it."""
+    """A part of a file that can be tokenized by itself: an item, seldom more, and the text after it."""
 
     start: int
     end: int
@@ -81,9 +81,9 @@ class Encoded(Record):
     """The tokens of a stretch.
 
     Attributes:
-        tokens: of each, as JSON has them, five integers: lines and columns from the token before or from the start of
-            the stretch, length, type, and modifiers as bits.
-        line: that of the last one, counted from the start of the stretch.
+        tokens: five integers of each, in JSON: lines and columns from the previous token or from the start of the
+            stretch, length, type, and modifiers as bits.
+        line: of the last one, counted from the start of the stretch.
     """
 
     tokens: list[str]
@@ -115,7 +115,7 @@ class _Words(Listener):
     """The words of a tree as tokens.
 
     Attributes:
-        by: where the item begins whose words are told.
+        by: the start of the item.
     """
 
     def __init__(self, known: Known) -> None:
@@ -145,7 +145,7 @@ class _Words(Listener):
         self._add(word, PLAIN.get(word.kind, TEXT))
 
     def part(self, mention: Mention) -> None:
-        """Cut the word that it is in, if that was told just before."""
+        """Split the word around a reference, if it was the previous one."""
         begin, end = mention.span.start + self.by, mention.span.end + self.by
         if begin == end:
             return
@@ -168,7 +168,7 @@ class _Words(Listener):
         self.found.append((start, start + len(word.raw), look))
 
     def _look(self, what: What, word: Word, name: str, defines: bool, owner: Owner) -> str:
-        """Of what can be several things."""
+        """The appearance of a word that can be several things."""
         if what is What.NODE:
             return NEW_NODE if defines and word.kind != SYMBOL else look_of_node(name, word.kind)
         if what is What.QUALITY:
@@ -184,11 +184,11 @@ class _Words(Listener):
 
 @lru_cache(2_000)
 def _between(text: str) -> list[Token]:
-    """The tokens between two words of a tree, before the first or behind the last."""
+    """The tokens between two words of a tree, before the first or after the last."""
     head, sign, comment = text.partition("\n#")
     end = comment.find("\n")
     if sign and end == len(comment.rstrip()) and _BEGINNING.isdisjoint(head) and "\r" not in comment:
-        start = len(head) + 1  # in front of an item there often is a comment, each of them another one
+        start = len(head) + 1  # an item is often preceded by a comment, each a different one
         return [*_between(text[:start]), (start, start + 1 + end, PLAIN[COMMENT])]
     found: list[Token] = []
     before = ""
@@ -202,10 +202,10 @@ def _between(text: str) -> list[Token]:
 
 
 class _Encoder:
-    """Who encodes tokens, in the order of the text: one over a line end as one on each of its lines.
+    """Encodes tokens in the order of the text; one that crosses a line end becomes one on each line.
 
     Attributes:
-        line: that of the last one.
+        line: of the last one.
     """
 
     def __init__(self, text: str, encoding: Encoding) -> None:
@@ -216,7 +216,7 @@ class _Encoder:
         self._is_plain = encoding == "code-points" or text.isascii()
         self._has_returns = "\r" in text
         self._column = 0
-        # The line where the next one is looked for: which it is, where it begins, and where the next one does.
+        # The line where the next token is looked for: its number, its start, and the start of the line after it.
         self._at = self._begin = 0
         self._end = self._next_line(0)
 
@@ -241,7 +241,7 @@ class _Encoder:
         self._column = column
 
     def _next_line(self, at: int) -> int:
-        """Where the next line begins; behind the last one, what is behind all of the text."""
+        """Where the next line begins; for the last one, an offset after the text."""
         if self._has_returns:
             found = LINE_END.search(self._text, at)
             end = found.end() if found else 0
@@ -251,7 +251,7 @@ class _Encoder:
 
 
 def _lines(raw: str) -> list[tuple[int, int]]:
-    """Where the lines of a token start and end that have something in them."""
+    """The start and end of each line of a token that has text."""
     found: list[tuple[int, int]] = []
     start = 0
     for line in LINE_END.finditer(raw):
@@ -263,4 +263,4 @@ def _lines(raw: str) -> list[tuple[int, int]]:
     return found
 
 
-_BEGINNING: Final = frozenset("\"'=/\r")  # what may go on over a line end, and what a comment may not stand behind
+_BEGINNING: Final = frozenset("\"'=/\r")  # what may continue after a line end, and what a comment must not follow

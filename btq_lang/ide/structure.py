@@ -1,4 +1,4 @@
-"""The shape of a text: what folds, what a selection grows to, and which words lead to other files."""
+"""The structure of a text: folding, growing selections, and links to other files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Fold(Record):
 
 
 class Link(Record):
-    """A word that leads to a file; no target: the file is not there."""
+    """A word that leads to a file; target: None if the file does not exist."""
 
     span: Span
     target: str | None
@@ -33,7 +33,7 @@ def folding_ranges(workspace: Workspace, path: str) -> tuple[Fold, ...]:
     found: list[Fold] = []
     blocks: list[int] = []  # where the line above each open block begins
     brackets: list[int] = []
-    line = end = 0  # where the logical line at hand begins, and where its last word ends
+    line = end = 0  # where the current logical line begins, and where its last word ends
     at_start = True
     for token in file.parsed.tokens:
         if token.kind == INDENT:
@@ -82,8 +82,8 @@ def _comment_runs(workspace: Workspace, path: str) -> Iterator[Fold]:
 
 
 def selection_range(workspace: Workspace, path: str, offset: int) -> tuple[Span, ...]:
-    """What a selection at a place grows to, step by step, the smallest first: the word, what is in a string, the pair,
-    the brackets, the node, the node with its block, those it stands in, the item, the file."""
+    """The selections around a place, the smallest first: the word, the contents of a string, the pair, the brackets,
+    the node, the node with its block, those around it, the item, the file."""
     file = workspace.files[path]
     spans = {Span(0, len(file.text))}
     for token in file.parsed.tokens:

@@ -1,4 +1,4 @@
-"""Removal of what is unused: items that a rule reports, and includes that are duplicate or bring nothing.
+"""Removal of what is unused: items that a rule reports, and includes that are duplicate or add nothing.
 
 One invariant: an include is removed only where no finding, no name and no node that a requirement applies to changes.
 Includes are never sorted, because their order has a meaning: of two trees with one ID the engine runs the last one that
@@ -61,11 +61,11 @@ def removal(file: File, entry: Entry) -> tuple[Edit, ...]:
 
 
 def needless_includes(workspace: Workspace, path: str) -> tuple[NeedlessInclude, ...]:
-    """The includes of a file that repeat an earlier one, or that bring nothing the mission uses.
+    """The includes of a file that repeat an earlier one, or that add nothing the mission uses.
 
     Only a mission has unused ones: a file that includes a library may use what the library includes.
     """
-    return workspace.store.ask(_needless_includes, path)  # an editor asks whenever the cursor moves
+    return workspace.store.ask(_needless_includes, path)  # editors request it whenever the cursor moves
 
 
 def _needless_includes(store: Store[Workspace], path: str) -> tuple[NeedlessInclude, ...]:
@@ -107,7 +107,7 @@ def _duplicates(workspace: Workspace, path: str, includes: Sequence[Include]) ->
 
 
 def _brought_by(workspace: Workspace, path: str, include: Include, others: Sequence[Include]) -> set[str]:
-    """The files that only one of the includes brings; empty where it is not found, or includes the mission."""
+    """The files that only one of the includes adds; empty if it is not found, or includes the mission."""
 
     def closure(of: Include) -> set[str]:
         target = workspace.included_by(path, of)
@@ -159,8 +159,8 @@ def _said(found: Diagnostic) -> tuple[str, str]:
 
 
 def _without(file: File, spans: Iterable[Span]) -> tuple[Edit, ...]:
-    """The edits that remove some spans: with their lines where nothing else is on them, and with the blank lines that
-    would be left over; a comment after one stays."""
+    """The edits that remove some spans: with their lines if nothing else is on them, and with the blank lines that
+    would remain; a comment after one stays."""
     text, lines = file.text, file.lines
     edits: list[Edit] = []
     gone: set[int] = set()
@@ -217,7 +217,7 @@ def _name(include: Include) -> str:
 
 
 def _is_among(one: Include, includes: Sequence[Include]) -> bool:
-    """Whether it is one of them; two includes with the same text are equal, so `in` would not tell."""
+    """Whether it is one of them; two includes with the same text are equal, so `in` is not enough."""
     return any(one is other for other in includes)
 
 
