@@ -1,11 +1,11 @@
-"""What is known beforehand: the engine's nodes and names, its attributes and literals, and the quality models.
+"""Static knowledge: the engine's nodes and names, its attributes and literals, and the quality models.
 
 nodes       look-up of node kinds; `kinds` holds the records, `engine_nodes` and `words` the rows
-attributes  attributes that are no ports: pre- and post-conditions, and what tools write
+attributes  attributes that are not ports: pre- and post-conditions, and those of tools
 names       which names the engine refuses
 literals    what the engine reads from a literal
 qualities   look-up of quality names; `quality_model` and `quality_words` hold the rows
-units       which words are units, and how values convert; the lexer asks it
+units       which words are units, and how values convert; used by the lexer
 language    the words of the language, as completion and `btq explain` show them; `name_kinds`, what names can name
 verbs       the verbs of clauses; `measured`, what their numbers measure; `verdicts`, what comes of them
 

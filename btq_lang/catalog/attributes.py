@@ -1,8 +1,8 @@
-"""Attributes of a node that are no ports: the engine's pre- and post-conditions, and what tools write and it ignores.
+"""Attributes of a node that are not ports: the engine's pre- and post-conditions, and those of tools, which it ignores.
 
 One invariant: every attribute here begins with `_`; the engine takes no such attribute for a port.  It does not know
-`name` and `ID`, which a file says in other ways.  An attribute with a `_` that is not here is most likely a
-misspelling: the engine keeps it silently and nobody reads it.
+`name` and `ID`, which a file writes in other ways.  An attribute with a `_` that is not here is most likely a
+misspelling: the engine keeps it silently and never reads it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ class AttributeKind(Record):
     """An attribute.
 
     Attributes:
-        group: pre: a pre-condition; post: a post-condition; engine: what else the engine reads; tool: what it ignores.
+        group: pre: a pre-condition; post: a post-condition; engine: others that the engine reads; tool: those it
+            ignores.
         doc: one line.
     """
 
@@ -27,12 +28,12 @@ class AttributeKind(Record):
 
     @property
     def is_script(self) -> bool:
-        """Is its value a script?"""
+        """Whether its value is a script."""
         return self.group in ("pre", "post")
 
 
 _KINDS: Final = (
-    # In the order in which the engine looks at them, whatever the order in the file.
+    # In the order in which the engine evaluates them, whatever the order in the file.
     AttributeKind(
         "_failureIf",
         "pre",

@@ -1,8 +1,7 @@
 """The built-in nodes of BehaviorTree.CPP, 4.6 to 4.10, one row a node.
 
-One invariant: tags, categories, ports, types and defaults are what the engines print of themselves (a test holds every
-row against them); what is said of behaviour was read in the sources of 4.10.0 and, where versions differ, of 4.6.2 and
-4.8.4.  It knows no look-up: that is `nodes`.
+One invariant: tags, categories, ports, types and defaults are what the engines print (a test compares every row);
+behavior was read in the sources of 4.10.0 and, where versions differ, of 4.6.2 and 4.8.4.  Look-up is in `nodes`.
 """
 
 from __future__ import annotations
@@ -248,7 +247,7 @@ def _loop(suffix: str, type_: str, queue_before: str, aliases: tuple[str, ...] =
 
 
 def _template(name: str, *arguments: str) -> str:
-    """A template's type as compilers print it: a blank parts two `>`."""
+    """A template's type as compilers print it: with a blank between two `>`."""
     inside = ", ".join(arguments)
     return f"{name}<{inside}{' >' if inside.endswith('>') else '>'}"
 

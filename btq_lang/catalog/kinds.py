@@ -1,7 +1,7 @@
-"""What the catalog says of a node kind and of a port: the records and the categories.
+"""The records for node kinds and ports, and the categories.
 
-One invariant: a record describes BehaviorTree.CPP's newest version; what older ones do otherwise is said beside it
-(`since`, `type_before`).  It knows no particular node: those are rows of `engine_nodes`.
+One invariant: a record describes BehaviorTree.CPP's newest version; differences of older ones have fields of their own
+(`since`, `type_before`).  It does not know particular nodes: those are rows of `engine_nodes`.
 """
 
 from __future__ import annotations
@@ -14,22 +14,23 @@ from btq_lang.util.record import Record
 Category: TypeAlias = "Literal['Action', 'Condition', 'Control', 'Decorator', 'SubTree']"
 CATEGORIES: Final[tuple[Category, ...]] = ("Action", "Condition", "Control", "Decorator", "SubTree")
 
-# Where a port's value flows, as a model's Port says it.
+# Where a port's value flows, as in a model's Port.
 Direction: TypeAlias = "Literal['input', 'output', 'inout']"
 
-# When a node returns RUNNING.  synchronous: never, it completes within the tick that started it.  asynchronous: by
+# When a node returns RUNNING.  synchronous: never, it completes within the tick that starts it.  asynchronous: by
 # itself, if only between two children that complete at once; a Timeout around it can halt it.  as-children: exactly
-# when a child of it does.
+# when one of its children does.
 Execution: TypeAlias = "Literal['synchronous', 'asynchronous', 'as-children']"
 
 if TYPE_CHECKING:
-    # What a node does with its children, or by itself if it has none; empty: unknown, it may do anything.  Nodes of one
-    # flow return the same and take the same time, given what their children do, but for what the other fields say.
+    # What a node does with its children, or by itself if it has none; empty: unknown, it may do anything.  Given the
+    # same behavior of their children, nodes of one flow return the same and take the same time, except as the other
+    # fields describe.
     Flow: TypeAlias = Literal[
         "",
         "sequence",  # one child after the other, until one fails
         "fallback",  # one child after the other, until one succeeds
-        "parallel",  # all children, until so many have succeeded or failed that the others cannot change it
+        "parallel",  # all children, until enough have succeeded or failed to determine the result
         "parallel-all",  # all children to their ends, then it counts the failures
         "choice",  # the first child is the condition: if it succeeds the second, else the third
         "switch",  # the child whose port `case_1`, `case_2` … equals its port `variable`, else the last
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
         "for-each",  # its child for each item of a queue, until it fails
         "timeout",  # its child, which it halts after a time
         "delay",  # a time, then its child
-        "once",  # its child, for the first time only; with a port `then_skip`
+        "once",  # its child, the first time only; with a port `then_skip`
         "precondition",  # its child, if a script is true
         "skip-unless-updated",  # its child, if an entry was written
         "wait-until-updated",  # waits until an entry is written, then its child
@@ -53,15 +54,15 @@ if TYPE_CHECKING:
         "sleeps",  # returns SUCCESS after a time
     ]
 
-    # What the value of a port is to the flow of its node.  count: how often it runs its child at most; -1: without end.
+    # The role of a port's value in the flow of its node.  count: how often it runs its child at most; -1: without end.
     # time: how long it waits, or lets its child run.  successes, failures: how many of its children must succeed or
     # fail for it to do so; a negative number counts from the end.  otherwise: what it returns without its child.
     Role: TypeAlias = Literal["", "count", "time", "successes", "failures", "otherwise"]
 
-# What the text of a port is: a value, a script, or the name of a blackboard entry, written without braces.
+# The text of a port: a value, a script, or the name of a blackboard entry, written without braces.
 Content: TypeAlias = "Literal['value', 'script', 'key']"
 
-# The literals of a port that says what its node returns: with IDLE the engine ends with an error.
+# The literals of a port that determines what its node returns: IDLE would be an error of the engine.
 RESULT: Final = "BT::NodeStatus except IDLE"
 
 
@@ -70,14 +71,14 @@ class PortKind(Record):
 
     Attributes:
         type: the C++ type as the engine prints it.
-        default: the value of an absent port; None: there is none.
-        required: the engine complains where it is absent, at load or when the node is ticked.
-        unit: the unit of a number in it, where one is known.
+        default: the value of an absent port; None if there is none.
+        required: whether the engine reports its absence, at load or when the node is ticked.
+        unit: the unit of a number in it, if known.
         doc: one line.
-        role: what its value is to the flow of its node.
-        removes: the node removes the entry that it names.
-        literal: the type that a literal is read as, where that is not `type`.
-        type_before: a version and the type that every earlier one prints.
+        role: of its value in the flow of its node.
+        removes: whether the node removes the entry that it names.
+        literal: the type as which a literal is read, if not `type`.
+        type_before: a version, and the type that every earlier one prints.
     """
 
     name: str
@@ -99,18 +100,18 @@ class NodeKind(Record):
 
     Attributes:
         tag: its XML tag, which is also its name in a file.
-        children: how many it takes, at least and at most; None: any number.
+        children: minimum and maximum number of children; None: any number.
         doc: one line.
         semantics: what it does, in a paragraph.
-        symbols: its spellings that are no words, the canonical one first.
+        symbols: its symbols, the canonical one first.
         aliases: other words for it.
         flow: what it does with its children.
-        reactive: at every tick it begins with its first child again, and halts a running one that it does not reach.
-        keeps_place: neither a failure nor a halt takes it back to its first child.
-        inspects_children: the engine looks up the tags of its children when it loads it, and refuses what
-            `versions.NO_EXPLICIT_CHILD` and `versions.ONE_ASYNC_SEQUENCE` say.
-        late_count: a wrong number of children passes the engine's load and throws when the node is ticked.
-        since, until: the first and the last version that has it; None: the newest does.
+        reactive: whether it begins with its first child at every tick, and halts a running one that it does not reach.
+        keeps_place: whether it stays at its child after a failure or a halt.
+        inspects_children: whether the engine looks up the tags of its children at load, and refuses what
+            `versions.NO_EXPLICIT_CHILD` and `versions.ONE_ASYNC_SEQUENCE` describe.
+        late_count: whether a wrong number of children throws only when the node is ticked, not at load.
+        since, until: the first and the last version that has it; until=None: the newest does.
     """
 
     tag: str

@@ -1,7 +1,7 @@
-"""The words of the language: how each is written, what it does in a few words, and what it means.
+"""The words of the language: how each is written, a short description, and what it means.
 
-One invariant: every word that the grammar knows stands in a row, alone or in the phrase that it belongs to.  It does
-not know how a parser reads them.
+One invariant: every word that the grammar knows has a row, alone or in its phrase.  How a parser reads them is not
+known here.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ class Phrase(Record):
     """A word of the language, or several that go together.
 
     Attributes:
-        part: what it is.
+        part: the group that it belongs to: `claim`, `part of a model` …
         form: how it is written.
-        brief: what stands beside it in a list.
-        meaning: what it means; of a claim, when that is violated.
+        brief: shown beside it in a list.
+        meaning: what it means; for a claim, when it is violated.
     """
 
     words: str
@@ -38,7 +38,7 @@ class Phrase(Record):
 
 
 def phrases_of(words: str) -> tuple[Phrase, ...]:
-    """What goes by some words, or by one of several that go together: `violation`."""
+    """The phrases that consist of some words, or that contain them: `violation`."""
     wanted = words.split()
     exact = tuple(phrase for phrase in PHRASES if phrase.words.split() == wanted)
     if exact or len(wanted) != 1:
@@ -47,17 +47,17 @@ def phrases_of(words: str) -> tuple[Phrase, ...]:
 
 
 def phrase_at(line: str, at: int) -> tuple[int, str] | None:
-    """Where a phrase begins that a place in a line is in, and its words; of several the longest."""
+    """The phrase around a place in a line, the longest if there are several: its start and its words."""
     return next(
         ((match.start(), match[0]) for match in _words().finditer(line) if match.start() <= at <= match.end()), None
     )
 
 
 def beginning(words: str) -> Phrase:
-    """The longest phrase that words of a clause begin with: of `takes at most` it is `takes`.
+    """The longest phrase that begins a clause: `takes` for `takes at most`.
 
     Raises:
-        ValueError: they begin with none.
+        ValueError: no phrase does.
     """
     return max(
         (phrase for phrase in PHRASES if f"{words} ".startswith(f"{phrase.words} ")), key=lambda each: len(each.words)
@@ -68,7 +68,7 @@ _MODEL: Final = "a model: the interface of a node"
 _PLACE: Final = "at the top level of a file, the interface of {}; in a tree, the category of the node that follows"
 _SPAN: Final = "from FindPart succeeds to Sort succeeds takes at most 12 s"
 
-# By what they are: the words, how they are written, what stands beside them in a list, and what they mean.
+# By group: the words, how they are written, the short description in a list, and what they mean.
 _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
     "item": (
         ("BehaviorTree", "BehaviorTree Deliver", "a tree", "a tree: its ports, and one node with all below it"),
@@ -383,7 +383,7 @@ PHRASES: Final = tuple(
     Phrase(words, part, form, brief, meaning) for part, rows in _TABLE.items() for words, form, brief, meaning in rows
 )
 
-# What is no word: the sign, how it is written, and what it means.
+# Signs: the sign, how it is written, and what it means.
 SIGNS: Final = (
     ("{ }", "MoveBase (goal = {pose})", "an entry of the blackboard: `{pose}` is the entry `pose` of this tree"),
     ("{=}", "MoveBase (goal = {=})", "the entry with the name of the port"),

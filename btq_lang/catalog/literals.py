@@ -1,6 +1,6 @@
 """What the engine reads from the text of a port: refused, read whole, or read in part with the rest dropped silently.
 
-One invariant: a type that is not known here is never refused: its converter is in somebody's C++ program.  It does not
+One invariant: a type that is not known here is never refused: its converter is in the user's C++ program.  It does not
 know ports, scripts or blackboards; `{key}` is a pointer to an entry for every type.
 
 Source: convertFromString in src/basic_types.cpp and src/xml_parsing.cpp of 4.6.2, 4.8.4 and 4.10.0.
@@ -21,11 +21,11 @@ class LiteralProblem(Record):
     """What is wrong with a literal.
 
     Attributes:
-        kind: refused: the engine ends with an error, at load or at the latest when it reads the port; trailing-text:
-            it drops the text after the number.
+        kind: refused: an error of the engine, at load or at the latest when it reads the port; trailing-text: the
+            engine drops the text after the number.
         expected: what the type accepts, in words that follow "expected".
-        reads: what the engine reads instead; None where it refuses.
-        found: the part of the literal that is wrong, in words that follow "found"; None for all of it.
+        reads: what the engine reads instead; None if it refuses.
+        found: the part of the literal that is wrong, in words that follow "found"; None: all of it.
     """
 
     kind: Literal["refused", "trailing-text"]
@@ -34,12 +34,12 @@ class LiteralProblem(Record):
     found: str | None = None
 
 
-@lru_cache(1_000)  # the same values are given again and again
+@lru_cache(1_000)  # the same values occur again and again
 def check_literal(port_type: str, text: str, version: str = DEFAULT_VERSION) -> LiteralProblem | None:
-    """What is wrong with a literal on a port of that type, in that version of the engine; None: nothing.
+    """What is wrong with a literal for a port of that type, in that version of the engine; None if nothing is.
 
     Args:
-        port_type: as the engine prints it or as a model says it: `unsigned int`, `std::vector<double>`, `bool` …
+        port_type: as the engine prints it or as a model declares it: `unsigned int`, `std::vector<double>`, `bool` …
     """
     if is_pointer(text):
         return None
@@ -50,7 +50,7 @@ def check_literal(port_type: str, text: str, version: str = DEFAULT_VERSION) -> 
 
 
 def is_pointer(text: str) -> bool:
-    """Is the text of a port `{key}`, a pointer to a blackboard entry, whatever the port's type?"""
+    """Whether the text of a port is `{key}`, a pointer to a blackboard entry, whatever the port's type."""
     return len(text) >= 3 and text[0] == "{" and text[-1] == "}"
 
 
@@ -65,8 +65,8 @@ def plain_type(port_type: str) -> str:
 
 
 def is_known_type(plain: str) -> bool:
-    """Is it a type of the engine's or of C++ itself, by the name that `plain_type` gives it?  Any other is somebody's
-    own, and may be another word for one of these."""
+    """Whether it is a type of the engine or of C++ itself, by the name that `plain_type` gives it.  Any other is the
+    user's, and may be an alias for one of these."""
     return plain in _INTEGERS or plain in _OTHER_TYPES or _list_item(plain) is not None
 
 
@@ -97,7 +97,7 @@ def _check_integer(plain: str, text: str) -> LiteralProblem | None:
         return LiteralProblem("refused", _bare("an integer" if low else "an integer of 0 or more", text))
     # More digits than any type has are not worth converting, and beyond some thousands int() raises.
     digits = text[start:end].lstrip("0") or "0"
-    value = int(digits) if len(digits) <= 20 else high + 2  # with a `-` too, beyond the range
+    value = int(digits) if len(digits) <= 20 else high + 2  # out of range, with a `-` too
     if not low <= (-value if start else value) <= high:
         return LiteralProblem("refused", f"an integer from {low} to {high}")
     return _rest(text, end, "an integer")
@@ -119,13 +119,13 @@ def _check_real(plain: str, text: str, version: str) -> LiteralProblem | None:
 
 
 def _bare(number: str, text: str) -> str:
-    """What the type accepts; names a leading `+` or space if that is all that is wrong."""
+    """What the type accepts; mentions a leading `+` or space if nothing else is wrong."""
     digit = text.strip().removeprefix("+")[:1]
     return f"{number} without a leading `+` or space" if "0" <= digit <= "9" else number
 
 
 def _rest(text: str, end: int, expected: str) -> LiteralProblem | None:
-    """Spaces after a number are dropped too, but nobody misses them."""
+    """Spaces after a number are dropped too, without harm."""
     if text[end:].isspace() or end == len(text):
         return None
     return LiteralProblem("trailing-text", expected, text[:end].strip())
@@ -154,8 +154,8 @@ def _check_list(port_type: str, item: str, text: str, version: str) -> LiteralPr
 
 
 def _check_json(item: str, text: str) -> LiteralProblem | None:
-    """nlohmann::json's conversions: a number becomes an int by cutting it, true an int but no double."""
-    import json  # only here: it costs as much as reading the file that asks
+    """nlohmann::json's conversions: a number becomes an int by truncation, true an int but not a double."""
+    import json  # only here: it costs as much as reading a small file
 
     try:
         values = json.loads(text, parse_constant=_refuse_constant)
@@ -176,7 +176,7 @@ def _item(text: str) -> str:
 
 
 def _refuse_constant(word: str) -> None:
-    """NaN and Infinity, which Python reads and nobody else does."""
+    """Refuse NaN and Infinity, which Python reads and JSON does not have."""
     raise ValueError(word)
 
 
@@ -191,14 +191,14 @@ def _plain(port_type: str) -> str:
 
 @lru_cache(500)
 def _list_item(port_type: str) -> str | None:
-    """The type of a list's items, or None for what is no list the engine can read."""
+    """The type of a list's items; None if the engine cannot read it as a list."""
     found = _LIST.match(" ".join(port_type.split())) if "<" in port_type else None
     if found is None:
         return None
     if "basic_string" in found[1] or found[1] in ("string", "std::string"):
         return "std::string"
     item = _plain(found[1].strip())
-    # The engine has converters for lists of these; any other is somebody's own.
+    # The engine has converters for lists of these; any other is the user's own.
     return item if item in ("int", "double", "bool") else None
 
 
@@ -261,7 +261,7 @@ _JSON_ITEMS: Final = {
     "std::string": "a string",
 }
 _OTHER_TYPES: Final = frozenset(("double", "float", "bool", "std::string", "BT::NodeStatus"))
-# Up to the first a number that is not 0 becomes 0, beyond the second it becomes infinite: the engine refuses both.
+# Numbers other than 0 become 0 below the first limit and infinite above the second: the engine refuses both.
 _MAGNITUDES: Final = {"double": (0.0, 1.7976931348623157e308), "float": (7.006492321624085e-46, 3.4028235677973366e38)}
 
 # Compiled when first used: that costs more than all the rest of this module, and few files have a real or a list.

@@ -1,7 +1,8 @@
-"""What a number of a clause measures, as far as the words before it say: a time behind `takes`, a share behind `in`.
+"""What a number of a clause measures, as far as the words before it determine: a time after `takes`, a probability
+after `in`.
 
-One invariant: an answer is certain from the words of the grammar alone; what signals and parameters measure is not
-known here.
+One invariant: a result follows from the words of the grammar alone; what signals and parameters measure is not known
+here.
 """
 
 from __future__ import annotations
@@ -13,11 +14,11 @@ from btq_lang.catalog.verbs import words
 
 
 def measured(line: Sequence[str]) -> str | None:
-    """The unit of what follows some words of a line, or one of its dimension; None: they do not say."""
+    """The unit of what follows some words of a line, or one of its dimension; None if they do not determine it."""
     is_behind_case = False
     for word in reversed(line):
         if word in ("else", ","):
-            is_behind_case = True  # `20 s if near, 30 s if slow else …`: what it is about stands before all of them
+            is_behind_case = True  # `20 s if near, 30 s if slow else …`: the verb precedes all the cases
         elif word in _UNITS and not (word == "if" and is_behind_case):
             return _UNITS[word]
     return None

@@ -15,4 +15,4 @@ class Kind(Enum):
     CONTEXT = "context"
     QUALITY = "quality"
 
-    __hash__ = object.__hash__  # that of `Enum` is a function in Python, and every name is looked up with its kind
+    __hash__ = object.__hash__  # `Enum` implements it in Python, and every name is looked up with its kind

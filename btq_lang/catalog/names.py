@@ -14,12 +14,13 @@ from typing import Final
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.versions import DEFAULT_VERSION, NAME_RULES
 
-_KEPT: Final = 1_000  # the answers about so many names: a mission says the same ones again and again
+_KEPT: Final = 1_000  # cache size: a mission repeats its names
 
 
 @lru_cache(_KEPT)
 def model_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
-    """Why the engine refuses the ID of a tree, the tree that a SubTree names, or the tag of a node; None: it does not.
+    """Why the engine refuses the ID of a tree, the tree that a SubTree names, or the tag of a node; None if it does
+    not.
 
     The ID of the explicit form, `<Action ID="my node"/>`, is not checked by any version.
     """
@@ -33,7 +34,7 @@ def model_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
 
 
 def port_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
-    """Why the engine refuses the name of a port in the model of a SubTree; None: it does not."""
+    """Why the engine refuses the name of a port in the model of a SubTree; None if it does not."""
     if not NAME_RULES.holds(version):
         return None
     if name == "":
@@ -45,7 +46,7 @@ def port_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
 
 @lru_cache(_KEPT)
 def instance_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
-    """Why the engine refuses the `name` of a node; None: it does not.  Only control characters are refused."""
+    """Why the engine refuses the `name` of a node; None if it does not.  Only control characters are refused."""
     if _UNPRINTABLE.isdisjoint(name) or not NAME_RULES.holds(version):
         return None
     control = next(character for character in name if character in _UNPRINTABLE)
@@ -54,14 +55,14 @@ def instance_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | No
 
 @lru_cache(_KEPT)
 def is_port_name(name: str, version: str = DEFAULT_VERSION) -> bool:
-    """Does the engine take an attribute of that name for a port?  If not, it keeps it and nothing reads it."""
+    """Whether the engine takes an attribute of that name for a port.  If not, it keeps it and never reads it."""
     if name[:1] not in _LETTERS or name in ("name", "ID"):
         return False
     return not NAME_RULES.holds(version) or _forbidden_character(name) is None
 
 
 def is_xml_name(name: str) -> bool:
-    """Can a name be a tag or the name of an attribute, for every reader of XML?  Namespaces aside."""
+    """Whether a name can be a tag or the name of an attribute for every reader of XML, namespaces aside."""
     if name.isascii():
         return name[:1] not in ("-", ".") and name.replace("-", "_").replace(".", "_").isidentifier()
     return re.fullmatch(_XML_NAME, name) is not None
@@ -70,7 +71,7 @@ def is_xml_name(name: str) -> bool:
 def legal_name(name: str) -> str:
     """A name made legal as a node's ID: `BatteryLow?` is BatteryLow, `Move Base` Move_Base, `3 Tubes` _3_Tubes.
 
-    What comes out is refused by no version of the engine, is an XML tag, and needs no quotes in a file: letters,
+    The result is accepted by every version of the engine, is an XML tag, and needs no quotes in a file: letters,
     digits, `_`, and `-` inside.  Other characters at the ends are dropped, those between two pieces become one `_`.
     """
     if name.isascii() and name.isidentifier() and name not in ("Root", "root"):
@@ -113,5 +114,5 @@ _NAME_START: Final = (
     "A-Z_a-z\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c-\u200d\u2070-\u218f"
     "\u2c00-\u2fef\u3001-\ud7ff\uf900-\ufdcf\ufdf0-\ufffd\U00010000-\U000effff"
 )
-# A text, for `re` takes 5 ms to compile it and few missions have a name that needs it.
+# A string, for `re` takes 5 ms to compile it and few missions have a name that needs it.
 _XML_NAME: Final = f"[{_NAME_START}][-.0-9\u00b7\u0300-\u036f\u203f-\u2040{_NAME_START}]*"

@@ -1,7 +1,7 @@
-"""Looking up node kinds: what a word in a file stands for in the engine.
+"""Looking up node kinds: the engine's node for a word in a file.
 
-One invariant: a quoted kind is the XML tag verbatim, never a symbol or an alias.  It does not know a file's own models
-nor its placeholders: whether a name that is found nowhere is a custom node is decided by those who have read the file.
+One invariant: a quoted kind is the XML tag verbatim, never a symbol or an alias.  It knows neither a file's own models
+nor its placeholders: callers that have read the file decide whether an unknown name is a custom node.
 """
 
 from __future__ import annotations
@@ -40,12 +40,11 @@ __all__ = [
 
 
 def lookup(word: str, quoted: bool = False, child_count: int | None = None) -> NodeKind | None:
-    """The built-in that a node's kind stands for, or None: then it is a custom node.
+    """The built-in that a node's kind names; None for a custom node.
 
     Args:
-        quoted: the kind stood in quotes.
-        child_count: how many children the node has; it chooses among several kinds that share a word, the nearest where
-            none fits.
+        quoted: whether the kind is in quotes.
+        child_count: number of the node's children; it chooses among kinds that share a word, the nearest if none fits.
     """
     if quoted:
         return BUILTINS.get(word)
@@ -61,7 +60,7 @@ def is_by_children(word: str) -> bool:
 
 
 def xml_tag(word: str, quoted: bool = False, child_count: int | None = None) -> str:
-    """The XML tag that is written for a node's kind; a custom node's is its own name."""
+    """The XML tag of a node's kind; for a custom node, its own name."""
     kind = lookup(word, quoted, child_count)
     if kind is not None:
         return kind.tag
@@ -75,7 +74,7 @@ def spellings(kind: NodeKind) -> tuple[str, ...]:
 
 
 def available(kind: NodeKind, version: str) -> bool:
-    """Does that version of the engine have the node?"""
+    """Whether that version of the engine has the node."""
     return at_least(version, kind.since) and (kind.until is None or at_least(kind.until, version))
 
 

@@ -1,12 +1,12 @@
 """Looking up quality names: what a QualityPath means in an edition of ISO/IEC 25010.
 
 One invariant: a name written as a canonical id of the edition is exact and nothing else is proposed for it, and
-whatever is proposed is itself exact.  It does not know the qualities that a file declares: look there first.
+whatever is proposed is itself exact.  It does not know the qualities that a file declares: callers look there first.
 
-Names compare after folding case, blanks, `-`, `_` and British or American spelling.  What counts as exact:
-the id of a characteristic or of a robotics quality; characteristic and sub-characteristic; a sub-characteristic alone,
-where the edition has no other and the word has no other meaning; and the pairs of the published paper.  All else that
-is understood is an alias (another word, or another word in front), another edition's name, or ambiguous.
+Names compare after folding case, blanks, `-`, `_` and British or American spelling.  What counts as exact: the id of a
+characteristic or of a robotics quality; characteristic and sub-characteristic; a sub-characteristic alone, if it is the
+only one in the edition and the word has no other meaning; and the pairs of the published paper.  All else that is
+understood is an alias (of the whole name or its front), another edition's name, or ambiguous.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from btq_lang.util.spelling import near
 
 Edition: TypeAlias = "Literal['2011', '2023']"
 
-# By the word behind `qualities` in a file.
+# By the word after `qualities` in a file.
 EDITIONS: Final[dict[str, Edition]] = {"iso25010-2023": "2023", "iso25010-2011": "2011"}
 DEFAULT_EDITION: Final[Edition] = "2023"
 
@@ -34,8 +34,8 @@ class Quality(Record):
         id: canonical: `performance-efficiency.time-behaviour`.
         name: as the standard prints it.
         parent: the id of the characteristic it is part of.
-        kind: product and in-use: of the ISO's models; robotics: an addition; ai: of ISO/IEC 25059.
-        editions: where the id and this definition stand.
+        kind: product or in-use: of the ISO's models; robotics: an addition; ai: of ISO/IEC 25059.
+        editions: that have the id with this definition.
         source: the standard.
         nearest: of a robotics quality, the nearest one of the 2023 edition.
         measures: of a robotics quality, what to measure, in words.
@@ -56,11 +56,11 @@ class QualityMatch(Record):
     """What a QualityPath means.
 
     Attributes:
-        kind: exact; alias: another word for it; other-edition: a name of the edition not chosen; ambiguous; unknown.
-        quality: the quality that is meant, where it is one: a name of another edition that has no equal in this one
+        kind: exact; alias: another word for it; other-edition: a name of another edition; ambiguous; unknown.
+        quality: the quality that is meant, if it is unique; a name of another edition without an equal in this one
             means the other edition's.
-        candidates: what to write instead, the likeliest first; none for an exact or an unknown name.
-        safe: there is one candidate and it is the quality that is meant: replacing the name keeps the meaning.
+        candidates: what to write instead, the likeliest first; empty for an exact or an unknown name.
+        safe: whether the only candidate is the quality that is meant, so that replacing the name keeps the meaning.
         explanation: why, or what to know about the word, for a reader; may be empty.
         near: of an unknown name, ids that look like it.
     """
@@ -100,7 +100,7 @@ def get(id_: str, edition: Edition = DEFAULT_EDITION) -> Quality | None:
 
 
 def qualities(edition: Edition = DEFAULT_EDITION) -> tuple[Quality, ...]:
-    """Every quality that an edition knows: the product's, those in use, robotics', then ISO/IEC 25059's."""
+    """All qualities of an edition: the product's, those in use, robotics', then ISO/IEC 25059's."""
     return tuple(_index(edition).by_id.values())
 
 
@@ -119,7 +119,7 @@ def parts(id_: str, edition: Edition = DEFAULT_EDITION) -> tuple[Quality, ...]:
 
 
 def successors(id_: str) -> tuple[str, ...]:
-    """What a name of 2011 became in 2023; none: nothing is in its place, or 2011 has no such name.
+    """What a name of 2011 became in 2023; empty if it was dropped, or 2011 does not have the name.
 
     A sub-characteristic that has no successor of its own has those of its characteristic.
     """
@@ -133,19 +133,19 @@ def successors(id_: str) -> tuple[str, ...]:
 
 
 def predecessors(id_: str) -> tuple[str, ...]:
-    """What a name of 2023 was in 2011; none: it is new."""
+    """What a name of 2023 was in 2011; empty if it is new."""
     if get(id_, "2011") is not None and id_ not in SUCCESSORS:
         return (id_,)
     return tuple(old for old, new in SUCCESSORS.items() if id_ in new)
 
 
 def fold(word: str) -> str:
-    """A name as names are compared: `Time Behavior`, `time_behaviour` and `time-behaviour` fall together."""
+    """The form in which names are compared: the same for `Time Behavior`, `time_behaviour` and `time-behaviour`."""
     return _american(word.casefold().translate(_BLANKS))
 
 
 def _find_word(word: str, key: str, index: _Index) -> QualityMatch | None:
-    """A single word that is no id."""
+    """The match of a single word that is not an id."""
     _, meanings = AMBIGUOUS.get(key, ("", ()))
     meant = tuple(index.by_id[id_] for id_ in meanings if id_ in index.by_id)
     if len(meant) > 1:
@@ -169,7 +169,8 @@ def _find_word(word: str, key: str, index: _Index) -> QualityMatch | None:
 
 
 def _find_path(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> QualityMatch | None:
-    """Several words that are no id: understood where both the front and the last word are, and belong together."""
+    """The match of several words that are not an id: understood if the front and the last word are, and belong
+    together."""
     other = _index("2011" if index.edition == "2023" else "2023")
     old = other.by_key.get(".".join(keys))
     if old is not None:
@@ -186,7 +187,7 @@ def _find_path(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> 
 
 
 def _lies(quality: Quality, front: set[str], index: _Index) -> bool:
-    """Does a quality belong under one of these ids?  A robotics quality belongs under what is nearest to it."""
+    """Whether a quality belongs under one of these ids.  A robotics quality belongs under the nearest to it."""
     if quality.parent is not None:
         return quality.parent in front
     nearest = _in_edition(quality.nearest, index) if quality.nearest is not None else ()
@@ -211,7 +212,7 @@ def _of_other_edition(old: Quality, index: _Index) -> QualityMatch:
 
 
 def _are_equal(id_: str, other: str) -> bool:
-    """Are a name of 2011 and one of 2023, in either order, names of the same quality?"""
+    """Whether a name of 2011 and one of 2023, in either order, name the same quality."""
     old, new = (id_, other) if get(id_, "2011") is not None else (other, id_)
     return old not in NO_EQUAL and successors(old) == (new,) and predecessors(new) == (old,)
 
@@ -229,7 +230,7 @@ def _alias(word: str, id_: str, index: _Index) -> QualityMatch:
 
 
 def _in_edition(id_: str, index: _Index) -> tuple[str, ...]:
-    """The ids that stand for an id of either edition in the index's one."""
+    """The ids in the index's edition for an id of either edition."""
     if id_ in index.by_id:
         return (id_,)
     return successors(id_) if index.edition == "2023" else predecessors(id_)
@@ -240,7 +241,7 @@ def _remark(keys: tuple[str, ...]) -> str:
 
 
 def _near(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> tuple[str, ...]:
-    """Ids for a name that is none: what its last word means, or else what the whole or the last word looks like."""
+    """Ids for an unknown name: what its last word means, or else those similar to the whole name or its last word."""
     last = [quality.id for quality in _meanings(find(words[-1:], index.edition))] if len(words) > 1 else []
     known: dict[str, tuple[str, ...]] = {key: (quality.id,) for key, quality in index.by_key.items()}
     for group in (index.by_part, index.by_addition):
@@ -257,7 +258,7 @@ class _Index:
     Attributes:
         by_key: folded ids.
         by_part: folded names of the ISO's sub-characteristics, without the characteristic.
-        by_addition: the same of ISO/IEC 25059's.
+        by_addition: the same for ISO/IEC 25059.
     """
 
     def __init__(self, edition: Edition) -> None:
@@ -303,7 +304,7 @@ _indexes: Final[dict[Edition, _Index]] = {}
 
 
 def _index(edition: Edition) -> _Index:
-    """An edition's index, made when it is first asked for: most files need one edition, many none."""
+    """An edition's index, made on demand: most files need one edition, many none."""
     if edition not in _indexes:
         _indexes[edition] = _Index(edition)
     return _indexes[edition]
@@ -316,6 +317,6 @@ _SPELLINGS: Final = (
     ("isability", "izability"),
     ("analys", "analyz"),
 )
-# The words of these tables are folded already, but for the `-` that makes them readable.
+# The words of these tables are folded already, except for the `-` that makes them readable.
 _PAPER_NAMES: Final = {tuple(name.replace("-", "") for name in names): id_ for names, id_ in PAPER_NAMES.items()}
 _ALIASES: Final = {word: id_ for id_, words in ALIASES.items() for word in words.replace("-", "").split()}

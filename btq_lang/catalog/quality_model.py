@@ -1,8 +1,8 @@
 """The rows of the quality catalog: both editions of ISO/IEC 25010, and what robotics and ISO/IEC 25059 add.
 
 One invariant: names are facts of the standards, definitions are in words of our own.  An id is lower case, words joined
-by `-`, characteristic and sub-characteristic by `.`; the name is made from it.  It knows no look-up and no other words
-for a quality: those are `qualities` and `quality_words`.
+by `-`, characteristic and sub-characteristic by `.`; the name is made from it.  Look-up is in `qualities`, other words
+for a quality in `quality_words`.
 """
 
 from __future__ import annotations
@@ -345,7 +345,8 @@ IN_USE_2011: Final[Model] = (
     ),
 )
 
-# What roboticists ask for beside the standards: name, definition, the nearest of the 2023 edition, and what to measure.
+# Qualities that roboticists need beside the standards: name, definition, the nearest of the 2023 edition, and what to
+# measure.
 ROBOTICS: Final = (
     (
         "energy-autonomy",
@@ -530,7 +531,7 @@ ROBOTICS: Final = (
     ),
 )
 
-# What a name of 2011 became in 2023, where it is not the same; no name: it was dropped, nothing is in its place.
+# What a name of 2011 became in 2023, if it is not the same; empty: it was dropped without a replacement.
 SUCCESSORS: Final[dict[str, tuple[str, ...]]] = {
     "usability": ("interaction-capability",),
     "usability.appropriateness-recognizability": ("interaction-capability.appropriateness-recognizability",),
@@ -596,7 +597,7 @@ MODELS: Final[tuple[tuple[Literal["2011", "2023"], Literal["product", "in-use"],
     ("2011", "in-use", "ISO/IEC 25010:2011", IN_USE_2011),
 )
 
-# Of these the successors are only near: folded into something wider, or the closest there is.
+# The successors of these are only similar: merged into something wider, or the closest there is.
 NO_EQUAL: Final = frozenset(
     (
         "effectiveness",

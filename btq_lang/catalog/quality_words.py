@@ -1,6 +1,6 @@
-"""Words for qualities that are no names of them: the paper's spellings, other words, words that mean several things.
+"""Words for qualities other than their names: the paper's spellings, synonyms, words that mean several things.
 
-One invariant: everything here leads to ids of `quality_model`; those of the 2023 edition, where there are two.
+One invariant: everything here leads to ids of `quality_model`, of the 2023 edition where the editions differ.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ ALIASES: Final = {
     "safety.risk-identification": "risk hazard-detection",
 }
 
-# Words that mean several things: what to say, and the meanings, the likeliest first; an edition has some of them.
+# Words that mean several things: an explanation, and the meanings, the likeliest first; an edition has some of them.
 AMBIGUOUS: Final = {
     "usability": (
         "in 2011 a characteristic of the product, which 2023 calls interaction capability; since 2023 a part of "

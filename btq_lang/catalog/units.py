@@ -1,10 +1,10 @@
 """The unit table: which words are units, what they measure, and how values convert.
 
 One invariant: two values compare if and only if their units have the same dimension, and then `to_si` makes them
-comparable.  Angle, data, count and percent are dimensions of their own, so `30 deg` is no number and Hz is not rpm.
-Left out on purpose: candela and mole (nothing on a robot is required in them), logarithmic units (dB has no factor),
-coulomb, farad, henry, siemens and tesla (`25 C` is a temperature in whoever's mind wrote it), and every word that the
-grammar needs behind a number (`in`, `per`, `to`, `count` …), save `min`.
+comparable.  Angle, data, count and percent are dimensions of their own, so `30 deg` is not a plain number and Hz is not
+rpm. Left out on purpose: candela and mole (nothing on a robot is required in them), logarithmic units (dB has no
+factor), coulomb, farad, henry, siemens and tesla (`25 C` is meant as a temperature), and every word that the grammar
+needs after a number (`in`, `per`, `to`, `count` …), save `min`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Unit(Record):
         symbol: the canonical spelling: `s` for `seconds`, `m/s` for `meters/sec`.
         dimension: its exponents over `BASES`.
         factor: one of it in SI base units, rad, bit, and the fraction of one for percent.
-        offset: what is added after that, for `degC` alone: it is only ever an absolute level.
+        offset: added after that; only for `degC`, which is always an absolute temperature.
     """
 
     symbol: str
@@ -43,8 +43,8 @@ class Unit(Record):
 def parse_unit(text: str) -> Unit | None:
     """Read a unit: a symbol of the table or a compound of them (`m/s^2`, `W*h`, `1/s`, `%/h`), or `1`, or None.
 
-    `*` and `/` bind alike, from left to right; an exponent has one digit and perhaps a sign.  `degC` stands alone: in
-    a compound a temperature is a difference, and that is written `K`.
+    `*` and `/` bind alike, from left to right; an exponent has one digit and perhaps a sign.  `degC` is allowed alone
+    only: in a compound a temperature is a difference, written `K`.
     """
     if text == "1":
         return Unit("1", _NO_DIMENSION, 1.0)
@@ -73,12 +73,12 @@ def parse_unit(text: str) -> Unit | None:
 
 
 def nearest_units(text: str, wanted: str | None = None) -> tuple[str, ...]:
-    """What somebody meant who wrote a unit that does not exist, best first: `kw` is `kW`, `30sek` and `sek` are `s`.
+    """The units that an unknown unit may mean, best first: `kw` is `kW`, `30sek` and `sek` are `s`.
 
-    Every answer is one that `parse_unit` reads; a number in front does not matter.
+    `parse_unit` reads each of them; a leading number is ignored.
 
     Args:
-        wanted: a unit that measures what they do; None: they may measure anything.
+        wanted: a unit of their dimension; None: any dimension.
     """
     written = text
     number = len(text) - len(text.lstrip("0123456789.+- "))
@@ -151,7 +151,7 @@ def a_dimension(unit: Unit) -> str:
 
 
 def _factors(text: str) -> Iterator[tuple[str, str, str]]:
-    """The factors of a compound: the operator in front ("" for the first), the word, and the text behind its `^`."""
+    """The factors of a compound: the operator before it ("" for the first), the word, and the text after its `^`."""
     operator = ""
     start = 0
     for end in range(len(text) + 1):
@@ -163,7 +163,7 @@ def _factors(text: str) -> Iterator[tuple[str, str, str]]:
 
 
 def _power(exponent: str) -> int | None:
-    """The number behind a `^`: one digit, for more would leave what a float can hold; 0 says nothing."""
+    """The number after a `^`: one digit, for more would exceed a float; 0 is meaningless."""
     digit = exponent.removeprefix("-")
     if exponent == "":
         return 1
@@ -175,15 +175,15 @@ def _powered(name: str, power: int) -> str:
 
 
 def _tidy(value: float) -> float:
-    """A value without the last digit's noise, so that 0.29 m is 29 cm and not 28.999999999999996."""
+    """A value without the noise of the last digit, so that 0.29 m is 29 cm and not 28.999999999999996."""
     return float(f"{value:.15g}")
 
 
 def _nearest_words(word: str, alone: bool, target: Unit | None) -> tuple[str, ...]:
-    """Symbols for one factor: itself where it is right, else what was probably meant.
+    """Symbols for one factor: itself if it is right, else what was probably meant.
 
     Args:
-        target: what it measures; None: nobody knows.
+        target: its dimension; None if unknown.
     """
     if word == "1":
         return ("1",)
@@ -334,10 +334,10 @@ def _entries() -> Iterator[tuple[str, _Entry]]:
 
 _TABLE: Final = dict(_entries())
 
-# Every word that is a unit.  The lexer asks this of each word behind a number.
+# Every word that is a unit.  The lexer looks up each word after a number here.
 SYMBOLS: Final = frozenset(_TABLE)
 
-# Spellings that no count of letters leads to.
+# Spellings whose meaning is not the most similar symbol.
 _MEANT: Final = {
     "°": "deg",
     "°C": "degC",

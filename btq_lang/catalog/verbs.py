@@ -1,4 +1,4 @@
-"""The verbs of clauses, one row each: what a clause with it demands, how it is judged, enforced, completed and said.
+"""The verbs of clauses, one row each: what a clause with it demands, how it is judged, enforced, completed and worded.
 
 One invariant: whatever differs from verb to verb is in its row, or in what is found by the row's word: its production
 in `grammar/claims`, its module in `evidence/verbs`, and, if it can be enforced, its function in `btcpp/guards`.
@@ -24,15 +24,15 @@ class Verb(Record):
     Attributes:
         operand: what it is followed by: a bound of a duration, perhaps a deadline, a condition, a bound of the use of a
             signal, a bound of a count, a period or a rate, a deadline after an event, an event.
-        measures: what is compared with the bound, or asked.
-        judged: when an activation, or a run, is known to keep it or to break it.
+        measures: what is compared with the bound, or evaluated.
+        judged: when it is known whether an activation, or a run, satisfies or violates it.
         said: a measure in a sentence about one activation; `{}` is the measure.
-        phrases: for each way to go on: its words, an example, what it is about, and when a clause is violated.
-        forms: how a clause begins, each with what an editor inserts, where that is more.
+        phrases: for each continuation: its words, an example, what it is about, and when a clause is violated.
+        forms: how a clause begins, each with what an editor inserts, if that is more.
         limits: which end of an activation a bound is on: any, or only its success.
         enforced: how the engine enforces it: a Timeout, a condition before the node that refuses its start, one that is
-            asked while the node runs, one after it.
-        why_monitored: why the engine enforces none of its clauses.
+            evaluated while the node runs, one after it.
+        why_monitored: why the engine cannot enforce its clauses.
     """
 
     word: str
@@ -55,7 +55,7 @@ class Verb(Record):
 def words(
     *, operands: Iterable[Operand] = (), limits: Iterable[Limits] = (), enforced: Enforced = ""
 ) -> frozenset[str]:
-    """The verbs with one of these operands, of these limits, or that are enforced so."""
+    """The verbs with one of these operands, limits or ways of enforcement."""
     return frozenset(
         [
             verb.word

@@ -13,7 +13,7 @@ class Verdict(Record):
     Attributes:
         brief: what it means.
         when: in which cases a clause gets it.
-        then: what to do.
+        then: what to do about it.
     """
 
     name: str

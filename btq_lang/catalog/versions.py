@@ -1,7 +1,7 @@
 """The versions of BehaviorTree.CPP that missions are written for, and what changed between them: one row a change.
 
-One invariant: what a version does otherwise than another is asked of a row here, or of a row of `engine_nodes`, which
-says since when there is a node; nothing else compares versions.  Read in the sources of the releases, and run.
+One invariant: every difference between versions is a row here, or a field of `engine_nodes` (since when a node exists);
+nothing else compares versions.  Read in the sources of the releases, and tried.
 """
 
 from __future__ import annotations
@@ -11,18 +11,13 @@ from typing import Final
 
 from btq_lang.util.record import Record
 
-# The lines of the engine that ROS distributions ship; each stands for its last release (4.6.2, 4.8.4, 4.10.0).
+# The lines of the engine that ROS distributions ship; each means its last release (4.6.2, 4.8.4, 4.10.0).
 VERSIONS: Final = ("4.6", "4.8", "4.10")
 DEFAULT_VERSION: Final = VERSIONS[-1]
 
 
 class Change(Record):
-    """What one version does for the first time, and all later ones.
-
-    Attributes:
-        since: the version.
-        what: what it does.
-    """
+    """A behavior that one version introduces and all later ones keep."""
 
     since: str
     what: str
@@ -47,7 +42,8 @@ TYPED_CONSTANTS: Final = Change("4.9.1", "keeps a number that a SubTree gives to
 
 @cache
 def at_least(version: str, since: str) -> bool:
-    """Is `version` the version `since` or a later one?  Both are numbers with points; a `4.8` is older than 4.10."""
+    """Whether `version` is the version `since` or a later one.  Both are numbers with points; `4.8` is older than
+    4.10."""
     return _numbers(version) >= _numbers(since)
 
 

@@ -1,7 +1,7 @@
-"""Words that look like node kinds and are none of the engine's: of the published language, and of older engines.
+"""Words that look like node kinds but are not the engine's: of the published language, and of older engines.
 
-One invariant: no word here is a tag, a symbol or an alias of `nodes.BUILTINS`.  A node of such a name is a custom
-node all the same; the table only says what to tell its writer.
+One invariant: no word here is a tag, a symbol or an alias of `nodes.BUILTINS`.  A node with such a name is a custom
+node all the same; the table only provides what to tell its author.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 class KnownWord(Record):
-    """A word that is no node of the engine.
+    """A word that is not a node of the engine.
 
     Attributes:
-        tag: the XML tag that is written for it.
-        why: what became of it, or what it is, as a sentence.
-        replacement: the built-in to write in its place, where there is one that needs nothing else; else None.
+        tag: its XML tag.
+        why: what it is, or what replaced it, as a sentence.
+        replacement: the built-in to write in its place, if there is one that needs no other change; else None.
     """
 
     word: str
@@ -97,7 +97,7 @@ OLD_PORTS: Final = {
     ("Parallel", "failure_threshold"): "failure_count",
 }
 
-# Unquoted and without `code`, these stand for a custom node of this category: classic files have no other way.
+# Unquoted and without `code`, these mean a custom node of this category: classic files have no other way.
 PLACEHOLDERS: Final[dict[str, Category]] = {
     "ScriptAction": "Action",
     "Script": "Action",

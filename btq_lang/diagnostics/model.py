@@ -1,8 +1,8 @@
-"""Diagnostics as data: what is wrong, where, what belongs to it, and how to mend it.
+"""Diagnostics as data: what is wrong, where, related places, and how to fix it.
 
 Nothing here renders or decides: rules detect, `render` prints, editors show.  A span counts from the start of its
-`anchor`, the piece of a file that moves as one (a tree, a requirement); `None` is the start of the file itself.  What
-leaves the workspace has no anchors left.
+`anchor`, the piece of a file that moves as one (a tree, a requirement); `None` is the start of the file itself.
+Outside the workspace, diagnostics have no anchors.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 
 class Place(Record):
-    """A span in a file.  Two are the same only if they count from the same item, not if from one that says the same.
+    """A span in a file.  Two are equal only if they count from the same item, not from an equal one.
 
     Attributes:
         path: the file; None is the file of the diagnostic.
-        anchor: the item the span counts from; None with a path is that file's start, None without a path is whatever
-            the diagnostic itself counts from.
+        anchor: the item the span counts from; None with a path is that file's start, None without a path is the anchor
+            of the diagnostic itself.
     """
 
     span: Span
@@ -54,11 +54,11 @@ class Change(Record):
 
 
 class Fix(Record):
-    """A change that mends a diagnostic.
+    """A change that fixes a diagnostic.
 
     Attributes:
-        title: what it does, as a button says it: "Replace `Rety` with `Retry`".
-        safe: it keeps the meaning and removes the diagnostic; `btq check --fix` applies only these.
+        title: what it does, as the label of a button: "Replace `Rety` with `Retry`".
+        safe: whether it keeps the meaning and removes the diagnostic; `btq check --fix` applies only these.
     """
 
     title: str
@@ -89,7 +89,7 @@ def replace_fix(title: str, span: Span, text: str, *, safe: bool = False) -> Fix
 
 
 def shifted(diagnostic: Diagnostic, by: int) -> Diagnostic:
-    """The diagnostic counted from another start: its span, and every place that counts as it does."""
+    """The diagnostic with another origin: its span, and every place that counts from the same, are shifted."""
     if by == 0:
         return diagnostic
 

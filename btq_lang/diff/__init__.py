@@ -1,14 +1,14 @@
 """What changed between two missions.
 
-said        what a mission says, whatever its spelling: a form that can be compared
-matching    which node of the one is which of the other
-nodes       from that, the changes of the trees
+said        what a mission says, whatever its spelling, in a form that can be compared
+matching    which nodes of the two missions correspond
+nodes       the changes of the trees, given that
 items       the changes of all else
 changes     changes as data
 as_text, as_markdown, as_json   for a terminal, a pull request, a program
 
-One invariant: there is no change if and only if the missions say the same.  It does not know where the missions came
-from: two files, two revisions of one, XML.
+One invariant: the result is empty if and only if the missions mean the same.  Where the missions come from (two files,
+two revisions of one, XML) is not known here.
 """
 
 from __future__ import annotations
@@ -29,8 +29,7 @@ def compare(old: Workspace, old_paths: Iterable[str], new: Workspace, new_paths:
     """What changed between two missions.
 
     Args:
-        old_paths: the files of the old workspace that are the mission, as `Workspace.closure` gives them: its own file
-            is the last.
+        old_paths: the files of the old mission, as `Workspace.closure` gives them: its own file is the last.
         new_paths: those of the new one.
     """
     before, after = said(old, old_paths), said(new, new_paths)

@@ -1,6 +1,6 @@
 """Comparisons for programs.
 
-The document, format 1; a later btq adds keys but changes none without a new number:
+The document, format 1; a later btq may add keys but changes none without a new number:
 
     {"format": 1, "tool": "btq", "version": VERSION,
      "comparisons": [{"old": NAME | null, "new": NAME | null,

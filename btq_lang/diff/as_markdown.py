@@ -1,6 +1,6 @@
 """Comparisons for a pull request: Markdown as GitHub and GitLab read it.
 
-One invariant: what a mission says is never markup: names and values stand in code spans.
+One invariant: text of a mission is never markup: names and values are in code spans.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def render(comparisons: Iterable[Comparison]) -> Iterator[str]:
 
 
 def code(text: str) -> str:
-    """A code span that says a text, whatever is in it (CommonMark 6.1)."""
+    """A code span for a text, whatever is in it (CommonMark 6.1)."""
     ticks = "`" * (max(map(len, re.findall("`+", text)), default=0) + 1)
     blank = " " if text.startswith("`") or text.endswith("`") else ""
     return f"{ticks}{blank}{text}{blank}{ticks}"

@@ -21,10 +21,10 @@ Paint = Callable[[str, str], str]
 
 
 def render(comparisons: Iterable[Comparison], paint: Paint) -> Iterator[str]:
-    """The lines; none where nothing changed.
+    """The lines; none if nothing changed.
 
     Args:
-        paint: a text in a style: `+`, `-`, `~`, `>`, `message` or `gutter`.
+        paint: renders a text in a style: `+`, `-`, `~`, `>`, `message` or `gutter`.
     """
     comparisons = tuple(each for each in comparisons if each.changes)
     for comparison in comparisons:

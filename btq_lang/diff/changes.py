@@ -1,6 +1,6 @@
-"""Changes as data, and what two sets of values differ in.
+"""Changes as data, and the differences of two sets of values.
 
-One invariant: a change has a place in each mission that it can be seen in.
+One invariant: a change has a place in each mission in which it can be seen.
 """
 
 from __future__ import annotations
@@ -11,23 +11,23 @@ from typing import Final, Literal, TypeAlias
 from btq_lang.diff.said import Place, Values
 from btq_lang.util.record import Record
 
-# The order in which changes are told: what the mission is and must be first, then how it does that.
+# The order in which changes are listed: what the mission is and must be first, then how it does that.
 THINGS: Final = (
     *("mission", "include", "requirement", "apply", "quality"),
     *("signal", "context", "node model", "tree", "xml", "guard"),
 )
-GUARD: Final = "guard"  # what enforces a requirement in XML, which the mission says nothing of
+GUARD: Final = "guard"  # enforces a requirement in XML; not a part of the mission
 
 What: TypeAlias = "Literal['added', 'removed', 'moved', 'changed', 'renamed']"
 
 
 class Detail(Record):
-    """What is said otherwise of something.
+    """One aspect in which something differs.
 
     Attributes:
         aspect: `station`, `name`, `kind`, `takes`, `quality safety`, `requirement rq1`, `port battery`.
-        old: what was said, in one line; None where nothing was.
-        new: what is said now, likewise.
+        old: the old value, in one line; None if there was none.
+        new: the new value, likewise.
     """
 
     aspect: str
@@ -41,11 +41,11 @@ class Change(Record):
     Attributes:
         thing: `tree`, `node`, `requirement`, `signal`, `context`, `quality`, `node model`, `include`, `apply`,
             `mission`, `xml`, `guard`.
-        name: its name in the new mission, or in the old one where it is gone; of a node the path to it.
-        old, new: where it stands; None where it does not.
-        details: what is said otherwise; of a node that was added or removed, the requirements attached to it.
-        below: how many nodes were added or removed with it.
-        around: the nodes, in both missions, that it was put around or taken from around.
+        name: its name in the new mission, or in the old one if it was removed; for a node, its path.
+        old, new: its place; None if that mission does not have it.
+        details: the differences; for a node that was added or removed, the requirements attached to it.
+        below: number of nodes that were added or removed with it.
+        around: the nodes of both missions around which it was added or removed.
         earlier: the old name, the old path.
     """
 
@@ -61,12 +61,12 @@ class Change(Record):
 
 
 def section(change: Change) -> str:
-    """The one of `THINGS` that a change is told under: nodes belong to their trees."""
+    """The one of `THINGS` under which a change is listed: nodes belong to their trees."""
     return "tree" if change.thing == "node" else change.thing
 
 
 def details(old: Values, new: Values) -> Iterator[Detail]:
-    """What is said otherwise, in the order of what was said and then of what is new."""
+    """The differences: of the old values in their order, then new ones."""
     for aspect in (*old, *(aspect for aspect in new if aspect not in old)):
         before, after = old.get(aspect), new.get(aspect)
         if before is None or after is None or before.key != after.key:

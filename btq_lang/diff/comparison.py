@@ -1,4 +1,4 @@
-"""Two missions, compared, with all that is needed to show where a change stands."""
+"""Two compared missions, with all that is needed to show where a change is."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from btq_lang.workspace.workspace import Workspace
 
 
 class ByHand(Record):
-    """What somebody has changed in the XML of a mission and the mission does not say.
+    """A manual edit of a mission's XML that is not a part of the mission.
 
     Attributes:
-        name: of the node that enforces something.
-        said: what it says now, in a form that can be compared.
+        name: of the generated node.
+        said: its contents now, in a form that can be compared.
         message: what happened to it, and what to do.
     """
 
@@ -33,10 +33,10 @@ class Side(Record):
     """One of two missions.
 
     Attributes:
-        name: what it is called; None where there is none, and all of the other was added or removed.
-        paths: its files, its own the last.
-        shown: a path as people read it.
-        by_hand: of XML, what the mission does not say.
+        name: None if this mission does not exist, so that all of the other was added or removed.
+        paths: its files, the mission's own last.
+        shown: turns a path into the one to show.
+        by_hand: the manual edits, if it is XML.
     """
 
     name: str | None
@@ -46,7 +46,7 @@ class Side(Record):
     by_hand: tuple[ByHand, ...] = ()
 
     def place(self, place: Place) -> tuple[str, Position, Position]:
-        """A place: the file as people read it, and where it begins and ends, counted from 0."""
+        """A place: the file as it is shown, and its start and end, counted from 0."""
         lines = self.workspace.files[place.path].source_lines
         return self.shown(place.path), lines.position(place.span.start), lines.position(place.span.end)
 
@@ -59,7 +59,7 @@ class Comparison(Record):
     changes: tuple[Change, ...]
 
     def line(self, change: Change) -> str:
-        """`mission.btq:12`: where a change is seen, in the new mission where it can be."""
+        """`mission.btq:12`: the place of a change, in the new mission if possible."""
         side, place = (self.new, change.new) if change.new is not None else (self.old, change.old)
         assert place is not None, "a change has a place"
         path, start, _ = side.place(place)
@@ -74,7 +74,7 @@ class Comparison(Record):
 
 
 def diff_missions(old: Workspace, old_path: str, new: Workspace, new_path: str) -> tuple[Change, ...]:
-    """What changed between two missions; nothing if and only if they say the same.
+    """What changed between two missions; empty if and only if they mean the same.
 
         >>> from btq_lang import Workspace, diff_missions
         >>> old = Workspace.of({"main.btq": "BehaviorTree Main\\n    Retry (num_attempts = 2)\\n        Dock\\n"})
@@ -88,7 +88,7 @@ def diff_missions(old: Workspace, old_path: str, new: Workspace, new_path: str) 
             include is a part of them.
 
     Raises:
-        KeyError: there is no such file.
+        KeyError: a file does not exist.
     """
     sides = Side(old_path, old, old.closure(old_path), str), Side(new_path, new, new.closure(new_path), str)
     return without_made_models(compared(*sides)).changes
@@ -101,7 +101,7 @@ def compared(old: Side, new: Side) -> Comparison:
 
 
 def without_made_models(comparison: Comparison) -> Comparison:
-    """Leave out the models that a build has put into XML for nodes that nobody declares."""
+    """Leave out the models that a build has added to XML for undeclared nodes."""
     made = {
         (what, path, name)
         for what, side in (("removed", comparison.old), ("added", comparison.new))

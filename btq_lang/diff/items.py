@@ -1,6 +1,6 @@
 """What changed beside the trees: requirements, signals, contexts, qualities, models, includes.
 
-One invariant: things are the same by their name; those that say the same under another name were renamed.
+One invariant: things are matched by name; those with equal contents and another name were renamed.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from typing import Final
 from btq_lang.diff.changes import Change, Detail, details
 from btq_lang.diff.said import MAIN, MISSION, Item, Part, Value
 
-# What may be renamed: what others refer to by its name.
+# The things that can be renamed: others refer to them by name.
 _RENAMED: Final = ("requirement", "signal", "context", "quality", "node model")
 
 
 def renamed_items(old: Iterable[Item], new: Iterable[Item]) -> dict[tuple[str, str], str]:
-    """The new names of things that say the same under another name, by thing and old name."""
+    """The new names of things whose contents are equal, by thing and old name."""
     before, after = _by_name(old), _by_name(new)
     gone = _by_content(item for key, item in before.items() if key not in after)
     came = _by_content(item for key, item in after.items() if key not in before)
@@ -30,10 +30,10 @@ def renamed_items(old: Iterable[Item], new: Iterable[Item]) -> dict[tuple[str, s
 def item_changes(
     old: Sequence[Item], new: Sequence[Item], renamed: dict[tuple[str, str], str], nodes: tuple[Iterable[Part], ...]
 ) -> Iterator[Change]:
-    """The changes of things, in the order of the new mission, then what is gone.
+    """The changes of things, in the order of the new mission, then those that were removed.
 
     Args:
-        nodes: those of the old and of the new mission, for the requirements that are attached to them.
+        nodes: of the old and of the new mission, for the requirements attached to them.
     """
     before, after = _by_name(old), _by_name(new)
     _leave_out_built(before, after)
@@ -65,8 +65,8 @@ def item_changes(
 
 
 def _leave_out_built(before: dict[tuple[str, object], Item], after: dict[tuple[str, object], Item]) -> None:
-    """Leave out an include of a mission and the one of its XML: a build names one for the other."""
-    for stem in (_path, _name):  # beside each other first: files of one name may be in several folders
+    """Leave out an include of a mission and that of its XML: a build writes one for the other."""
+    for stem in (_path, _name):  # in the same folder first: several folders may have files of one name
         came: dict[tuple[str, bool], list[tuple[str, object]]] = {}
         for key, item in after.items():
             if item.thing == "include" and key not in before:
@@ -87,7 +87,7 @@ def _name(item: Item) -> str:
 
 
 def _told(item: Item, added: bool) -> Iterator[Detail]:
-    """What something said that is gone, or says that came."""
+    """The contents of something that was removed or added."""
     for aspect, value in item.values.items():
         if value.text and aspect:
             yield Detail(aspect, None, value.text) if added else Detail(aspect, value.text, None)
@@ -98,7 +98,7 @@ def _by_name(items: Iterable[Item]) -> dict[tuple[str, object], Item]:
     for item in items:
         name = (
             item.values[""].key if item.thing == "apply" else item.name
-        )  # whose name is its text, however it is spelt
+        )  # their name is their text, however it is spelt
         found.setdefault((item.thing, name), item)
     return found
 

@@ -1,18 +1,18 @@
-"""Which node of one mission is which of the other: tree matching by hashes.
+"""Which nodes of two missions correspond: tree matching by hashes.
 
 The method is that of GumTree (Falleri et al., "Fine-grained and accurate source code differencing", ASE 2014), whose
-two phases it keeps, with the hashes and the bounded look upwards of XyDiff (Cobéna, Abiteboul, Marian, "Detecting
-changes in XML documents", ICDE 2002), so that time grows with the number of nodes and not with its square:
+two phases it keeps, with the hashes and the bounded search upwards of XyDiff (Cobéna, Abiteboul, Marian, "Detecting
+changes in XML documents", ICDE 2002), so that the time is linear in the number of nodes, not quadratic:
 
-0. trees of one name are each other; then those that became another name, by what is in them;
-1. subtrees that are identical, and occur once on either side, are each other, the largest first;
-2. nodes of one kind that have half of what is in them in common are each other, those with most of it first;
-3. children of two nodes that are each other are lined up by longest common subsequences: of identical subtrees, then
-   of what nodes say of themselves, then of kind and name, kind, name;
-4. what is left is looked for elsewhere: identical subtrees, then nodes of one kind and one name.
+0. trees of one name match; then renamed ones, by their contents;
+1. subtrees that are identical, and occur once on either side, match, the largest first; 2. nodes of one kind that share
+half of their contents match, those that share most first; 3. children of two matched nodes are aligned by longest
+common subsequences: of identical subtrees, then
+   of nodes' own values, then of kind and name, kind, name;
+4. what is left is matched elsewhere: identical subtrees, then nodes of one kind and one name.
 
-One invariant: no node is matched twice, and descendants of identical nodes are matched in order.  What a change of a
-matched node is, is `nodes`' to say.
+One invariant: no node is matched twice, and descendants of identical nodes are matched in order.  The changes of
+matched nodes are for `nodes`.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from btq_lang.diff.said import TREE, Part
 
 Ids: TypeAlias = dict[Hashable, int]
 
-_UPWARDS: Final = 4  # how far from an identical subtree the node that holds it is looked for
-_TABLE: Final = 1_000_000  # the largest table that is filled for a longest common subsequence
-_FEW: Final = 20  # trees that are looked at closely
-_SAME: Final = 0.5  # how much two must have in common to be each other: as GumTree asks of nodes, and git of files
+_UPWARDS: Final = 4  # how many levels above an identical subtree its holder is looked for
+_TABLE: Final = 1_000_000  # cells of the largest table that is filled for a longest common subsequence
+_FEW: Final = 20  # trees that are compared in full
+_SAME: Final = 0.5  # how much two must share to match: as GumTree requires of nodes, and git of files
 
 
 class Forest:
@@ -38,13 +38,13 @@ class Forest:
     Attributes:
         parts: trees and nodes, depth first, in document order.
         parents: the index of each part's parent, -1 of trees.
-        depths: how many parts are above each.
-        sizes: how many parts there are in and below each.
+        depths: number of parts above each.
+        sizes: number of parts in each, itself included.
         children: indices.
-        kinds: what each part is, and of a SubTree which tree it calls.
-        own: a number for what each part says of itself; equal where that is.
+        kinds: the kind of each part and, for a SubTree, the tree it calls.
+        own: a number for each part's own values; equal if they are.
         whole: a number for the part and all below it.
-        match: the index in the other forest that each part is, -1 of none.
+        match: the index of each part's match in the other forest, -1 if there is none.
     """
 
     def __init__(self, trees: Sequence[Part]) -> None:
@@ -77,7 +77,7 @@ class Forest:
         return (index for index, parent in enumerate(self.parents) if parent < 0)
 
     def number(self, ids: Ids, renamed: Mapping[tuple[str, str], str]) -> None:
-        """Give parts their numbers; `renamed`: what is called otherwise in the other mission, by thing and name."""
+        """Give parts their numbers; `renamed`: new names of the other mission's things, by thing and name."""
 
         def id_of(content: Hashable) -> int:
             return ids.setdefault(content, len(ids))
@@ -93,7 +93,7 @@ def match(old: Forest, new: Forest, renamed: dict[tuple[str, str], str]) -> None
     """Match two forests.
 
     Args:
-        renamed: things of the old mission that have another name in the new one; trees are added to it.
+        renamed: new names of the old mission's things; trees are added to it.
     """
     ids: Ids = {}
     old.number(ids, renamed)
@@ -140,7 +140,7 @@ def _pair(old: Forest, new: Forest, one: int, other: int) -> None:
 
 
 def _same_trees(old: Forest, new: Forest) -> Iterator[tuple[int, int]]:
-    """Pairs of trees: of one name, then of one content, then of mostly one content."""
+    """Pairs of trees: of one name, then of equal contents, then of mostly equal contents."""
     left, right = dict.fromkeys(old.tops), dict.fromkeys(new.tops)
     steps: tuple[Callable[[Forest, int], Hashable], ...] = (
         lambda forest, top: forest.parts[top].name,
@@ -155,14 +155,14 @@ def _same_trees(old: Forest, new: Forest) -> Iterator[tuple[int, int]]:
                 other = found.pop()
                 del left[top], right[other]
                 yield top, other
-    holders: dict[int, list[int]] = {}  # the trees of the new mission that have a node that says just this
+    holders: dict[int, list[int]] = {}  # the trees of the new mission with a node of these values
     for other in right:
         for own in set(_nodes(new, other)):
             holders.setdefault(own, []).append(other)
     for top in list(left):
         votes: Counter[int] = Counter()
         for own in _nodes(old, top):
-            if len(holders.get(own, ())) <= _FEW:  # what many trees say tells none of them
+            if len(holders.get(own, ())) <= _FEW:  # values that many trees have distinguish none
                 votes.update(other for other in holders.get(own, ()) if other in right)
         shares = {other: _share(old, new, top, other) for other, _ in votes.most_common(_FEW)}
         best = max(shares, key=lambda other: shares[other], default=None)
@@ -172,14 +172,14 @@ def _same_trees(old: Forest, new: Forest) -> Iterator[tuple[int, int]]:
 
 
 def _share(old: Forest, new: Forest, one: int, other: int) -> float:
-    """How much two trees have in common, from 0 to 1: the coefficient of Dice of what their nodes say."""
+    """How much two trees share, from 0 to 1: the coefficient of Dice of their nodes' values."""
     mine, yours = _nodes(old, one), _nodes(new, other)
     total = len(mine) + len(yours)
     return 2 * (Counter(mine) & Counter(yours)).total() / total if total else 0.0
 
 
 def _nodes(forest: Forest, top: int) -> list[int]:
-    """What the nodes of a tree say of themselves."""
+    """The nodes of a tree, by their own values."""
     return forest.own[top + 1 : top + forest.sizes[top]]
 
 
@@ -187,7 +187,7 @@ def _nodes(forest: Forest, top: int) -> list[int]:
 
 
 def _identical(old: Forest, new: Forest, left: range, right: range) -> None:
-    """Pair subtrees that are identical and occur once on either side; a larger one begins before what is in it."""
+    """Pair subtrees that are identical and occur once on either side; a larger one precedes what is in it."""
     numbers = Counter(old.whole[index] for index in left)
     places: dict[int, int] = {}
     others = Counter(new.whole[index] for index in right)
@@ -200,7 +200,7 @@ def _identical(old: Forest, new: Forest, left: range, right: range) -> None:
 
 
 def _pair_all(old: Forest, new: Forest, one: int, other: int) -> None:
-    """Pair two identical subtrees: their nodes are the same, one after the other."""
+    """Pair two identical subtrees node by node, in order."""
     for offset in range(old.sizes[one]):
         if old.match[one + offset] < 0 and new.match[other + offset] < 0:
             _pair(old, new, one + offset, other + offset)
@@ -210,12 +210,12 @@ def _pair_all(old: Forest, new: Forest, one: int, other: int) -> None:
 
 
 def _holders(old: Forest, new: Forest) -> None:
-    """Pair nodes of one kind that hold the same: those that hold most of it first, then those that are most alike."""
+    """Pair nodes of one kind that hold the same: those that hold most of it first, then the most similar."""
     votes: Counter[tuple[int, int]] = Counter()
     for index, other in enumerate(old.match):
         parent = old.parents[index]
         if other < 0 or parent < 0 or old.match[parent] >= 0:
-            continue  # not the top of what is identical
+            continue  # not the top of an identical subtree
         holders = tuple(_above(new, other))
         for one in _above(old, index):
             for holder in holders:
@@ -245,7 +245,7 @@ def _above(forest: Forest, index: int) -> Iterator[int]:
 
 
 def _line_up(old: Forest, new: Forest) -> None:
-    for one, other in enumerate(old.match):  # those that are paired on the way are children, and come later
+    for one, other in enumerate(old.match):  # pairs found on the way are children, and come later
         other = old.match[one]
         if other >= 0 and old.whole[one] != new.whole[other]:
             _line_up_children(old, new, old.children[one], new.children[other])
@@ -255,7 +255,7 @@ def _line_up_children(old: Forest, new: Forest, left: list[int], right: list[int
     for key, anywhere in _KEYS:
         if not any(old.match[one] < 0 for one in left) or not any(new.match[other] < 0 for other in right):
             return
-        # Children that have found each other already keep the others on their side of them.
+        # Children that are matched already keep the others on their side of them.
         mine = [("pair", old.match[one]) if old.match[one] >= 0 else ("key", key(old, one)) for one in left]
         yours = [("pair", other) if new.match[other] >= 0 else ("key", key(new, other)) for other in right]
         for at, to in common(mine, yours):
@@ -280,7 +280,7 @@ def _pair_if_free(old: Forest, new: Forest, one: int, other: int) -> None:
 
 
 def _replaced(old: Forest, new: Forest, left: list[int], right: list[int]) -> None:
-    """A node that stands alone where another stood, and has its children or ports, is that node with another kind."""
+    """A node in the place of another, with its children or ports, is that node with a new kind."""
     gaps: dict[int, tuple[list[int], list[int]]] = {}
     for forest, children, side in ((old, left, 0), (new, right, 1)):
         behind = -1
@@ -299,7 +299,7 @@ def _takes_its_place(old: Forest, new: Forest, one: int, other: int) -> bool:
     if bool(below) != bool(others):
         return False
     if below:
-        # What it held is still below: in it, and not around it or in a part of it.
+        # Its former children are still below it: in it, and not around it or in a part of it.
         inside = set(others)
         return all(old.match[child] < 0 or old.match[child] in inside for child in below) and any(
             old.match[child] in inside or old.own[child] in {new.own[each] for each in others} for child in below
@@ -309,7 +309,7 @@ def _takes_its_place(old: Forest, new: Forest, one: int, other: int) -> bool:
 
 
 def common(left: Sequence[Hashable], right: Sequence[Hashable]) -> list[tuple[int, int]]:
-    """A longest common subsequence, as pairs of positions; only a long one where the table for it would be too large.
+    """A longest common subsequence, as pairs of positions; merely a long one if the table for it would be too large.
 
     The equal ends are cut off; between them the table of Wagner and Fischer is filled.
     """
@@ -345,7 +345,7 @@ def _table(left: Sequence[Hashable], right: Sequence[Hashable]) -> list[tuple[in
 
 
 def _rough(left: Sequence[Hashable], right: Sequence[Hashable]) -> list[tuple[int, int]]:
-    """Each on the left with the next equal one on the right."""
+    """Each one on the left with the next equal one on the right."""
     places: dict[Hashable, list[int]] = {}
     for to in range(len(right) - 1, -1, -1):
         places.setdefault(right[to], []).append(to)
@@ -361,13 +361,13 @@ def _rough(left: Sequence[Hashable], right: Sequence[Hashable]) -> list[tuple[in
     return found
 
 
-# How children are lined up, the surest first; whether also those that have changed places.
+# How children are aligned, the surest way first; whether also those that changed places.
 _KEYS: Final[tuple[tuple[Callable[[Forest, int], Hashable], bool], ...]] = (
     (lambda forest, index: forest.whole[index], True),
     (lambda forest, index: forest.own[index], True),
     (lambda forest, index: (forest.kinds[index], forest.parts[index].name), True),
     (lambda forest, index: forest.kinds[index], False),
-    (lambda forest, index: forest.parts[index].name or object(), False),  # what has no name is like nothing else
+    (lambda forest, index: forest.parts[index].name or object(), False),  # unnamed nodes match no other
 )
 
 
@@ -375,10 +375,10 @@ _KEYS: Final[tuple[tuple[Callable[[Forest, int], Hashable], bool], ...]] = (
 
 
 def _leftovers(old: Forest, new: Forest, left: range, right: range, elsewhere: bool = False) -> None:
-    """Pair what is free: identical subtrees, then nodes of one kind and one name.
+    """Pair unmatched parts: identical subtrees, then nodes of one kind and one name.
 
     Args:
-        elsewhere: in other trees; there only what somebody would know again.
+        elsewhere: whether in other trees; there, only those that a reader would recognize.
     """
     waiting: dict[Hashable, list[int]] = {}
     for other in reversed(right):
@@ -400,7 +400,7 @@ def _leftovers(old: Forest, new: Forest, left: range, right: range, elsewhere: b
 
 
 def _by_name(forest: Forest, places: range) -> dict[Hashable, list[int]]:
-    """What is free and has a name of its own, by kind and name."""
+    """The unmatched parts that have a name of their own, by kind and name."""
     named: dict[Hashable, list[int]] = {}
     for index in places:
         part = forest.parts[index]

@@ -1,8 +1,8 @@
-"""What changed in the trees: from two forests that are matched, the changes that make one of the other.
+"""What changed in the trees: from two matched forests, the changes that turn one into the other.
 
-One invariant: without a change the trees say the same, and with `added`, `removed`, `moved` and `changed` each node is
-told of once for each of them.  A node that was put around others moves none of them: a node has moved when the nearest
-node above it that is in both missions is another one, or when it has changed sides with one of its siblings there.
+One invariant: without changes the trees mean the same, and each node is reported at most once as `added`, `removed`,
+`moved` or `changed`.  A node that was put around others moves none of them: a node has moved if its nearest ancestor
+that is in both missions is another one, or if it has changed sides with one of its siblings there.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from btq_lang.diff.said import SUBTREE, TREE, VERBATIM, Part, Values
 
 
 def tree_changes(old: Forest, new: Forest, renamed: Mapping[tuple[str, str], str]) -> Iterator[Change]:
-    """The changes of trees and nodes: those of what is there now in the order of the new mission, then what is gone."""
+    """The changes of trees and nodes, in the order of the new mission, then what was removed."""
     moved = _moved(old, new)
     for other, one in enumerate(new.match):
         if one < 0:
@@ -41,7 +41,7 @@ def tree_changes(old: Forest, new: Forest, renamed: Mapping[tuple[str, str], str
 
 
 def _is_part_of_one(forest: Forest, index: int) -> bool:
-    """Whether what it stands in is only in this mission as well: then that is told of."""
+    """Whether its parent is only in this mission as well: then the parent is reported."""
     parent = forest.parents[index]
     return parent >= 0 and forest.match[parent] < 0
 
@@ -79,7 +79,7 @@ def _one_sided(what: Literal["added", "removed"], forest: Forest, index: int) ->
 
 
 def _moved(old: Forest, new: Forest) -> frozenset[int]:
-    """The nodes, by their index in the new forest, that stand elsewhere."""
+    """The nodes that have moved, by their index in the new forest."""
     above_old, above_new = _nearest(old), _nearest(new)
     moved: set[int] = set()
     groups: dict[int, list[int]] = {}
@@ -88,7 +88,7 @@ def _moved(old: Forest, new: Forest) -> frozenset[int]:
             continue
         before, after = above_old[one], above_new[other]
         if before < 0 or after < 0 or old.match[before] != after:
-            # What a tree holds that was removed or added as a whole has moved, for its tree has no other.
+            # The nodes of a tree that was removed or added as a whole have moved, for the tree has no match.
             moved.add(other)
         else:
             groups.setdefault(after, []).append(other)
@@ -98,7 +98,7 @@ def _moved(old: Forest, new: Forest) -> frozenset[int]:
 
 
 def _nearest(forest: Forest) -> list[int]:
-    """For each part the nearest above it that is in both missions, -1 of none."""
+    """For each part the nearest above it that is in both missions, -1 if there is none."""
     nearest = [-1] * len(forest.parts)
     for index, parent in enumerate(forest.parents):
         if parent >= 0:
@@ -107,7 +107,7 @@ def _nearest(forest: Forest) -> list[int]:
 
 
 def _increasing(numbers: list[int]) -> list[int]:
-    """A longest increasing subsequence: those that have not changed sides, as many as can be."""
+    """A longest increasing subsequence: as many as possible that have not changed sides."""
     ends: list[int] = []  # the smallest end of a subsequence of each length
     places: list[int] = []
     before: list[int] = []
@@ -148,14 +148,14 @@ def _said_otherwise(old: Part, new: Part, renamed: Mapping[tuple[str, str], str]
 
 
 def shown(part: Part) -> str:
-    """A node as it is called: by its name, else by the tree that it calls or its kind."""
+    """A node as it is shown: by its name, else by the tree that it calls or its kind."""
     if part.kind == VERBATIM:
         return part.values["element"].text
     return part.name or part.target or part.word
 
 
 def _path(forest: Forest, index: int) -> str:
-    """The tree, the nodes above that have a name, and the node: as requirements name nodes."""
+    """The tree, the named nodes above, and the node: as requirements name nodes."""
     part = forest.parts[index]
     names = [f"SubTree {part.target}" if part.kind == SUBTREE and part.name is None else shown(part)]
     above = forest.parents[index]

@@ -1,8 +1,8 @@
-"""What a mission says, whatever its spelling: its nodes and its named items in a form that can be compared.
+"""The contents of a mission, whatever its spelling: its nodes and named items in a form that can be compared.
 
-One invariant: two spellings of one thing give one form: `->` and `Sequence`, `Timeout (msec = 30 s)` and the `30000`
-of an XML file, a requirement defined at a node and one defined at file level, a classic placeholder and the skill it
-stands for.  Comments, layout and the order of attributes, ports and clauses are no part of it.
+One invariant: two spellings of one thing give one form: `->` and `Sequence`, `Timeout (msec = 30 s)` and the `30000` of
+an XML file, a requirement defined at a node and one defined at file level, a classic placeholder and its skill.
+Comments, layout and the order of attributes, ports and clauses are no part of it.
 """
 
 from __future__ import annotations
@@ -78,19 +78,14 @@ MISSION: Final = "mission"
 
 
 class Place(Record):
-    """Where something stands: a file, and a span of its text as it is on the disk."""
+    """A place: a file, and a span of its text on the disk."""
 
     path: str
     span: Span
 
 
 class Value(Record):
-    """What is said of one aspect of something.
-
-    Attributes:
-        key: equal for two values that mean the same.
-        text: as it is written, in one line.
-    """
+    """The value of one aspect."""
 
     key: object
     text: str
@@ -104,12 +99,12 @@ class Part:
 
     Attributes:
         kind: the XML tag: a built-in's, a custom node's ID, `SubTree`, `BehaviorTree`; `xml` of verbatim XML.
-        target: of a SubTree, the tree it calls.
-        name: the instance name, of a tree its ID.
+        target: the tree that a SubTree calls.
+        name: the instance name, or the ID of a tree.
         word: the kind as it is written.
-        category: `Action`, `Condition`, … where it is written.
-        values: all else that is said, by aspect: `station`, `quality safety`, `requirement rq1`, `tag heavy`.
-        requirements: the IDs of those that are attached to it.
+        category: `Action`, `Condition`, … if it is written.
+        values: all else, by aspect: `station`, `quality safety`, `requirement rq1`, `tag heavy`.
+        requirements: the IDs of the attached ones.
         children: its nodes.
     """
 
@@ -132,8 +127,8 @@ class Item(Record):
 
     Attributes:
         thing: `requirement`, `signal`, `context`, `quality`, `node model`, `include`, `apply`, `mission` or `xml`.
-        name: its ID; what it says where it has none.
-        values: what is said of it, by aspect: `takes`, `on violation`, `port station`.
+        name: its ID; without one, its text.
+        values: by aspect: `takes`, `on violation`, `port station`.
     """
 
     thing: str
@@ -143,17 +138,17 @@ class Item(Record):
 
 
 class Said(Record):
-    """What a mission says: its trees, and all else."""
+    """The contents of a mission: its trees, and all else."""
 
     trees: tuple[Part, ...]
     items: tuple[Item, ...]
 
 
 def said(workspace: Workspace, paths: Iterable[str]) -> Said:
-    """What some files of a workspace say together; what is said twice counts once, as in the language.
+    """The contents of some files of a workspace together; of duplicates the first counts, as in the language.
 
     Args:
-        paths: the file of the mission is the last, before it those that it includes: their Roots mean nothing.
+        paths: the mission's own file is the last; the Roots of the others have no effect.
     """
     trees: list[Part] = []
     items: dict[tuple[str, str], Item] = {}
@@ -171,14 +166,14 @@ def said(workspace: Workspace, paths: Iterable[str]) -> Said:
         for item in reader.inside:
             items.setdefault((item.thing, item.name), item)
     main = workspace.main_tree(paths[-1]) if paths else None
-    if main is not None:  # whether it is named in the Root or is the only one that can be
+    if main is not None:  # if it is named in the Root, or is the only candidate
         values = items[MISSION, ""].values if (MISSION, "") in items else {}
         name = main.symbol.name
         place = Place(main.path, main.span)
         items[MISSION, ""] = Item(MISSION, "", {**values, MAIN: Value(name, name)}, place)
     for tree in trees:
         model = items.get(("node model", tree.name or ""))
-        if model is not None and model.values["category"].key == SUBTREE:  # XML has a tree's ports nowhere else
+        if model is not None and model.values["category"].key == SUBTREE:  # XML has a tree's ports only there
             ports = {aspect: value for aspect, value in model.values.items() if aspect.startswith("port ")}
             tree.values = {**ports, **tree.values}
             del items[model.thing, model.name]
@@ -275,7 +270,7 @@ class _Reader:
     # ---- items ----
 
     def items(self) -> Iterator[Item]:
-        """What an item that is no tree defines."""
+        """The things that an item other than a tree defines."""
         item = self.entry.item
         if isinstance(item, Requirement):
             yield self._requirement(item)
@@ -302,13 +297,13 @@ class _Reader:
             yield self._item("quality", item.name, values, item)
         elif isinstance(item, Include):
             values = {pair.key.text: _value(pair.value) for pair in item.attributes}
-            path = posixpath.normpath(item.path.text) if item.path is not None else ""  # `./lib.btq` is no other file
+            path = posixpath.normpath(item.path.text) if item.path is not None else ""  # `./lib.btq` is the same file
             yield Item("include", path, values, self._place(item.start, item.end))
         elif isinstance(item, Root):
             values = {_MISSION_WORDS.get(pair.key.text, pair.key.text): _value(pair.value) for pair in item.attributes}
             if item.name is not None:
                 values[MAIN] = _value(item.name)
-            values.pop("BTCPP_format", None)  # which build and XML files have, and missions do not
+            values.pop("BTCPP_format", None)  # which built files and XML have, and missions do not
             if values:
                 yield Item(MISSION, "", values, self._place(item.start, item.end))
         elif isinstance(item, Qualities):
@@ -380,7 +375,7 @@ class _Reader:
         return Value(self._quality(path), ".".join(name.text for name in path.names))
 
     def _text(self, part: object) -> str:
-        """A part of the tree as it is written, in one line."""
+        """A part of the tree as it is written, on one line."""
         places = list(_places(part))
         return self._slice(min(start for start, _ in places), max(end for _, end in places)) if places else ""
 
@@ -403,7 +398,7 @@ def _places(part: object) -> Iterator[tuple[int, int]]:
 
 
 def _meaning(part: object) -> object:
-    """The shape of a part, in which `90 s` is `1.5 min`."""
+    """The structure of a part, in which `90 s` equals `1.5 min`."""
     return shape(part, _in_si)
 
 

@@ -1,6 +1,6 @@
-"""Changes in words: a headline and a line for each thing that is said otherwise, for whoever shows them.
+"""Changes in words: a headline, and a line for each difference.
 
-One invariant: what a change says is all in its words; colour and marks add nothing.
+One invariant: the words are complete; colour and marks add nothing.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ TITLES: Final = {
 }
 _CLAUSES: Final = {"requirement": "satisfies", "quality": "satisfices", "tag": "tags"}
 _IN_WORDS: Final = ("title", "quality", "attached to", "category", "kind", "tree", "name", "by hand")
-_MOST: Final = 3  # names in a row
+_MOST: Final = 3  # names in a list
 
 
 class Line(Record):
@@ -38,7 +38,7 @@ class Line(Record):
 
 
 def headline(change: Change) -> tuple[str, str, str]:
-    """What it is about, its name, and what happened to it."""
+    """The thing, its name, and what happened to it."""
     if change.what == "renamed":
         return change.thing, change.earlier or "", f"renamed to {change.name}"
     words: list[str] = [change.what]
@@ -52,7 +52,7 @@ def headline(change: Change) -> tuple[str, str, str]:
 
 
 def lines(change: Change) -> Iterator[Line]:
-    """What is said otherwise."""
+    """The differences."""
     for detail in change.details:
         yield from _lines(change, detail)
 
