@@ -19,7 +19,7 @@ from btq_lang.btcpp.document import write as xml_of
 from btq_lang.btcpp.export import export
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.model import Series
-from btq_lang.requirements.model import SourceNode
+from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 TINY = """\
@@ -192,5 +192,5 @@ def _run(mission: Candidate, chance: random.Random) -> list[Row]:
 class _Timed(LoggedRun):
     """A run whose leaves take about as long as a robot's."""
 
-    def drawn(self, leaf: SourceNode) -> float:
+    def drawn(self, leaf: ResolvedNode) -> float:
         return SECONDS[leaf.node.id.text] * self.chance.uniform(0.7, 1.3)

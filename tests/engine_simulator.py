@@ -9,11 +9,12 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 
-from btq_lang.requirements.model import SourceNode, Value
+from btq_lang.requirements.model import Value
 from btq_lang.requirements.resolved import Requirements
+from btq_lang.workspace.resolved import ResolvedNode
 
 SUCCESS, FAILURE, SKIPPED, RUNNING, IDLE = "success", "failure", "skip", "running", "idle"
-Report = Callable[[SourceNode, str, float], None]
+Report = Callable[[ResolvedNode, str, float], None]
 
 
 class Endless(Exception):
@@ -23,7 +24,7 @@ class Endless(Exception):
 class Run:
     """Runs of one tree, one after the other: what a node remembers from one to the next it keeps."""
 
-    def __init__(self, found: Requirements, root: SourceNode, seed: int, report: Report) -> None:
+    def __init__(self, found: Requirements, root: ResolvedNode, seed: int, report: Report) -> None:
         self.found = found
         self.chance = random.Random(seed)
         self.now = 0.0
@@ -35,7 +36,7 @@ class Run:
     def change(self, node: Sim, status: str) -> None:
         """A node's status changes: nothing is done with it here."""
 
-    def drawn(self, leaf: SourceNode) -> float:
+    def drawn(self, leaf: ResolvedNode) -> float:
         """A duration that the leaf's `takes between` allows, often one of the ends."""
         (applied,) = self.found.of(leaf)
         limit = applied.requirement.claims[0].limit
@@ -70,7 +71,7 @@ class Run:
 class Sim:
     """A node at run time.  Subclasses say what a tick does, and what is forgotten when it is over or halted."""
 
-    def __init__(self, run: Run, source: SourceNode) -> None:
+    def __init__(self, run: Run, source: ResolvedNode) -> None:
         self.run = run
         self.source = source
         self.started: float | None = None
@@ -166,7 +167,7 @@ class Leaf(Sim):
 class InOrder(Sim):
     """Sequence, Fallback, and what is like them."""
 
-    def __init__(self, run: Run, source: SourceNode) -> None:
+    def __init__(self, run: Run, source: ResolvedNode) -> None:
         self.goes, self.ends = (FAILURE, SUCCESS) if "Fallback" in source.tag else (SUCCESS, FAILURE)
         super().__init__(run, source)
 
@@ -419,7 +420,7 @@ class Precondition(Sim):
 
 
 class SubTree(Sim):
-    def __init__(self, run: Run, source: SourceNode) -> None:
+    def __init__(self, run: Run, source: ResolvedNode) -> None:
         super().__init__(run, source)
         assert source.node.id is not None
         root = run.found.nodes.root(source.node.id.text)
@@ -457,7 +458,7 @@ _CLASSES: dict[str, type[Sim]] = {
 }
 
 
-def make(run: Run, source: SourceNode) -> Sim:
+def make(run: Run, source: ResolvedNode) -> Sim:
     if source.category == "SubTree":
         return SubTree(run, source)
     return _CLASSES.get(source.tag, Leaf)(run, source)

@@ -28,11 +28,12 @@ from btq_lang.btcpp.wrappers import wrapped
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.budgets import Budgets
-from btq_lang.requirements.model import Applied, Claim, Requirement, SourceNode, Span
+from btq_lang.requirements.model import Applied, Claim, Requirement, Span
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.requirements.spans import node_of
 from btq_lang.util.record import Record, replace
+from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ class Held(Record):
     requirement: str
     clause: str
     place: Place
-    node: SourceNode | None
+    node: ResolvedNode | None
     way: Way
     why: str = ""
     asked: bool = False
@@ -251,7 +252,7 @@ class _Planner:
         files = _written(self._workspace, self._path, True)
         return _Planner(self._workspace, self._found, self._path, files, (), self._budgets)
 
-    def _guard(self, requirement: Requirement, claim: Claim, node: SourceNode) -> str:
+    def _guard(self, requirement: Requirement, claim: Claim, node: ResolvedNode) -> str:
         """Record what a clause needs, and return the note on it.
 
         Raises:
@@ -282,19 +283,19 @@ class _Looks:
         self._budgets: Final = budgets
         self._begins: Final = begins
 
-    def waits(self, node: SourceNode) -> bool:
+    def waits(self, node: ResolvedNode) -> bool:
         return self._budgets.composed(node).waits
 
-    def is_skipped(self, node: SourceNode) -> bool:
+    def is_skipped(self, node: ResolvedNode) -> bool:
         return self._budgets.composed(node).skip is not None
 
-    def of_span(self, span: Span) -> SourceNode | None:
+    def of_span(self, span: Span) -> ResolvedNode | None:
         return node_of(span, self._budgets)
 
     def begins(self) -> bool:
         return self._begins
 
-    def mission(self) -> SourceNode | None:
+    def mission(self) -> ResolvedNode | None:
         return self._found.mission
 
 

@@ -30,7 +30,6 @@ from btq_lang.requirements.model import (
     Mission,
     Requirement,
     Signal,
-    SourceNode,
     Span,
     Table,
     Target,
@@ -38,6 +37,7 @@ from btq_lang.requirements.model import (
 )
 from btq_lang.requirements.reading import signals_in
 from btq_lang.util.record import Record, replace
+from btq_lang.workspace.resolved import ResolvedNode
 
 if TYPE_CHECKING:
     from btq_lang.btcpp.around import WrapperTag
@@ -58,14 +58,14 @@ class Guarded(Record):
         note: what of the clause is not enforced, or how it is interpreted.
     """
 
-    wrappers: tuple[tuple[SourceNode, Wrapper], ...]
+    wrappers: tuple[tuple[ResolvedNode, Wrapper], ...]
     cells: tuple[tuple[str, str], ...]
     signals: tuple[Signal, ...]
     stop: str | None
     note: str = ""
 
 
-def guarded(requirement: Requirement, claim: Claim, node: SourceNode, name: str, stop: str, shared: bool) -> Guarded:
+def guarded(requirement: Requirement, claim: Claim, node: ResolvedNode, name: str, stop: str, shared: bool) -> Guarded:
     """What enforces a clause that applies to a node.
 
     Args:
@@ -90,7 +90,7 @@ class _Draft:
     """The wrappers of a clause while they are being collected."""
 
     def __init__(
-        self, requirement: Requirement, claim: Claim, node: SourceNode, name: str, stop: str, shared: bool
+        self, requirement: Requirement, claim: Claim, node: ResolvedNode, name: str, stop: str, shared: bool
     ) -> None:
         self.requirement: Final = requirement
         self.claim: Final = claim
@@ -101,7 +101,7 @@ class _Draft:
         self._notes: Final[list[str]] = []
         self._shared: Final = shared
         self._values: Final[list[str]] = []
-        self._wrappers: Final[list[tuple[SourceNode, Wrapper]]] = []
+        self._wrappers: Final[list[tuple[ResolvedNode, Wrapper]]] = []
         self._cells: Final[dict[str, str]] = {}
 
     def done(self) -> Guarded:
@@ -135,7 +135,7 @@ class _Draft:
         attributes: tuple[tuple[str, str], ...] = (),
         before: tuple[Leaf, ...] = (),
         behind: tuple[Leaf, ...] = (),
-        node: SourceNode | None = None,
+        node: ResolvedNode | None = None,
     ) -> None:
         """Add a wrapper around the clause's node, or around another one."""
         wrapper = Wrapper(rank, self.requirement.name, tag, f"{self.name}_{what}", attributes, before, behind)
@@ -167,7 +167,7 @@ class _Draft:
             "value", table_script(table, lambda value: value_script(value, unit, self.stored), self.stored)
         )
 
-    def cell(self, what: str, first: str, with_node: SourceNode | None = None) -> str:
+    def cell(self, what: str, first: str, with_node: ResolvedNode | None = None) -> str:
         """A variable that outlives the node: the tree's, if the node `with_node` above it in the tree initializes it;
         else the mission's."""
         if with_node is not None and _is_above(with_node, self.node):
@@ -365,7 +365,7 @@ def _condition(draft: _Draft) -> Condition:
     return draft.claim.condition
 
 
-def _is_above(node: SourceNode, below: SourceNode) -> bool:
+def _is_above(node: ResolvedNode, below: ResolvedNode) -> bool:
     """Whether a node stands above another one in its tree."""
     at = below.parent
     while at is not None and at is not node:

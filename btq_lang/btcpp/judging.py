@@ -13,33 +13,34 @@ from btq_lang.btcpp.around import may_be_skipped
 from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
 from btq_lang.btcpp.guards import Guarded, NotEnforced, guarded
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, SourceNode, Span, Target
+from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, Span, Target
+from btq_lang.workspace.resolved import ResolvedNode
 
 if TYPE_CHECKING:
 
     class Looks(Protocol):
         """What a judge has to know of nodes and of the mission."""
 
-        def waits(self, node: SourceNode) -> bool:
+        def waits(self, node: ResolvedNode) -> bool:
             """Whether a node can be RUNNING."""
 
-        def is_skipped(self, node: SourceNode) -> bool:
+        def is_skipped(self, node: ResolvedNode) -> bool:
             """Whether something inside a node can make the engine skip it."""
 
-        def of_span(self, span: Span) -> SourceNode | None:
+        def of_span(self, span: Span) -> ResolvedNode | None:
             """The node whose duration a span measures, if there is one."""
 
         def begins(self) -> bool:
             """Whether the mission begins in the files that are judged."""
 
-        def mission(self) -> SourceNode | None:
+        def mission(self) -> ResolvedNode | None:
             """The mission's root."""
 
 
 class Elsewhere(NotEnforced):
     """A node is in a file that is not written together with the clause's."""
 
-    def __init__(self, node: SourceNode) -> None:
+    def __init__(self, node: ResolvedNode) -> None:
         super().__init__()
         self.node: Final = node
 
@@ -75,7 +76,7 @@ class Judge:
             return str(reason)
         return None
 
-    def node(self, applied: Applied, claim: Claim) -> SourceNode:
+    def node(self, applied: Applied, claim: Claim) -> ResolvedNode:
         """The node for which the engine enforces a clause.
 
         Raises:
@@ -101,7 +102,7 @@ class Judge:
         return subject.node
 
     def needs(
-        self, requirement: Requirement, claim: Claim, node: SourceNode, name: str, stop: str
+        self, requirement: Requirement, claim: Claim, node: ResolvedNode, name: str, stop: str
     ) -> tuple[Guarded, dict[str, str]]:
         """What enforces a clause, and the first values of the signals that its scripts read.
 
@@ -131,14 +132,14 @@ class Judge:
         return made, first
 
 
-def where_else(node: SourceNode, *, is_xml: bool) -> str:
+def where_else(node: ResolvedNode, *, is_xml: bool) -> str:
     """Why a node of another file gets no wrapper if each file is written by itself."""
     if is_xml:
         return f"{node.shown} is in an XML file, which the build does not change; --bundle enforces it"
     return f"{node.shown} is in an included file, which other missions may include; --bundle enforces it"
 
 
-def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
+def _can_stand_around(node: ResolvedNode, is_skipped_inside: bool) -> None:
     """Check that a wrapper around a node does not change the behavior of the tree.
 
     Raises:

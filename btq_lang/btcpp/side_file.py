@@ -18,13 +18,14 @@ from btq_lang.btcpp.instances import Instance, instances
 from btq_lang.btcpp.wrappers import MARK
 from btq_lang.catalog.units import Unit
 from btq_lang.diagnostics.model import Place
-from btq_lang.requirements.model import Applied, InContext, Requirement, Signal, SourceNode, Target
+from btq_lang.requirements.model import Applied, InContext, Requirement, Signal, Target
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Apply, Context, Entry, Qualities, QualityDecl, Satisfices, Tree
 from btq_lang.syntax.tree import Requirement as RequirementItem
 from btq_lang.syntax.tree import Signal as SignalItem
 from btq_lang.util.record import Record, fields_of
+from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
@@ -200,7 +201,7 @@ def _guards(root: Element) -> dict[str, Json]:
     return {"guards": found} if found else {}
 
 
-def _node(instance: Instance, node: SourceNode | None, place: _Places) -> Json:
+def _node(instance: Instance, node: ResolvedNode | None, place: _Places) -> Json:
     found: dict[str, Json] = {"uid": instance.uid, "path": instance.path}
     if (generated := instance.element.get(MARK)) is not None:
         found["enforces"] = generated
@@ -288,7 +289,7 @@ def _plain(value: object, place: _Places) -> Json:
         return [_plain(each, place) for each in value]
     if isinstance(value, Unit):
         return value.symbol
-    if isinstance(value, SourceNode):
+    if isinstance(value, ResolvedNode):
         return {"name": value.node.head.text, **place.of(value.place)}
     if isinstance(value, InContext):
         return {"is": "incontext", "name": value.name}

@@ -6,7 +6,7 @@ which function looks at which items.  What a check asks, it asks its view, and s
 (workspace/queries.py), which keeps the answers from one edit to the next.  Not known here: what an edit changed, and
 how findings are printed.
 
-    view.py, seen.py   what a check sees: its item, and the nodes of a tree sorted by what checks look for
+    view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
     kinds.py, names.py, ports.py, children.py, trees.py, includes.py   what the engine would refuse
     literals.py, constants.py, strings.py, scripts.py, counts.py, empty.py, outputs.py   values

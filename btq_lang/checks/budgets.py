@@ -46,7 +46,9 @@ def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
 
 def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
     """A Timeout shorter than the shortest way to its child's success."""
-    for node in demanded.tree.timeouts:
+    for node in demanded.tree.all:
+        if node.flow != "timeout":
+            continue
         limit = port_seconds(node) if len(node.children) == 1 else None
         if not limit or node.path != demanded.view.path:
             continue

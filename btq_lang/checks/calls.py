@@ -197,10 +197,9 @@ def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
     found = view.definition(Kind.TREE, tree)
     if found is None:
         return (), ()
-    facts = found[1]
-    uses = facts.summary.uses
+    uses = found[1].summary.uses
     called = dict.fromkeys([use.name for use in uses if use.kind is Kind.TREE])
-    declared = {seen.id.text for seen in view.seen_in(facts).subtrees if seen.id is not None}  # by a model, perhaps
+    declared = {seen.id.text for seen in view.seen_in(*found).subtrees if seen.id is not None}  # by a model, perhaps
     meant = [name for name in map(_meant, uses) if name and name not in declared]
     trees = {name for name in (*meant, *declared) if name not in called and view.defines(Kind.TREE, name)}
     called.update(dict.fromkeys(sorted(declared & trees)))

@@ -16,7 +16,7 @@ from btq_lang.syntax.tree import Entry, Node, Word
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
+    from btq_lang.workspace.resolved import ResolvedNode
 
 _INTEGER = re.compile(r"-?[0-9]{1,18}")
 
@@ -25,9 +25,10 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """More or fewer children than the node takes."""
     nodes = view.nodes
     for index, seen in enumerate(nodes):
-        if seen.category is None:
+        category = seen.stated_category
+        if category is None:
             continue
-        least, most = seen.kind.children if seen.kind is not None else CHILDREN[seen.category]
+        least, most = seen.kind.children if seen.kind is not None else CHILDREN[category]
         count = len(seen.node.children)
         if (least <= count and (most is None or count <= most)) or _is_by_children(seen):
             continue
@@ -66,7 +67,7 @@ def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
         count = len(node.children)
         by_children = _is_by_children(seen)
         if by_children and not 3 <= count <= 7:
-            message = f"{seen.shown} has {count or 'no'} child{'ren' if count != 1 else ''}"
+            message = f"{seen.shown_kind} has {count or 'no'} child{'ren' if count != 1 else ''}"
             note = "the engine supports 2 to 6 cases, each with a child, and one more child for the default"
             yield Diagnostic("switch-cases", node.head.span, message, notes=(note,))
             continue
@@ -77,13 +78,13 @@ def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
         # Without a variable no case counts, and that is told: the children that can never run.
         missing = [name for name in wanted if name not in given] if "variable" in given else []
         if extra:
-            message = f"{seen.shown} has no case `{extra[0].text}`"
+            message = f"{seen.shown_kind} has no case `{extra[0].text}`"
             note = f"its cases are `case_1` to `{wanted[-1]}`"
             if by_children:
                 note = f"with {count} children {note}: one child for each, and the last for the default"
             yield Diagnostic("switch-cases", extra[0].span, message, notes=(note,))
         elif missing:
-            message = f"{seen.shown} lacks {' and '.join(f'`{name}`' for name in missing)}"
+            message = f"{seen.shown_kind} lacks {' and '.join(f'`{name}`' for name in missing)}"
             note = "the engine does not report this and runs the default child"
             yield Diagnostic("switch-cases", node.head.span, message, notes=(note,), severity=Severity.WARNING)
 
@@ -108,7 +109,7 @@ def parallel_threshold(view: View, entry: Entry) -> Iterator[Diagnostic]:
             )
 
 
-def _is_by_children(seen: SeenNode) -> bool:
+def _is_by_children(seen: ResolvedNode) -> bool:
     """Whether its kind is the one that fits the number of its children, as of a `Switch`."""
     kind = seen.node.kind
     return kind is not None and is_by_children(kind.raw)
@@ -118,9 +119,10 @@ def _integer(word: Word | None) -> int | None:
     return int(word.text) if word is not None and _INTEGER.fullmatch(word.text) else None
 
 
-def _called(seen: SeenNode) -> str:
+def _called(seen: ResolvedNode) -> str:
     """A node with its category, where the number of its children follows from nothing else."""
-    return seen.shown if seen.kind is not None or seen.is_subtree else f"the {seen.category} {seen.shown}"
+    is_known = seen.kind is not None or seen.is_placeholder or seen.is_subtree
+    return seen.shown_kind if is_known else f"the {seen.category} {seen.shown_kind}"
 
 
 def _range(least: int, most: int | None) -> str:

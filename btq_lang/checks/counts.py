@@ -14,9 +14,9 @@ from btq_lang.syntax.tokens import QUANTITY
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import NodeKind
-    from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.syntax.tree import Entry, Word
+    from btq_lang.workspace.resolved import ResolvedNode
 
 
 def count_of_nothing(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -36,12 +36,12 @@ def count_of_nothing(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield _loop(seen, value, number)
 
 
-def _loop(seen: SeenNode, value: Word, number: float) -> Diagnostic:
+def _loop(seen: ResolvedNode, value: Word, number: float) -> Diagnostic:
     fixes = (replace_fix("Write `-1` for endless", value.span, "-1"),) if number < 0 else ()
     return Diagnostic(
         "count-of-nothing",
         value.span,
-        f"{seen.shown} never runs its child with `{value.raw}`",
+        f"{seen.shown_kind} never runs its child with `{value.raw}`",
         notes=("-1 means endless, other numbers below 1 mean never",),
         fixes=fixes,
     )

@@ -11,9 +11,9 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.budgets import Budgets
-from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
+from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, Span, Table, Value
 from btq_lang.requirements.nodes import mission
-from btq_lang.requirements.trees import tree_nodes
+from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
 
 if TYPE_CHECKING:
     from btq_lang.btcpp.judging import Judge
@@ -52,7 +52,7 @@ class Demanded:
 
 def _hard_claims(
     view: View, in_tree: Iterable[Applied], budgets: Budgets
-) -> Iterator[tuple[Applied, Claim, SourceNode, Place | None, str | None]]:
+) -> Iterator[tuple[Applied, Claim, ResolvedNode, Place | None, str | None]]:
     held = [applied for applied in in_tree if applied.requirement.action in ("fail", "halt")]
     if not held:
         return
@@ -80,13 +80,13 @@ class _Looks:
         self._view: Final = view
         self._budgets: Final = Budgets(view.store, view.viewpoint)
 
-    def waits(self, node: SourceNode) -> bool:
+    def waits(self, node: ResolvedNode) -> bool:
         return self._budgets.composed(node).waits
 
-    def is_skipped(self, node: SourceNode) -> bool:
+    def is_skipped(self, node: ResolvedNode) -> bool:
         return self._view.ask(_is_skipped, node)
 
-    def of_span(self, span: Span) -> SourceNode | None:
+    def of_span(self, span: Span) -> ResolvedNode | None:
         from btq_lang.requirements.spans import node_of
 
         return node_of(span, self._budgets)
@@ -94,17 +94,17 @@ class _Looks:
     def begins(self) -> bool:
         return self.mission() is not None
 
-    def mission(self) -> SourceNode | None:
+    def mission(self) -> ResolvedNode | None:
         return self._view.ask(mission)
 
 
-def _is_skipped(store: Store[Workspace], viewpoint: str, node: SourceNode) -> bool:
+def _is_skipped(store: Store[Workspace], viewpoint: str, node: ResolvedNode) -> bool:
     return Budgets(store, viewpoint).composed(node).skip is not None
 
 
 def _claims(
     view: View, held: Iterable[Applied], budgets: Budgets
-) -> Iterator[tuple[Applied, Claim, SourceNode, Place]]:
+) -> Iterator[tuple[Applied, Claim, ResolvedNode, Place]]:
     for applied in held:
         for claim in applied.requirement.claims:
             node = _node(applied, claim, budgets)
@@ -113,7 +113,7 @@ def _claims(
                 yield applied, claim, node, place
 
 
-def _node(applied: Applied, claim: Claim, budgets: Budgets) -> SourceNode | None:
+def _node(applied: Applied, claim: Claim, budgets: Budgets) -> ResolvedNode | None:
     """The node that a claim is about; of a span the one that takes as long."""
     if isinstance(applied.subject, Span) and VERBS[claim.verb].limits == "completion":
         from btq_lang.requirements.spans import node_of  # few claims are about a way between two nodes

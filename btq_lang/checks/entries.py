@@ -20,9 +20,9 @@ from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 # A name in a tree; an empty tree means the root blackboard.
@@ -42,16 +42,16 @@ class Mention(Record):
 
     name: str
     span: Span
-    node: SeenNode
+    node: ResolvedNode
     reads: bool
     writes: bool
     creates: bool
     in_script: bool
 
 
-def mentions(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[Mention, ...]:
+def mentions(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> tuple[Mention, ...]:
     """Every name of an entry in a tree, in document order."""
-    return tuple(_mentions(View(store, viewpoint), tree))
+    return tuple(_mentions(View(store, viewpoint), path, tree))
 
 
 def blackboards(store: Store[Workspace], viewpoint: str) -> Blackboards:
@@ -59,8 +59,8 @@ def blackboards(store: Store[Workspace], viewpoint: str) -> Blackboards:
     return Blackboards(View(store, viewpoint))
 
 
-def _mentions(view: View, tree: Facts) -> Iterator[Mention]:
-    for seen in view.seen_in(tree).given:
+def _mentions(view: View, path: str, tree: Facts) -> Iterator[Mention]:
+    for seen in view.seen_in(path, tree).given:
         for pair in seen.node.attributes:
             value = pair.value
             if value is None:
@@ -188,7 +188,7 @@ def _handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
     declared = model.ports if model is not None else ()
     gives: list[tuple[str, str, str]] = []
     shares: list[tuple[str, frozenset[str]]] = []
-    for seen in view.seen_in(found[1]).subtrees:
+    for seen in view.seen_in(*found).subtrees:
         if seen.id is None:
             continue
         below = seen.id.text
@@ -200,7 +200,7 @@ def _handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
             shares.append((below, frozenset([pair.key.text for pair in seen.node.attributes])))
     return Handling(
         tuple([port.name.text for port in (*item.ports, *declared) if port.name is not None]),
-        tuple([Touch(each.name, each.reads, each.writes, each.creates) for each in view.ask(mentions, found[1])]),
+        tuple([Touch(each.name, each.reads, each.writes, each.creates) for each in view.ask(mentions, *found)]),
         tuple(gives),
         tuple(shares),
     )
@@ -215,7 +215,7 @@ def _signal_entries(store: Store[Workspace], viewpoint: str) -> frozenset[Name]:
     return frozenset([("", source.text.strip("{}").removeprefix("@")) for source in sources])
 
 
-def _use(view: View, seen: SeenNode, pair: Pair) -> tuple[bool, bool, bool]:
+def _use(view: View, seen: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
     """Whether a port reads, writes and makes the entry that it is given."""
     key = pair.key.text
     if seen.is_subtree:
@@ -225,8 +225,8 @@ def _use(view: View, seen: SeenNode, pair: Pair) -> tuple[bool, bool, bool]:
     if seen.kind is not None:
         builtin = seen.kind.port(key)
         direction = builtin.direction if builtin is not None else None
-    elif seen.model is not None:
-        direction = next((port.direction.raw for port in seen.model.ports if _is_called(port, key)), None)
+    elif seen.is_defined:
+        direction = next((port.direction.raw for port in view.model_ports(seen) if _is_called(port, key)), None)
     return direction != "output", direction != "input", True
 
 
@@ -242,7 +242,7 @@ def _inside(pair: Pair, name: str) -> Span:
     return Span(start, start + len(name)) if at > 0 else pair.value.span
 
 
-def _in_script(view: View, seen: SeenNode, pair: Pair) -> Iterator[Mention]:
+def _in_script(view: View, seen: ResolvedNode, pair: Pair) -> Iterator[Mention]:
     from btq_lang.syntax.script import variables  # most files have no script, and it is large
 
     assert pair.value is not None, "there is a script"

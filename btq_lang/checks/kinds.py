@@ -24,10 +24,10 @@ from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Symbol
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
     from btq_lang.workspace.custom_nodes import LikelyPort
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 # How many children the nodes of a category have; None: any number.
@@ -129,11 +129,11 @@ def _given_ports(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
 
 
 def _given_ports_in(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[str, ...]:
-    nodes = View(store, viewpoint).seen_in(tree).all
+    nodes = View(store, viewpoint).seen_in(viewpoint, tree).all
     return tuple(dict.fromkeys(seen.node.head.text for seen in nodes if _gives_ports(seen)))
 
 
-def _gives_ports(seen: SeenNode) -> bool:
+def _gives_ports(seen: ResolvedNode) -> bool:
     if seen.kind is not None or seen.is_subtree or seen.id is None or seen.is_placeholder:
         return False
     return any(is_port_name(pair.key.text) for pair in seen.node.attributes)
@@ -151,7 +151,7 @@ def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
         fits = least <= len(seen.node.children) and (most is None or len(seen.node.children) <= most)
         safe = category != "SubTree" and (fits or seen.kind is not None)
         fix = replace_fix(f"Replace it with `{category}`", written_as.span, category, safe=safe)
-        message = f"{seen.shown} is written as {written_as.raw}, but {who} it as {category}"
+        message = f"{seen.shown_kind} is written as {written_as.raw}, but {who} it as {category}"
         related = model_related(view, seen, "the model")
         yield Diagnostic("category-mismatch", written_as.span, message, related=related, fixes=(fix,))
 
@@ -162,7 +162,7 @@ def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in nodes.given:
         for pair in seen.node.attributes:
             if pair.key.raw in ("satisfices", "satisfies") and pair.value is not None and not view.is_xml:
-                message = f"btq reads `{pair.key.raw} =` as a port of {seen.shown} here"
+                message = f"btq reads `{pair.key.raw} =` as a port of {seen.shown_kind} here"
                 note = f"write `{pair.key.raw}` without `=`: `{pair.key.raw} {pair.value.raw}`"
                 fix = replace_fix("Remove `=`", Span(pair.key.end, pair.value.start), " ")
                 yield Diagnostic("clause-as-node", pair.key.span, message, notes=(note,), fixes=(fix,))
@@ -205,28 +205,28 @@ def duplicate_definition(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield _second(symbol, symbol.span, one, "duplicate definition of")
 
 
-def declared_category(seen: SeenNode) -> str | None:
+def declared_category(seen: ResolvedNode) -> str | None:
     """What the engine or a model says of a node's category, whatever is written at the node."""
     if seen.is_subtree:
         return None
     if seen.kind is not None:
         return seen.kind.category
-    return seen.model.category.raw if seen.model is not None else None
+    return seen.of_model
 
 
-def model_related(view: View, seen: SeenNode, message: str) -> tuple[Related, ...]:
+def model_related(view: View, seen: ResolvedNode, message: str) -> tuple[Related, ...]:
     """The place of a node's model, where it has one."""
-    return view.declared_at(Kind.MODEL, seen.asked, message) if seen.is_defined else ()
+    return view.declared_at(Kind.MODEL, seen.id.text, message) if seen.is_defined and seen.id is not None else ()
 
 
-def likely_category(seen: SeenNode) -> str:
+def likely_category(seen: ResolvedNode) -> str:
     """The category of a custom node, as said or else as the number of its children suggests."""
-    if seen.category is not None:
-        return seen.category
+    if seen.stated_category is not None:
+        return seen.stated_category
     return ("Action", "Decorator", "Control")[min(len(seen.node.children), 2)]
 
 
-def is_torn(view: View, entry: Entry, seen: SeenNode) -> bool:
+def is_torn(view: View, entry: Entry, seen: ResolvedNode) -> bool:
     """Whether something in a node's own lines could not be read."""
     return view.is_torn(seen.node.start, seen.node.end)
 
@@ -242,7 +242,7 @@ def written(name: str) -> str:
     return name if is_name(name) else quote(name)
 
 
-def _of_today(seen: SeenNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
+def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
     """The node of today in the place of an older engine's."""
     if known.replacement is not None:
         # Without quotes the old word is read as the new one already, so nothing but this diagnostic changes.
@@ -261,19 +261,19 @@ def _way_in(view: View, known: KnownWord) -> tuple[str, ...]:
     return ("`btq import` converts the file to .btq in the syntax of version 4",)
 
 
-def _quoted_alias(seen: SeenNode, name: Word) -> NodeKind | None:
+def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:
     """The built-in that a word would mean without its quotes: `"Retry"` is no tag of the engine."""
     return lookup(name.text) if name.quoted and seen.kind is None else None
 
 
-def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[Diagnostic]:
+def _unknown(view: View, entry: Entry, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]:
     has_palette = view.has_palette and view.is_complete
     likely = view.near(name.text, Kind.MODEL)
     if not has_palette:
         if seen.node.category is not None:
             return  # written as a declaration: `Action Foo` says that there is such a node
         likely = tuple(meant for meant in likely if _is_slip(name.text, meant))
-        is_odd = view.is_complete and not seen.is_placeholder and view.look_up(lookups.most_have_models)
+        is_odd = view.is_complete and view.look_up(lookups.most_have_models)
         if not (likely or is_odd):
             return
     if not likely and not view.is_first_use(seen.node, name.text):
@@ -293,7 +293,7 @@ def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[D
     yield Diagnostic("unknown-node", name.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
-def _declared(view: View, entry: Entry, seen: SeenNode, model: str, ports: tuple[LikelyPort, ...]) -> Fix:
+def _declared(view: View, entry: Entry, seen: ResolvedNode, model: str, ports: tuple[LikelyPort, ...]) -> Fix:
     """The model of a node with the ports that its uses show, put in before an item."""
     margin = view.text[: entry.item.start]
     below = view.text[: seen.node.start + 1].splitlines()[1:]
@@ -307,7 +307,7 @@ def _declared(view: View, entry: Entry, seen: SeenNode, model: str, ports: tuple
     return Fix(title, (Change(Place(Span(0, 0)), "".join(lines)),))
 
 
-def _category_meant(view: View, seen: SeenNode) -> str | None:
+def _category_meant(view: View, seen: ResolvedNode) -> str | None:
     """`action Lower`, `Acton Lower`: a word for the node's category, not written as one."""
     kind = seen.node.kind
     if kind is None or kind.quoted or seen.node.category is not None or seen.node.label is None:
@@ -336,7 +336,7 @@ def _without_digits(word: str) -> str:
     return "".join(letter for letter in word if not letter.isdigit())
 
 
-def _tree_as_node(view: View, seen: SeenNode, name: Word) -> Diagnostic:
+def _tree_as_node(view: View, seen: ResolvedNode, name: Word) -> Diagnostic:
     """`PickPlace` or `Action PickPlace` where PickPlace is a tree."""
     category = seen.node.category
     span, text = (Span(name.start, name.start), "SubTree ") if category is None else (category.span, "SubTree")
@@ -350,13 +350,13 @@ def _tree_as_node(view: View, seen: SeenNode, name: Word) -> Diagnostic:
     )
 
 
-def _is_refused(view: View, seen: SeenNode, name: Word) -> bool:
+def _is_refused(view: View, seen: ResolvedNode, name: Word) -> bool:
     """Whether the name itself is the mistake, which is told."""
     target = view.project.target
     return seen.node.category is None and model_name_problem(name.text, target) is not None
 
 
-def _is_clause(seen: SeenNode) -> bool:
+def _is_clause(seen: ResolvedNode) -> bool:
     name = seen.node.kind
     return (
         name is not None

@@ -12,11 +12,12 @@ from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced, lowe
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.composition import port_count, port_seconds
-from btq_lang.requirements.model import Claim, Compare, Read, Requirement, SourceNode, Table, Target, Value
+from btq_lang.requirements.model import Claim, Compare, Read, Requirement, Table, Target, Value
 from btq_lang.syntax.tree import Goal
 from btq_lang.syntax.tree import Requirement as WrittenRequirement
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
+from btq_lang.workspace.resolved import ResolvedNode
 
 if TYPE_CHECKING:
     from btq_lang.catalog.units import Dimension
@@ -212,7 +213,7 @@ def _compared(verb: str, condition: Compare) -> Iterator[_Limit]:
             yield (verb, read.signal.name), value, None
 
 
-def _timeouts(node: SourceNode) -> Iterator[tuple[SourceNode, float]]:
+def _timeouts(node: ResolvedNode) -> Iterator[tuple[ResolvedNode, float]]:
     """The Timeouts around a node in its tree, the tightest first."""
     found = []
     above = node.parent
@@ -223,10 +224,10 @@ def _timeouts(node: SourceNode) -> Iterator[tuple[SourceNode, float]]:
     yield from sorted(found, key=lambda each: each[1])
 
 
-def _loops(node: SourceNode, top: SourceNode) -> list[tuple[SourceNode, int]]:
+def _loops(node: ResolvedNode, top: ResolvedNode) -> list[tuple[ResolvedNode, int]]:
     """The loops between a node and one above it in the same tree, with their counts; none where one is not known."""
-    found: list[tuple[SourceNode, int]] = []
-    at: SourceNode | None = node.parent if node is not top else None
+    found: list[tuple[ResolvedNode, int]] = []
+    at: ResolvedNode | None = node.parent if node is not top else None
     while at is not None:
         if at.flow in ("retry", "repeat"):
             count = port_count(at, "count")

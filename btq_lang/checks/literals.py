@@ -22,7 +22,7 @@ from btq_lang.syntax.tree import Entry, Model, Models, Pair, Port, Tree, Word, q
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
+    from btq_lang.workspace.resolved import ResolvedNode
 
 _NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")
@@ -155,13 +155,13 @@ def _declared_ports(entry: Entry) -> Sequence[Port]:
     return [port for model in models if isinstance(model, Model) for port in model.ports]
 
 
-def _target(view: View, seen: SeenNode, pair: Pair, value: Word) -> _Target | None:
+def _target(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> _Target | None:
     key = pair.key.text
     builtin = BUILTINS["SubTree"] if seen.is_subtree and key == "_autoremap" else seen.kind
     if builtin is not None:
         port = builtin.port(key)
         return _of_builtin(port, view.project.target) if port is not None else None
-    ports = subtree_ports(view, seen) if seen.is_subtree else seen.model.ports if seen.model else ()
+    ports = subtree_ports(view, seen) if seen.is_subtree else view.model_ports(seen)
     declared = next((port for port in ports if port.name is not None and port.name.text == key), None)
     if declared is not None:
         is_output = declared.direction.raw == "output"

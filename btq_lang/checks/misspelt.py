@@ -27,7 +27,7 @@ def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """An entry that is named once, and read though nothing writes it, or written though nothing reads it, where
     another entry has nearly the same name."""
     tree = entry.item
-    mentions = view.ask(mentions_in, view.facts)
+    mentions = view.ask(mentions_in, view.path, view.facts)
     if not isinstance(tree, Tree) or tree.name is None or not mentions:
         return
     if any(isinstance(child, Verbatim) for node in view.nodes for child in node.node.children):

@@ -25,7 +25,7 @@ from btq_lang.workspace.port_types import declared_type, is_text
 from btq_lang.workspace.queries import Store, on_circle
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 
@@ -104,7 +104,7 @@ def _types(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
     return found
 
 
-def _handed_on(view: View, seen: SeenNode) -> Iterator[tuple[str, int | None, _Meeting]]:
+def _handed_on(view: View, seen: ResolvedNode) -> Iterator[tuple[str, int | None, _Meeting]]:
     """What the entries meet that a SubTree gives to its tree, by the names that they have here."""
     if seen.id is None or not seen.id.text:
         return
@@ -155,9 +155,9 @@ def _given(view: View, caller: str, tree: str, key: str) -> Iterator[str | None]
             yield key if remaps_all(seen) and key[0] != "_" else None
 
 
-def _nodes(view: View, tree: str) -> tuple[SeenNode, ...]:
+def _nodes(view: View, tree: str) -> tuple[ResolvedNode, ...]:
     found = view.definition(Kind.TREE, tree)
-    return view.seen_in(found[1]).all if found is not None else ()
+    return view.seen_in(*found).all if found is not None else ()
 
 
 def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Iterator[Diagnostic]:
@@ -186,8 +186,8 @@ def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Itera
         yield Diagnostic(
             "entry-with-two-types",
             span,
-            f"`{port.key.text}` of {seen.shown} creates `{{{key}}}` as {first.type}, "
-            f"but `{later_port.key.text}` of {later_seen.shown} has the type {later.type}",
+            f"`{port.key.text}` of {seen.shown_kind} creates `{{{key}}}` as {first.type}, "
+            f"but `{later_port.key.text}` of {later_seen.shown_kind} has the type {later.type}",
             related=tuple(related),
             notes=(
                 "BehaviorTree.CPP refuses to load this tree; use an entry for each type, "
@@ -197,7 +197,7 @@ def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Itera
         )
 
 
-def _port(view: View, port: _Port) -> tuple[SeenNode, Pair]:
+def _port(view: View, port: _Port) -> tuple[ResolvedNode, Pair]:
     seen = _nodes(view, port.tree)[port.node]
     return seen, seen.node.attributes[port.pair]
 
@@ -227,12 +227,12 @@ def _add(found: dict[str, list[_Meeting]], key: str, meeting: _Meeting) -> None:
         known.append(meeting)
 
 
-def _port_type(view: View, seen: SeenNode, port: str) -> str:
+def _port_type(view: View, seen: ResolvedNode, port: str) -> str:
     if seen.kind is not None:
         builtin = seen.kind.port(port)
         type_ = port_type(builtin, view.project.target) if builtin is not None else ""
     else:
-        type_ = declared_type(seen.model.ports, port) if seen.model is not None else ""
+        type_ = declared_type(view.model_ports(seen), port)
     return plain_type(type_) if type_ not in _ANYTHING else ""
 
 

@@ -17,8 +17,8 @@ from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
+    from btq_lang.workspace.resolved import ResolvedNode
 
 _NO_NAMESPACES = ("it does not support XML namespaces: the prefix is part of the name",)
 
@@ -74,7 +74,7 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic("duplicate-instance-name", name.span, message, related=related)
 
 
-def _of_id(view: View, seen: SeenNode, name: Word, reason: str) -> Iterator[Diagnostic]:
+def _of_id(view: View, seen: ResolvedNode, name: Word, reason: str) -> Iterator[Diagnostic]:
     if seen.is_subtree and name.text and not view.is_complete and not view.defines(Kind.TREE, name.text):
         yield _tree_name(view, name, reason, ())  # else it is told where the tree is, or that there is none
     elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
@@ -88,7 +88,7 @@ def _is_prefixed(name: str) -> bool:
     return is_name(prefix) and is_name(rest)
 
 
-def _of_instance(view: View, entry: Entry, seen: SeenNode, label: Word, version: str) -> Iterator[Diagnostic]:
+def _of_instance(view: View, entry: Entry, seen: ResolvedNode, label: Word, version: str) -> Iterator[Diagnostic]:
     if reason := instance_name_problem(label.text, version):
         yield _refused("instance name", label, reason)
     if label.text == "" and seen.is_subtree and UNIQUE_SUBTREES.holds(version) and view.is_main:
@@ -145,7 +145,7 @@ def _renamed(view: View, entry: Entry, name: Word) -> tuple[Fix, ...]:
     return (Fix(f"Rename it to `{legal}` everywhere", changes),)
 
 
-def _explicit(seen: SeenNode, name: Word) -> tuple[Fix, ...]:
+def _explicit(seen: ResolvedNode, name: Word) -> tuple[Fix, ...]:
     """`Action "my node"`: the ID of the explicit form is not looked at."""
     if name.text in ("", "Root", "root"):
         return ()

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, highest
 from btq_lang.diagnostics.model import Diagnostic, Related
-from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, SourceNode
+from btq_lang.requirements.model import Applied, Claim, Mission, Requirement
+from btq_lang.workspace.resolved import ResolvedNode
 
 if TYPE_CHECKING:
     from btq_lang.requirements.budgets import Budgets
@@ -62,8 +63,8 @@ def window_too_small(requirement: Requirement) -> Iterator[Found]:
 
 
 def _ensured(
-    budgets: Budgets, claim: Claim, node: SourceNode
-) -> tuple[float, list[tuple[SourceNode, float]], str] | None:
+    budgets: Budgets, claim: Claim, node: ResolvedNode
+) -> tuple[float, list[tuple[ResolvedNode, float]], str] | None:
     """How likely what is demanded below a node makes a claim true, what each child may miss, and what that leaves out;
     None: it is unknown, or it takes too long anyway."""
     most = highest(claim)
@@ -85,7 +86,7 @@ def _ensured(
     return None
 
 
-def _called(applied: Applied, node: SourceNode) -> str:
+def _called(applied: Applied, node: ResolvedNode) -> str:
     """As people call it: the mission, or a tree where its root has no name of its own."""
     if isinstance(applied.subject, Mission):
         return "`mission`"

@@ -15,9 +15,9 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Entry, Pair, Port, Word, is_name
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 
@@ -40,7 +40,8 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
         name = value.text if is_name(value.text) else pair.key.text
         fixes = (replace_fix(f"Write the entry `{{{name}}}`", value.span, f"{{{name}}}"),) if is_name(name) else ()
         notes = ("many outputs of this file have a literal; ignore this if your program reads it as an entry's name",)
-        message = f"expected a blackboard entry for the output `{pair.key.text}` of {seen.shown}, found `{value.raw}`"
+        output = f"the output `{pair.key.text}` of {seen.shown_kind}"
+        message = f"expected a blackboard entry for {output}, found `{value.raw}`"
         yield Diagnostic(
             "literal-for-output",
             value.span,
@@ -55,13 +56,13 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def outputs(view: View, entry: Entry) -> Iterator[tuple[SeenNode, Pair, str]]:
+def outputs(view: View, entry: Entry) -> Iterator[tuple[ResolvedNode, Pair, str]]:
     """What the nodes of a tree are given for their outputs, and the types of those; none is said for a tree's, which
     keep whatever they are given."""
     return _outputs_in(view, view.seen.given)
 
 
-def _outputs_in(view: View, nodes: Iterable[SeenNode]) -> Iterator[tuple[SeenNode, Pair, str]]:
+def _outputs_in(view: View, nodes: Iterable[ResolvedNode]) -> Iterator[tuple[ResolvedNode, Pair, str]]:
     """nodes: those with attributes."""
     for seen in nodes:
         if seen.is_placeholder:
@@ -93,7 +94,8 @@ def _first_with_value(store: Store[Workspace], viewpoint: str) -> Facts | None:
 def _counts(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[int, int]:
     """How many outputs a tree gives something to, and how many of them a value."""
     view = View(store, viewpoint)
-    given = [pair.value for _, pair, _ in _outputs_in(view, view.seen_in(tree).given) if pair.value is not None]
+    nodes = view.seen_in(viewpoint, tree).given
+    given = [pair.value for _, pair, _ in _outputs_in(view, nodes) if pair.value is not None]
     return len(given), sum(map(_is_literal, given))
 
 
@@ -102,13 +104,13 @@ def _is_literal(value: Word) -> bool:
     return value.text not in ("", "=") and not is_pointer(value.text)
 
 
-def _types(view: View, seen: SeenNode) -> dict[str, str]:
+def _types(view: View, seen: ResolvedNode) -> dict[str, str]:
     """The outputs that a node has, and their types."""
     if seen.kind is not None:
         return _outputs_of(seen.kind.tag)
     if seen.is_subtree:
         return dict.fromkeys(_outputs(subtree_ports(view, seen)), "")
-    return _outputs(seen.model.ports) if seen.model is not None else {}
+    return _outputs(view.model_ports(seen))
 
 
 @cache

@@ -20,10 +20,10 @@ from btq_lang.workspace import inputs
 from btq_lang.workspace.placeholders import is_placeholder
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 _BLANKS = " \t"
@@ -115,7 +115,7 @@ def _taken(view: View, name: str) -> str | None:
     return "which is the name of a tree" if view.defines(Kind.TREE, name) else None
 
 
-def _short_form(view: View, entry: Entry, seen: SeenNode, name: str) -> Fix | None:
+def _short_form(view: View, entry: Entry, seen: ResolvedNode, name: str) -> Fix | None:
     """`MoveBase (…)`, `Condition BatteryLow "BatteryLow?"`; None where what stands around the name is unusual.
 
     It is safe where no models are in scope: with models the node would be held against them.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.literals import is_pointer
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
+    from btq_lang.workspace.resolved import ResolvedNode
 
 
 def pointed_at(port: str, text: str) -> str | None:
@@ -17,7 +17,7 @@ def pointed_at(port: str, text: str) -> str | None:
     return port if text == "{=}" else text[1:-1]
 
 
-def remaps_all(seen: SeenNode) -> bool:
+def remaps_all(seen: ResolvedNode) -> bool:
     """Whether a SubTree gets every entry under its own name; private ones, which begin with `_`, it never gets."""
     value = seen.node.attribute("_autoremap")
     return value is not None and value.text in ("true", "True", "TRUE", "1")

@@ -22,8 +22,8 @@ from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
     from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 _OWN = frozenset(("ID", "name"))
@@ -48,7 +48,7 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "unknown-port",
                 key.span,
-                f"{seen.shown} has no port `{key.text}`{did_you_mean(likely)}",
+                f"{seen.shown_kind} has no port `{key.text}`{did_you_mean(likely)}",
                 related=_declared(view, seen),
                 notes=(f"it has {names}" if known else "it has no ports",),
                 fixes=fixes,
@@ -80,7 +80,7 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "missing-port",
             seen.node.head.span,
-            f"{seen.shown} requires {'a value' if len(missing) == 1 else 'values'} for its "
+            f"{seen.shown_kind} requires {'a value' if len(missing) == 1 else 'values'} for its "
             f"port{'s' if len(missing) > 1 else ''} {names}",
             related=_declared(view, seen),
             notes=(
@@ -180,7 +180,7 @@ def misspelt_type(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic("misspelt-type", port.type.span, message, fixes=(fix,))
 
 
-def is_case(seen: SeenNode, key: str) -> bool:
+def is_case(seen: ResolvedNode, key: str) -> bool:
     """Whether an attribute is a case of a Switch; which ones there are depends on the number of its children."""
     return seen.flow == "switch" and key.startswith("case_") and key[5:].isdecimal()
 
@@ -204,7 +204,7 @@ class KnownPorts:
         self.required = tuple([port for port in ports if port.required])
 
 
-def _ports(view: View, seen: SeenNode) -> KnownPorts | None:
+def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
     """The ports a node has; None where nobody knows."""
     if seen.is_placeholder:
         return None
@@ -215,15 +215,13 @@ def _ports(view: View, seen: SeenNode) -> KnownPorts | None:
         return KnownPorts(ports) if ports else None
     if seen.kind is not None:
         return _builtin_ports(seen.kind.tag)
-    if seen.model is not None:
-        return view.ask(_model_ports, seen.asked)
-    return None
+    return view.ask(_model_ports, seen.id.text) if seen.is_defined and seen.id is not None else None
 
 
-def _may_have_more(view: View, seen: SeenNode) -> bool:
+def _may_have_more(view: View, seen: ResolvedNode) -> bool:
     """Whether a port may be declared where something could not be read."""
-    name = seen.node.id if seen.is_subtree else seen.id
-    if name is None or not (seen.is_subtree or seen.model):
+    name = seen.id
+    if name is None or not (seen.is_subtree or seen.is_defined):
         return False
     kinds = (Kind.TREE, Kind.MODEL) if seen.is_subtree else (Kind.MODEL,)
     return any(view.look_up(lookups.is_torn, kind, name.text) for kind in kinds)
@@ -251,7 +249,7 @@ def _declared_port(port: Port, required: bool) -> KnownPort:
     return KnownPort(name.text if name else "", required and name is not None, port.text.text if port.text else "")
 
 
-def _meant(seen: SeenNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:
+def _meant(seen: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:
     """The keys that are no port, each with the ports that may be meant: none that has a value."""
     names = ports.names
     given = [pair.key.text for pair in seen.node.attributes]
@@ -274,20 +272,20 @@ def _meant(seen: SeenNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:
     return found
 
 
-def _forbidden_id(seen: SeenNode) -> Iterator[Diagnostic]:
+def _forbidden_id(seen: ResolvedNode) -> Iterator[Diagnostic]:
     """`-> (ID = x)`: the engine takes an ID in the explicit form only."""
     node = seen.node
     if node.kind is None or node.category is not None or (not node.kind.quoted and node.kind.raw in KNOWN_WORDS):
         return
     for pair in node.attributes:
         if pair.key.text == "ID":
-            message = f"the engine refuses the attribute `ID` on {seen.shown}"
+            message = f"the engine refuses the attribute `ID` on {seen.shown_kind}"
             fix = replace_fix("Replace `ID` with `name`", pair.key.span, "name")
             fixes = () if node.name is not None else (fix,)
             yield Diagnostic("unknown-port", pair.key.span, message, fixes=fixes)
 
 
-def _remaps_all(seen: SeenNode) -> bool:
+def _remaps_all(seen: ResolvedNode) -> bool:
     """Whether a SubTree gets every entry under its own name, or its writer thinks so: that is told."""
     values = [seen.node.attribute(key) for key in ("_autoremap", *_OF_TODAY)]
     return any(value is not None and not _is_off(value) for value in values)
@@ -297,13 +295,13 @@ def _is_off(value: Word | None) -> bool:
     return value is not None and value.text in ("false", "False", "FALSE", "0")
 
 
-def _declared(view: View, seen: SeenNode) -> tuple[Related, ...]:
+def _declared(view: View, seen: ResolvedNode) -> tuple[Related, ...]:
     if seen.is_subtree:
         return view.declared_at(Kind.TREE, seen.node.id.text, _DECLARED) if seen.node.id is not None else ()
     return model_related(view, seen, _DECLARED)
 
 
-def _passing_on(view: View, entry: Entry, seen: SeenNode, missing: list[KnownPort]) -> tuple[Fix, ...]:
+def _passing_on(view: View, entry: Entry, seen: ResolvedNode, missing: list[KnownPort]) -> tuple[Fix, ...]:
     """Give a custom node or a SubTree the blackboard entries that are called as its ports."""
     if seen.kind is not None:
         return ()

@@ -12,9 +12,9 @@ from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.syntax.tree import Entry
+    from btq_lang.workspace.resolved import ResolvedNode
 
 _PASS_SKIPPED_ON = frozenset(
     ("invert", "force-success", "force-failure", "timeout", "delay", "repeat", "retry", "once")
@@ -39,7 +39,7 @@ def one_shot_monitor(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "one-shot-monitor",
                 pair.key.span,
-                f"the engine checks `{key}` once, when {seen.shown} starts, and not while it runs",
+                f"the engine checks `{key}` once, when {seen.shown_kind} starts, and not while it runs",
                 notes=(
                     f"to check it at every tick, use {watched}",
                     f"to check it once, use {start} with a ScriptCondition in front of the node",
@@ -66,7 +66,8 @@ def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "while-skip-is-success",
             pair.key.span,
-            f"when `_while` becomes false, {seen.shown} is halted and {parent.shown} continues as if it had succeeded",
+            f"when `_while` becomes false, {seen.shown_kind} is halted and {parent.shown_kind} continues "
+            "as if it had succeeded",
             notes=(
                 "the halted node returns SKIPPED, which a Sequence treats as done",
                 "to fail instead, use `R->` with a ScriptCondition in front of the node, or a requirement with `keeps`",
@@ -89,17 +90,17 @@ def skipped_condition(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "skipped-condition",
             pair.key.span,
-            f"if `{pair.key.text}` skips {seen.shown}, {parent.shown} throws and the mission ends",
-            notes=(f"move `{pair.key.text}` to {parent.shown}, or check it in a ScriptCondition",),
+            f"if `{pair.key.text}` skips {seen.shown_kind}, {parent.shown_kind} throws and the mission ends",
+            notes=(f"move `{pair.key.text}` to {parent.shown_kind}, or check it in a ScriptCondition",),
         )
 
 
-def _takes_for_success(parent: SeenNode, step: SeenNode) -> bool:
+def _takes_for_success(parent: ResolvedNode, step: ResolvedNode) -> bool:
     is_tried = parent.flow == "try" and step.index + 1 < len(parent.node.children)
     return is_tried or parent.flow == "sequence"
 
 
-def _is_choice(parent: SeenNode, step: SeenNode) -> bool:
+def _is_choice(parent: ResolvedNode, step: ResolvedNode) -> bool:
     return any(
         other is not step.node and (other.attribute("_while") is not None or other.attribute("_skipIf") is not None)
         for other in parent.node.nodes

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.names import is_xml_name, model_name_problem
-from btq_lang.catalog.nodes import BUILTINS, NodeKind, inspects_children, lookup
+from btq_lang.catalog.nodes import BUILTINS, NodeKind, inspects_children
 from btq_lang.catalog.versions import NO_EXPLICIT_CHILD, ONE_ASYNC_SEQUENCE
 from btq_lang.checks.results import result
 from btq_lang.checks.statuses import GOES_ON, RUNNING, SKIPPED
@@ -20,7 +20,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Entry, Node, Word, quote
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
+    from btq_lang.workspace.resolved import ResolvedNode
 
 _APART = "put it in a Sequence of its own"
 
@@ -90,7 +90,7 @@ def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in choices:
         if not _is_at_the_top(seen):
             continue
-        guard: SeenNode | None = None
+        guard: ResolvedNode | None = None
         for child in seen.node.nodes:
             if guard is not None and result(view, child).usual & RUNNING:
                 yield _not_asked_again(seen, guard, child, fixable=_can_be_asked_again(view, entry, nodes, seen))
@@ -98,20 +98,19 @@ def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
             guard = guard or _guard(nodes, nodes[id(child)])
 
 
-def _second_async_sequence(seen: SeenNode, version: str) -> Diagnostic | None:
+def _second_async_sequence(seen: ResolvedNode, version: str) -> Diagnostic | None:
     """The engine looks for this kind alone, and for children alone."""
     if seen.kind is None or not seen.kind.inspects_children or not ONE_ASYNC_SEQUENCE.holds(version):
         return None
-    kinds = [(child, lookup(child.kind.text)) for child in seen.node.nodes if child.kind is not None]
-    found = [(child, kind) for child, kind in kinds if kind is not None and _is_async_sequence(kind)]
+    found = [child for child in seen.children if child.kind is not None and _is_async_sequence(child.kind)]
     if len(found) < 2:
         return None
-    (first, _), (second, kind), *_ = found
+    first, second, *_ = found
     return Diagnostic(
         "reactive-multiple-async",
-        second.head.span,
-        f"the engine refuses a second {kind.tag} in {seen.shown}",
-        related=(Related(Place(first.head.span), "first one"),),
+        second.node.head.span,
+        f"the engine refuses a second {second.tag} in {seen.shown_kind}",
+        related=(Related(Place(first.node.head.span), "first one"),),
         severity=Severity.ERROR,
     )
 
@@ -120,8 +119,8 @@ def _is_async_sequence(kind: NodeKind) -> bool:
     return kind.flow == "sequence" and kind.pauses and not kind.keeps_place
 
 
-def _never_gets_further(seen: SeenNode, first: Node, child: Node, surely: bool) -> Diagnostic:
-    other, this = called(first), called(child)
+def _never_gets_further(seen: ResolvedNode, first: Node, child: Node, surely: bool) -> Diagnostic:
+    other, this, shown = called(first), called(child), seen.shown_kind
     message = f"{this} never gets beyond its first tick: {other} restarts and halts it"
     if not surely:
         message = f"if {other} takes longer than one tick, it restarts whenever {this} is RUNNING, and halts it"
@@ -131,30 +130,30 @@ def _never_gets_further(seen: SeenNode, first: Node, child: Node, surely: bool) 
         message,
         related=(Related(Place(first.head.span), "restarts"),),
         notes=(
-            f"{seen.shown} starts with its first child at every tick, and halts all others when one returns RUNNING",
-            f"only the last child of {seen.shown} should run over several ticks; put the steps of a plan into a `->`",
+            f"{shown} starts with its first child at every tick, and halts all others when one returns RUNNING",
+            f"only the last child of {shown} should run over several ticks; put the steps of a plan into a `->`",
         ),
         severity=None if surely else Severity.HINT,
     )
 
 
-def _is_at_the_top(seen: SeenNode) -> bool:
+def _is_at_the_top(seen: ResolvedNode) -> bool:
     """Whether nothing but decorators and reactive nodes stands above: elsewhere a choice is part of a longer plan, and
     meant to be made once."""
-    return all(above.category == "Decorator" or _begins_again(above) for above in seen.ancestors())
+    return all(above.stated_category == "Decorator" or _begins_again(above) for above in seen.ancestors())
 
 
-def _begins_again(seen: SeenNode) -> bool:
+def _begins_again(seen: ResolvedNode) -> bool:
     """Whether it is a sequence or a fallback that begins with its first child at every tick."""
     return seen.kind is not None and seen.kind.reactive and seen.kind.flow in GOES_ON
 
 
-def _guard(nodes: dict[int, SeenNode], branch: SeenNode) -> SeenNode | None:
+def _guard(nodes: dict[int, ResolvedNode], branch: ResolvedNode) -> ResolvedNode | None:
     """The condition in front of a branch `-> [condition, …]`; a condition alone is no branch: what follows it in the
     Fallback brings about what it asks for. One in `R->` watches over what runs beside it: it is asked all the while."""
     if not _is_resuming_sequence(branch) or len(branch.node.children) < 2:
         return None
-    seen: SeenNode | None = branch
+    seen: ResolvedNode | None = branch
     while seen is not None and seen.category != "Condition":
         inside = _is_resuming_sequence(seen) or seen.flow == "invert"
         first = seen.node.children[0] if inside and seen.node.children else None
@@ -162,11 +161,11 @@ def _guard(nodes: dict[int, SeenNode], branch: SeenNode) -> SeenNode | None:
     return seen
 
 
-def _is_resuming_sequence(seen: SeenNode) -> bool:
+def _is_resuming_sequence(seen: ResolvedNode) -> bool:
     return seen.flow == "sequence" and not _begins_again(seen)
 
 
-def _can_be_asked_again(view: View, entry: Entry, nodes: dict[int, SeenNode], seen: SeenNode) -> bool:
+def _can_be_asked_again(view: View, entry: Entry, nodes: dict[int, ResolvedNode], seen: ResolvedNode) -> bool:
     """Whether `R?` would start again only what its condition asks for: any other child that takes time and fails would
     start again at the next tick, and halt what was to follow it."""
     return all(
@@ -175,7 +174,7 @@ def _can_be_asked_again(view: View, entry: Entry, nodes: dict[int, SeenNode], se
     )
 
 
-def _not_asked_again(seen: SeenNode, guard: SeenNode, branch: Node, *, fixable: bool) -> Diagnostic:
+def _not_asked_again(seen: ResolvedNode, guard: ResolvedNode, branch: Node, *, fixable: bool) -> Diagnostic:
     kind = seen.node.head
     return Diagnostic(
         "condition-without-recheck",
@@ -186,8 +185,8 @@ def _not_asked_again(seen: SeenNode, guard: SeenNode, branch: Node, *, fixable: 
             Related(Place(branch.head.span), "not interrupted"),
         ),
         notes=(
-            f"{seen.shown} resumes the running child; `R?` starts with the first child at every tick",
-            f"keep {seen.shown} if the choice is to be made only once",
+            f"{seen.shown_kind} resumes the running child; `R?` starts with the first child at every tick",
+            f"keep {seen.shown_kind} if the choice is to be made only once",
         ),
         fixes=(replace_fix("Check at every tick: `R?`", kind.span, _reactive(kind)),) if fixable else (),
     )

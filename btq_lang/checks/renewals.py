@@ -18,13 +18,14 @@ from btq_lang.checks.writers import all_entries, declared_ports, isolated, key_o
 from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements import nodes
 from btq_lang.requirements.reading import signals_in
-from btq_lang.requirements.trees import tree_nodes, trees_called
 from btq_lang.workspace import inputs
+from btq_lang.workspace.resolved import tree_nodes, trees_called
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.model import Claim, Requirement, Signal, SourceNode
+    from btq_lang.requirements.model import Claim, Requirement, Signal
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 # While a child of these runs no other one does, and what ran before has come to its end, unless they are reactive.
@@ -73,7 +74,7 @@ def _watched(requirement: Requirement, claim: Claim) -> Iterable[Signal]:
     return signals_in((claim.condition, claim.signal)) if judged == "at its end" else ()
 
 
-def _is_fixed(demanded: Demanded, node: SourceNode, key: str) -> bool:
+def _is_fixed(demanded: Demanded, node: ResolvedNode, key: str) -> bool:
     """Whether an entry that nodes write stays as it is while a node of the tree runs."""
     view, tree = demanded.view, demanded.tree
     if not view.ask(_writers, key):
@@ -84,7 +85,7 @@ def _is_fixed(demanded: Demanded, node: SourceNode, key: str) -> bool:
     return not view.ask(_is_renewed_above, node.tree, key)
 
 
-def _is_renewed_beside(writing: frozenset[int], carrying: frozenset[int], node: SourceNode) -> bool:
+def _is_renewed_beside(writing: frozenset[int], carrying: frozenset[int], node: ResolvedNode) -> bool:
     """Whether an entry may be written while a node runs, by one above it in the tree, or below one of these.
 
     Args:
@@ -101,7 +102,7 @@ def _is_renewed_beside(writing: frozenset[int], carrying: frozenset[int], node: 
     return False
 
 
-def _runs_one_at_a_time(node: SourceNode) -> bool:
+def _runs_one_at_a_time(node: ResolvedNode) -> bool:
     return node.kind is not None and node.kind.flow in _ONE_AT_A_TIME and not node.kind.reactive
 
 
@@ -118,14 +119,14 @@ def _renewing(
     trees = store.ask(_carrying, viewpoint, key)
     carrying: set[int] = set()
     for node in (*writers, *(node for name, node in tree.calls if name in trees)):
-        at: SourceNode | None = node
+        at: ResolvedNode | None = node
         while at is not None and id(at) not in carrying:
             carrying.add(id(at))
             at = at.parent
     return frozenset(map(id, writers)), frozenset(carrying)
 
 
-def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[SourceNode, ...]:
+def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[ResolvedNode, ...]:
     """The nodes that may write an entry of this name; none where others may, too, or no node surely does."""
     view = View(store, viewpoint)
     if view.ask(nodes.mission) is None or not view.is_complete or not view.is_read:
@@ -186,7 +187,7 @@ def _is_renewed_above(store: Store[Workspace], viewpoint: str, tree: str | None,
     return False
 
 
-def _callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[SourceNode, ...]:
+def _callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[ResolvedNode, ...]:
     return store.ask(nodes.callers, viewpoint, tree) if tree is not None else ()
 
 

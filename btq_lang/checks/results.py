@@ -20,8 +20,8 @@ from btq_lang.workspace.queries import Store, on_circle
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import NodeKind
-    from btq_lang.checks.seen import SeenNode
     from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 
@@ -50,7 +50,7 @@ def result(view: View, node: object) -> Results:
 
 def results(view: View) -> Mapping[int, Results]:
     """What the nodes of a tree can return, by their `id`; what is not in it is verbatim XML."""
-    return view.ask(_of_nodes, view.facts)
+    return view.ask(_of_nodes, view.path, view.facts)
 
 
 @on_circle(UNKNOWN)
@@ -61,27 +61,27 @@ def _of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> Results:
     if found is None or not isinstance(item, Tree):
         return UNKNOWN
     roots = [child for child in item.children if isinstance(child, Node)]
-    return _of_nodes(store, viewpoint, found[1])[id(roots[0])] if len(roots) == 1 else UNKNOWN
+    return _of_nodes(store, viewpoint, *found)[id(roots[0])] if len(roots) == 1 else UNKNOWN
 
 
-def _of_nodes(store: Store[Workspace], viewpoint: str, facts: Facts) -> dict[int, Results]:
+def _of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> dict[int, Results]:
     """What the nodes of a tree can return.  `_of_tree` does not ask for it: it would be part of each circle."""
     view = View(store, viewpoint)
     found: dict[int, Results] = {}
-    for seen in reversed(view.seen_in(facts).all):  # children before their parents
+    for seen in reversed(view.seen_in(path, facts).all):  # children before their parents
         found[id(seen.node)] = _of_node(view, seen, found)
     return found
 
 
-def _of_node(view: View, seen: SeenNode, known: dict[int, Results]) -> Results:
+def _of_node(view: View, seen: ResolvedNode, known: dict[int, Results]) -> Results:
     found = UNKNOWN
     if seen.is_subtree:
         found = view.ask(_of_tree, seen.id.text) if seen.id is not None and seen.id.text else UNKNOWN
-    elif seen.kind is not None and not seen.is_placeholder:
+    elif seen.kind is not None:
         children = tuple([known.get(id(child), UNKNOWN) for child in seen.node.children])
         found = _of_builtin(seen.kind, seen.node, children)
     elif not seen.node.children:
-        found = _CUSTOM.get(seen.category or "", _UNKNOWN_LEAF)
+        found = _CUSTOM.get(seen.stated_category or "", _UNKNOWN_LEAF)
     added = 0
     for pair in seen.node.attributes:
         added |= _ADDED.get(pair.key.text, 0)

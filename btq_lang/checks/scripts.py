@@ -12,10 +12,10 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.syntax.tree import Entry, Pair, Word
+    from btq_lang.workspace.resolved import ResolvedNode
 
 
 def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -38,12 +38,12 @@ def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
                     yield found
 
 
-def is_script(seen: SeenNode, pair: Pair) -> bool:
+def is_script(seen: ResolvedNode, pair: Pair) -> bool:
     """Whether an attribute holds a script."""
     return _expects_value(seen, pair) is not None
 
 
-def _expects_value(seen: SeenNode, pair: Pair) -> bool | None:
+def _expects_value(seen: ResolvedNode, pair: Pair) -> bool | None:
     """Whether a script in this attribute has to give a value, as a condition has; None: it holds no script."""
     key = pair.key.text
     attribute = RESERVED_ATTRIBUTES.get(key)
@@ -62,7 +62,7 @@ def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic,
     return check_script(view.script(script), versions=versions, expects_value=expects_value)
 
 
-def _empty(seen: SeenNode, key: str, value: Word, found: Diagnostic) -> Diagnostic:
+def _empty(seen: ResolvedNode, key: str, value: Word, found: Diagnostic) -> Diagnostic:
     """The whole value is the place; the engine runs a Script without any character, and refuses all others."""
     is_port = seen.kind is not None and seen.kind.port(key) is not None
     if is_port and seen.flow == "succeeds" and value.text == "":

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, TypeAlias
 from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced
 from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements.composition import port_count
-from btq_lang.requirements.model import SourceNode
 from btq_lang.requirements.nodes import callers, mission
+from btq_lang.workspace.resolved import ResolvedNode
 
 if TYPE_CHECKING:
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
 
-Swallower: TypeAlias = tuple[SourceNode, str]  # the node that does not fail when something below it does, and why
+Swallower: TypeAlias = tuple[ResolvedNode, str]  # the node that does not fail when something below it does, and why
 
 _NEVER_ENFORCED = frozenset(("runs", "starts", "ends"))
 
@@ -63,7 +63,7 @@ def _above(store: Store[Workspace], viewpoint: str, tree: str) -> Swallower | No
     return None if ends else first
 
 
-def _callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[SourceNode, ...]:
+def _callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[ResolvedNode, ...]:
     """The SubTree nodes that run a tree; none where that is the mission's, from which a failure goes nowhere."""
     if tree is None or tree == store.ask(_main_tree, viewpoint):
         return ()
@@ -76,7 +76,7 @@ def _main_tree(store: Store[Workspace], viewpoint: str) -> str | None:
     return root.tree if root is not None else None
 
 
-def _in_tree(node: SourceNode) -> Swallower | None:
+def _in_tree(node: ResolvedNode) -> Swallower | None:
     below, at = node, node.parent
     while at is not None:
         reason = _swallows(at, below)
@@ -86,7 +86,7 @@ def _in_tree(node: SourceNode) -> Swallower | None:
     return None
 
 
-def _swallows(parent: SourceNode, child: SourceNode) -> str | None:
+def _swallows(parent: ResolvedNode, child: ResolvedNode) -> str | None:
     """What a node does when this child of it fails, if it does not fail, too."""
     flow = parent.flow
     last = child.index == len(parent.node.children) - 1
@@ -103,7 +103,7 @@ def _swallows(parent: SourceNode, child: SourceNode) -> str | None:
     return None
 
 
-def _failures_needed(parallel: SourceNode) -> int:
+def _failures_needed(parallel: ResolvedNode) -> int:
     """How many children must fail for it to fail; 1 where that is unknown."""
     n = len(parallel.node.children)
     wanted, failures = port_count(parallel, "successes"), port_count(parallel, "failures")

@@ -16,8 +16,9 @@ from btq_lang.requirements.model import Target
 from btq_lang.workspace import inputs
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.model import Applied, Claim, SourceNode
+    from btq_lang.requirements.model import Applied, Claim
     from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 
@@ -70,7 +71,7 @@ def _found(
     )
 
 
-def _is_reported_otherwise(demanded: Demanded, claim: Claim, node: SourceNode, place: Place) -> bool:
+def _is_reported_otherwise(demanded: Demanded, claim: Claim, node: ResolvedNode, place: Place) -> bool:
     """Whether a rule of its own says why the engine does not hold it."""
     if claim.signal is not None:
         return claim.signal.behaviour == "gauge"
@@ -78,7 +79,7 @@ def _is_reported_otherwise(demanded: Demanded, claim: Claim, node: SourceNode, p
     return most is not None and (most[0] < 0.001 or not demanded.budgets.composed(node).waits)
 
 
-def _nodes(claim: Claim, node: SourceNode) -> Iterator[SourceNode]:
+def _nodes(claim: Claim, node: ResolvedNode) -> Iterator[ResolvedNode]:
     """The nodes that something is put around."""
     yield node
     for other in (claim.per, claim.event.subject if claim.event is not None else None):
@@ -86,7 +87,7 @@ def _nodes(claim: Claim, node: SourceNode) -> Iterator[SourceNode]:
             yield other.node
 
 
-def _is_built(demanded: Demanded, applied: Applied, claim: Claim, node: SourceNode) -> bool:
+def _is_built(demanded: Demanded, applied: Applied, claim: Claim, node: ResolvedNode) -> bool:
     """Whether what is put around a node is written: in this file, or because the node's own file asks for it."""
     if node.path == demanded.view.path:
         return True
@@ -96,7 +97,7 @@ def _is_built(demanded: Demanded, applied: Applied, claim: Claim, node: SourceNo
     return not seen.isdisjoint(asking) or (applied.how == "subject" and claim.place.path in seen)
 
 
-def _asking(store: Store[Workspace], viewpoint: str, name: str, node: SourceNode) -> frozenset[str | None]:
+def _asking(store: Store[Workspace], viewpoint: str, name: str, node: ResolvedNode) -> frozenset[str | None]:
     """The files that attach a requirement to a node."""
     uses = uses_of_nodes(store, viewpoint, node.path, node.facts)
     return frozenset([use.place.path for use in uses if use.requirement == name and use.target.node is node])

@@ -15,7 +15,7 @@ from btq_lang.syntax.tree import Entry, Node, Verbatim
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
+    from btq_lang.workspace.resolved import ResolvedNode
 
 
 def unreachable_child(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -39,7 +39,7 @@ def unreachable_child(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _behind(
-    view: View, entry: Entry, seen: SeenNode, children: tuple[Node | Verbatim, ...], goes_on: int
+    view: View, entry: Entry, seen: ResolvedNode, children: tuple[Node | Verbatim, ...], goes_on: int
 ) -> Diagnostic | None:
     """The child behind one that can only end the node."""
     known = results(view)
@@ -50,7 +50,7 @@ def _behind(
     return None
 
 
-def _in_try(view: View, entry: Entry, seen: SeenNode) -> Diagnostic | None:
+def _in_try(view: View, entry: Entry, seen: ResolvedNode) -> Diagnostic | None:
     """The last child is the one that cleans up, after a failure and perhaps after a halt."""
     *tried, last = seen.node.children
     found = _behind(view, entry, seen, tuple(tried), SUCCESS)
@@ -61,7 +61,7 @@ def _in_try(view: View, entry: Entry, seen: SeenNode) -> Diagnostic | None:
     return _unreachable(last, "nothing before it can fail", None)
 
 
-def _by_condition(view: View, entry: Entry, seen: SeenNode) -> Diagnostic | None:
+def _by_condition(view: View, entry: Entry, seen: ResolvedNode) -> Diagnostic | None:
     condition, *branches = seen.node.children
     results = result(view, condition).ever
     if not isinstance(condition, Node) or not results & (SUCCESS | FAILURE):
@@ -73,11 +73,11 @@ def _by_condition(view: View, entry: Entry, seen: SeenNode) -> Diagnostic | None
     return None
 
 
-def _in_switch(seen: SeenNode) -> Diagnostic | None:
+def _in_switch(seen: ResolvedNode) -> Diagnostic | None:
     """A case that an earlier one has already, or that a literal variable does not name."""
     variable = seen.node.attribute("variable")
     if variable is None:
-        reason = f"without a `variable` {seen.shown} runs its last child"
+        reason = f"without a `variable` {seen.shown_kind} runs its last child"
         return _unreachable(seen.node.children[0], reason, None)
     first: set[str] = set()
     for number, child in enumerate(seen.node.children[:-1], 1):

@@ -7,18 +7,18 @@ does not belong here.
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
+from btq_lang.catalog.nodes import BUILTINS, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.checks import lookups
-from btq_lang.checks.seen import NO_NODES, SeenNode, SeenNodes
+from btq_lang.checks.sorted_nodes import NO_NODES, SortedNodes, sorted_nodes
 from btq_lang.diagnostics.model import Related
 from btq_lang.grammar.attributes import meant_clause
-from btq_lang.syntax.tree import Entry, Include, Model, Node, Port, Requirement, Tree, is_name
+from btq_lang.syntax.tree import Entry, Include, Node, Port, Requirement, Tree, is_name
 from btq_lang.util.spelling import near
 from btq_lang.workspace import inputs
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.inputs import Placed
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.symbols import Use
     from btq_lang.workspace.workspace import Workspace
 
@@ -52,7 +53,7 @@ class View:
         self.store = store
         self.viewpoint = viewpoint
         self.facts: Facts = facts  # type: ignore[assignment]  # who looks at no item asks for none
-        self.seen = self.seen_in(facts) if facts is not None and isinstance(facts.item, Tree) else NO_NODES
+        self.seen = self.seen_in(viewpoint, facts) if facts is not None else NO_NODES
 
     def ask(self, query: Callable[..., T], *key: Any) -> T:
         """What a query says from this viewpoint."""
@@ -75,7 +76,7 @@ class View:
         return inputs.text(self.store, self.viewpoint, self.facts)
 
     @property
-    def nodes(self) -> tuple[SeenNode, ...]:
+    def nodes(self) -> tuple[ResolvedNode, ...]:
         """The nodes of a tree, depth first, in document order; none for any other item."""
         return self.seen.all
 
@@ -177,9 +178,14 @@ class View:
         """
         return self.ask(_near_names, kind, word)
 
-    def seen_in(self, tree: Facts) -> SeenNodes:
-        """The nodes of a tree of any file in scope, sorted."""
-        return self.ask(_seen_nodes, tree)
+    def seen_in(self, path: str, tree: Facts) -> SortedNodes:
+        """The nodes of a tree of any file in scope, sorted; none for any other item."""
+        return self.ask(sorted_nodes, path, tree) if isinstance(tree.item, Tree) else NO_NODES
+
+    def model_ports(self, seen: ResolvedNode) -> tuple[Port, ...]:
+        """The ports that the model of a node declares."""
+        model = self.find(Kind.MODEL, seen.id.text) if seen.is_defined and seen.id is not None else None
+        return model.ports if model is not None else ()
 
     # ---- the file and the project ----
 
@@ -290,7 +296,7 @@ class _NodeNames:
         return self._view.look_up(lookups.is_node_name, name)
 
 
-def subtree_ports(view: View, seen: SeenNode) -> tuple[Port, ...]:
+def subtree_ports(view: View, seen: ResolvedNode) -> tuple[Port, ...]:
     """The ports that the tree of a SubTree declares, in its block or in a model of its own."""
     name = seen.node.id
     if name is None:
@@ -316,44 +322,6 @@ def called(node: Node) -> str:
     """A node as a message names it among others: its kind and its instance name."""
     name = node.name
     return f"`{node.head.text}`" if name is None or name.text == node.head.text else f"`{node.head.text} {name.text}`"
-
-
-def _seen_nodes(store: Store[Workspace], viewpoint: str, facts: Facts) -> SeenNodes:
-    view = View(store, viewpoint)
-    return SeenNodes(tuple(_nodes_of(view, facts.item))) if isinstance(facts.item, Tree) else NO_NODES
-
-
-def _nodes_of(view: View, tree: Tree) -> Iterator[SeenNode]:
-    waiting: list[tuple[Node, SeenNode | None, int]] = []
-    waiting += [(node, None, index) for index, node in reversed(_numbered(tree.children))]
-    while waiting:
-        node, parent, index = waiting.pop()
-        seen = _seen_node(view, node, tree, parent, index)
-        yield seen
-        if node.children:
-            waiting += [(child, seen, number) for number, child in reversed(_numbered(node.children))]
-
-
-def _seen_node(view: View, node: Node, tree: Tree, parent: SeenNode | None, index: int) -> SeenNode:
-    category: str | None = node.category.raw if node.category else None
-    name = node.id
-    kind: NodeKind | None = None
-    meaning: Meaning | None = None
-    asked = ""
-    if name is not None and category != "SubTree":
-        text = name.text
-        kind = lookup(text, name.quoted, len(node.nodes) if node.children else 0)
-        if kind is None:
-            asked = text
-            meaning = view.find(Kind.MODEL, asked)
-            if meaning is None and not name.quoted and text in KNOWN_WORDS:
-                kind = BUILTINS.get(KNOWN_WORDS[text].replacement or "")
-    model = meaning.target if meaning is not None and isinstance(meaning.target, Model) else None
-    if category is None and kind is not None:
-        category = kind.category
-    elif category is None and model is not None:
-        category = model.category.raw
-    return SeenNode(node, tree, parent, index, kind, meaning is not None, model, category, asked, name)
 
 
 def _torn_places(store: Store[Workspace], viewpoint: str, facts: Facts) -> list[int]:
@@ -422,7 +390,3 @@ def _script(_: Store[Workspace], text: str) -> Script:
 @cache
 def _builtin_names() -> tuple[str, ...]:
     return tuple(word for kind in BUILTINS.values() for word in spellings(kind) if is_name(word))
-
-
-def _numbered(children: tuple[object, ...]) -> list[tuple[int, Node]]:
-    return [(index, child) for index, child in enumerate(children) if isinstance(child, Node)]

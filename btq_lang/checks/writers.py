@@ -14,16 +14,16 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks.view import View
 from btq_lang.requirements import nodes
-from btq_lang.requirements.trees import tree_nodes
 from btq_lang.syntax.tree import Pair, Port, Verbatim
 from btq_lang.util.record import Record
 from btq_lang.workspace import inputs
+from btq_lang.workspace.resolved import tree_nodes
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import PortKind
-    from btq_lang.requirements.model import SourceNode
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 
@@ -39,10 +39,10 @@ class Entries(Record):
         is_open: something in it may write any entry: XML as it is, or an entry that another one names.
     """
 
-    writes: tuple[tuple[SourceNode, str], ...]
-    sure: tuple[tuple[SourceNode, str], ...]
+    writes: tuple[tuple[ResolvedNode, str], ...]
+    sure: tuple[tuple[ResolvedNode, str], ...]
     written: frozenset[str]
-    pointers: dict[str, list[tuple[SourceNode, Pair, bool]]]
+    pointers: dict[str, list[tuple[ResolvedNode, Pair, bool]]]
     mentioned: frozenset[str]
     is_open: bool
 
@@ -60,9 +60,9 @@ def all_entries(store: Store[Workspace], viewpoint: str) -> tuple[Entries, ...]:
 def _entries_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Entries:
     view = View(store, viewpoint)
     tree = view.ask(tree_nodes, path, facts)
-    writes: list[tuple[SourceNode, str]] = []
-    perhaps: list[tuple[SourceNode, str]] = []
-    pointers: dict[str, list[tuple[SourceNode, Pair, bool]]] = {}
+    writes: list[tuple[ResolvedNode, str]] = []
+    perhaps: list[tuple[ResolvedNode, str]] = []
+    pointers: dict[str, list[tuple[ResolvedNode, Pair, bool]]] = {}
     mentioned: set[str] = set()
     is_open = any(isinstance(child, Verbatim) for child in tree.item.children)
     for node in tree.all:
@@ -99,7 +99,7 @@ def key_of(pointer: str, port: str) -> str:
     return port if key == "=" else key
 
 
-def isolated(view: View, writes: Sequence[tuple[SourceNode, str]], key: str) -> SourceNode | None:
+def isolated(view: View, writes: Sequence[tuple[ResolvedNode, str]], key: str) -> ResolvedNode | None:
     """One that writes an entry of this name in the blackboard of its own tree, where nothing writes that of the root.
 
     Args:
@@ -108,7 +108,7 @@ def isolated(view: View, writes: Sequence[tuple[SourceNode, str]], key: str) -> 
     main = view.ask(nodes.mission)
     if main is None:
         return None
-    calls: dict[str | None, list[tuple[str, SourceNode]]] = {}
+    calls: dict[str | None, list[tuple[str, ResolvedNode]]] = {}
     for tree in view.ask(nodes.nodes).trees:
         calls.setdefault(tree.name, []).extend(tree.calls)
     # Which name the root's entry has in which tree.
@@ -127,7 +127,7 @@ def isolated(view: View, writes: Sequence[tuple[SourceNode, str]], key: str) -> 
     return writers[0]
 
 
-def declared_port(view: View, node: SourceNode, port: str) -> Port | None:
+def declared_port(view: View, node: ResolvedNode, port: str) -> Port | None:
     """The port as the node's model, or the tree of a SubTree, declares it."""
     name = node.node.id
     ports = declared_ports(view, name.text) if name is not None else ()
@@ -143,13 +143,13 @@ def declared_ports(view: View, name: str) -> tuple[Port, ...]:
     return ()
 
 
-def _is_script(node: SourceNode, key: str) -> bool:
+def _is_script(node: ResolvedNode, key: str) -> bool:
     attribute = RESERVED_ATTRIBUTES.get(key)
     port = node.kind.port(key) if node.kind is not None else None
     return (attribute is not None and attribute.is_script) or (port is not None and port.content == "script")
 
 
-def _names_entry(node: SourceNode, key: str) -> PortKind | None:
+def _names_entry(node: ResolvedNode, key: str) -> PortKind | None:
     """The port of a built-in whose value is the name of an entry."""
     port = node.kind.port(key) if node.kind is not None else None
     return port if port is not None and port.content == "key" else None
@@ -163,7 +163,7 @@ def _assigned(script: str) -> Iterator[str]:
             yield variable.name
 
 
-def _writes(view: View, node: SourceNode, port: str) -> bool | None:
+def _writes(view: View, node: ResolvedNode, port: str) -> bool | None:
     """Whether a port is written, which is so unless it is an input; None: that is not declared."""
     if node.kind is not None:
         builtin = node.kind.port(port)
@@ -172,7 +172,7 @@ def _writes(view: View, node: SourceNode, port: str) -> bool | None:
     return declared.direction.raw != "input" if declared is not None else None
 
 
-def _passed_on(node: SourceNode, names: set[str]) -> Iterator[str]:
+def _passed_on(node: ResolvedNode, names: set[str]) -> Iterator[str]:
     """The names by which a tree that runs another one makes its entries known to that."""
     given = {pair.key.text: pair.value.text for pair in node.node.attributes if pair.value is not None}
     for port, text in given.items():

@@ -11,7 +11,7 @@ from btq_lang.evidence.verdicts import NodeSummary, Repeats
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation, LoggedTree, Outcome
-    from btq_lang.requirements.model import SourceNode
+    from btq_lang.workspace.resolved import ResolvedNode
 
 
 class Coverage:
@@ -30,7 +30,7 @@ class Coverage:
         self._repeated: dict[int, list[tuple[_Repeated, int]]] = {}  # the counters that a start increments
         self._runs = 1
 
-    def expect(self, tree: LoggedTree, written: Mapping[int, SourceNode]) -> None:
+    def expect(self, tree: LoggedTree, written: Mapping[int, ResolvedNode]) -> None:
         """Begin a log whose tree has these nodes.
 
         Args:
@@ -80,7 +80,7 @@ class Coverage:
 class _Node:
     """The counts of one node."""
 
-    def __init__(self, path: str, kind: str, is_leaf: bool, written: SourceNode | None) -> None:
+    def __init__(self, path: str, kind: str, is_leaf: bool, written: ResolvedNode | None) -> None:
         self.began = 0
         self.ticks: Final = array("q")
         self._path: Final = path

@@ -21,8 +21,9 @@ from btq_lang.util.record import Record, replace
 if TYPE_CHECKING:
     from btq_lang.btcpp.document import Element
     from btq_lang.btcpp.instances import Instance
-    from btq_lang.requirements.model import SourceNode, Target
+    from btq_lang.requirements.model import Target
     from btq_lang.requirements.resolved import Requirements
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 
@@ -75,9 +76,9 @@ class Joined(Record):
         uids = [(each, self.uids.get(_number(each))) for each in self.build.running.instances(target)]
         return [(self.tree.nodes[uid].path if uid is not None else each.path, uid) for each, uid in uids]
 
-    def written(self) -> dict[int, SourceNode]:
+    def written(self) -> dict[int, ResolvedNode]:
         """The written nodes of the log's nodes, by uid."""
-        found: dict[int, SourceNode] = {}
+        found: dict[int, ResolvedNode] = {}
         for instance, node in self.build.running.all:
             uid = self.uids.get(_number(instance))
             if node is not None and uid is not None:

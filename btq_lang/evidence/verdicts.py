@@ -13,7 +13,7 @@ from btq_lang.util.record import Record
 if TYPE_CHECKING:
     from btq_lang.catalog.units import Unit
     from btq_lang.evidence.model import Outcome
-    from btq_lang.requirements.model import SourceNode
+    from btq_lang.workspace.resolved import ResolvedNode
 
     Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised"]
 
@@ -227,7 +227,7 @@ class NodeSummary(Record):
     p95: float | None
     tick_p95: float | None
     tick_worst: float | None
-    written: SourceNode | None
+    written: ResolvedNode | None
 
 
 class Repeats(Record):

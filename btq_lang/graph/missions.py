@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.graph import draw
 from btq_lang.graph.figure import Box, Figure, Note
-from btq_lang.requirements.model import Applied, Claim, SourceNode
+from btq_lang.requirements.model import Applied, Claim
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.syntax.tree import Node, NodeClause, QualityPath, Satisfices
 from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ def figures(workspace: Workspace, path: str, with_qualities: bool = False) -> tu
     return tuple(figure(nodes, keys, notes) for nodes in by_tree(node for _, node in mine))
 
 
-def keyed(workspace: Workspace, path: str) -> tuple[tuple[str, SourceNode], ...]:
+def keyed(workspace: Workspace, path: str) -> tuple[tuple[str, ResolvedNode], ...]:
     """The nodes of a file, in the order of its text, with the keys that their boxes have in `figures`.
 
     Raises:
@@ -72,21 +73,21 @@ def keyed(workspace: Workspace, path: str) -> tuple[tuple[str, SourceNode], ...]
     return _keyed(requirements(workspace, path), path)
 
 
-def _keyed(found: Requirements, path: str) -> tuple[tuple[str, SourceNode], ...]:
+def _keyed(found: Requirements, path: str) -> tuple[tuple[str, ResolvedNode], ...]:
     mine = (node for node in found.nodes.all if node.path == path)
     return tuple((f"n{number}", node) for number, node in enumerate(mine))
 
 
-def by_tree(nodes: Iterable[SourceNode]) -> Iterator[tuple[SourceNode, ...]]:
+def by_tree(nodes: Iterable[ResolvedNode]) -> Iterator[tuple[ResolvedNode, ...]]:
     """Nodes in the order of their text, grouped by tree."""
-    found: dict[int, list[SourceNode]] = {}
+    found: dict[int, list[ResolvedNode]] = {}
     for node in nodes:
         found.setdefault(id(node.item), []).append(node)
     return map(tuple, found.values())
 
 
 def figure(
-    nodes: tuple[SourceNode, ...],
+    nodes: tuple[ResolvedNode, ...],
     keys: Mapping[int, str],
     notes: Mapping[int, tuple[Note, ...]],
     links: Mapping[str, str] | None = None,
@@ -116,7 +117,7 @@ def figure(
     return Figure(nodes[0].tree or "", tuple(boxes))
 
 
-def concerns(node: SourceNode) -> Iterator[tuple[str, QualityPath]]:
+def concerns(node: ResolvedNode) -> Iterator[tuple[str, QualityPath]]:
     """The qualities that a node, or its tree, satisfices: their names joined by dots, and their syntax."""
     for clause in clauses_of(node):
         if isinstance(clause, Satisfices):
@@ -124,7 +125,7 @@ def concerns(node: SourceNode) -> Iterator[tuple[str, QualityPath]]:
                 yield ".".join(name.text for name in quality.path.names), quality.path
 
 
-def clauses_of(node: SourceNode) -> tuple[NodeClause, ...]:
+def clauses_of(node: ResolvedNode) -> tuple[NodeClause, ...]:
     """The clauses of a node; for the top node of a tree, those of the tree as well."""
     tree = node.item
     if node.parent is None and sum(isinstance(each, Node) for each in tree.children) == 1:
@@ -173,14 +174,14 @@ def _notes(found: Requirements) -> dict[int, tuple[Note, ...]]:
     return {key: tuple(dict.fromkeys(each)) for key, each in notes.items()}
 
 
-def _outline(node: SourceNode) -> Outline:
+def _outline(node: ResolvedNode) -> Outline:
     category = node.category
     if category == "SubTree":
         return "subtree"
     return _OUTLINES.get(category or "", "unknown")
 
 
-def _title(node: SourceNode) -> str:
+def _title(node: ResolvedNode) -> str:
     """The symbol of a control node, the kind of others; for a placeholder, its name."""
     if is_placeholder(node.node) and node.node.name is not None:
         return node.node.name.text
@@ -189,7 +190,7 @@ def _title(node: SourceNode) -> str:
     return node.node.head.text
 
 
-def _lines(node: SourceNode) -> tuple[str, ...]:
+def _lines(node: ResolvedNode) -> tuple[str, ...]:
     """The instance name, and for a built-in node the values of its ports."""
     lines = []
     name = node.node.name
@@ -201,11 +202,11 @@ def _lines(node: SourceNode) -> tuple[str, ...]:
     return tuple(" ".join(line.split()) for line in lines)
 
 
-def _ports(node: SourceNode) -> frozenset[str]:
+def _ports(node: ResolvedNode) -> frozenset[str]:
     return frozenset(port.name for port in node.kind.ports) if node.kind is not None else frozenset()
 
 
-def _text(node: SourceNode) -> str:
+def _text(node: ResolvedNode) -> str:
     head = node.node.head.text
     name = node.node.name
     shown = head if name is None or name.text == head else f"{head} {name.text}"

@@ -6,7 +6,7 @@ It does not know what the engine can enforce, nor what a run of the robot was li
 What is asked here is asked of the query store (workspace/queries.py): each question a function of it, of a viewpoint,
 and of a name or of an item, which is known by its facts.  What is read is in workspace/inputs.py.
 
-    trees.py, nodes.py   the nodes of one tree, and which nodes a path, a kind or a tag means; names.py, by which names
+    nodes.py     which nodes (workspace/resolved.py) a path, a kind or a tag means
     model.py     what a requirement says once its words are resolved
     paths.py, terms.py, reader.py   reading paths, values and conditions; reading.py, which signals are read
     clauses.py   what each verb asks for; classic.py, constraints.py, in SuccessIf and FailureIf of descriptions

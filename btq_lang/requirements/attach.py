@@ -23,7 +23,6 @@ from btq_lang.requirements.model import (
     Mission,
     Parameter,
     Requirement,
-    SourceNode,
     Span,
     Subject,
     Target,
@@ -32,7 +31,6 @@ from btq_lang.requirements.model import (
 )
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Problems, Reader
-from btq_lang.requirements.trees import tree_nodes
 from btq_lang.syntax.tree import Apply, NodeClause, ReqRef, Selector, Tree, Word, is_name
 from btq_lang.syntax.tree import Argument as WrittenArgument
 from btq_lang.syntax.tree import Requirement as WrittenRequirement
@@ -42,6 +40,7 @@ from btq_lang.util.text import Span as TextSpan
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
 from btq_lang.workspace.symbols import requirements_at
 from btq_lang.workspace.workspace import Workspace
 
@@ -246,7 +245,7 @@ def _filled_part(part: object, values: dict[str, Bounded]) -> object:
         return values.get(part.name, part)
     if isinstance(part, tuple):
         return tuple([_filled_part(each, values) for each in part])
-    if type(part).__module__ != model.__name__ or isinstance(part, SourceNode | InContext):
+    if type(part).__module__ != model.__name__ or isinstance(part, InContext):
         return part  # no parameter is known in a context
     fields = fields_of(part)
     if "signal" in fields and "verb" not in fields:
@@ -283,7 +282,7 @@ def _by_subject(store: Store[Workspace], viewpoint: str, of_name: Requirement) -
 
 def _at_nodes(reader: Reader, tree: Tree, uses: list[Use], mentioned: set[str]) -> None:
     of_tree = reader.store.ask(tree_nodes, reader.viewpoint, reader.path, reader.facts)
-    places: list[tuple[SourceNode | None, tuple[NodeClause, ...]]] = [(of_tree.root, tree.clauses)]
+    places: list[tuple[ResolvedNode | None, tuple[NodeClause, ...]]] = [(of_tree.root, tree.clauses)]
     places += [(node, node.node.clauses) for node in of_tree.all if node.node.clauses]
     for node, clauses in places:
         for written in requirements_at(clauses):
@@ -359,7 +358,7 @@ def _selected(reader: Reader, selector: Selector) -> Iterator[tuple[Target, int]
             yield target, _PATH
 
 
-def _under(reader: Reader, name: str, top: Target) -> tuple[SourceNode, ...]:
+def _under(reader: Reader, name: str, top: Target) -> tuple[ResolvedNode, ...]:
     return reader.store.ask(nodes.every_under, reader.viewpoint, name, top)
 
 

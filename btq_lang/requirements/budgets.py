@@ -16,11 +16,11 @@ from btq_lang.requirements import nodes
 from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.composition import Budget, compose, port_count, port_seconds, unknown
 from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
-from btq_lang.requirements.model import Applied, Bounded, Claim, Limit, SourceNode, Table, Target, Value
-from btq_lang.requirements.trees import TreeNodes, tree_named, tree_nodes, trees_called
+from btq_lang.requirements.model import Applied, Bounded, Claim, Limit, Table, Target, Value
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store, on_circle
+from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree, tree_named, tree_nodes, trees_called
 from btq_lang.workspace.workspace import Workspace
 
 __all__ = ["Budget", "Budgets", "Gap", "Range", "Success", "Term"]
@@ -35,13 +35,13 @@ class Success(Record):
 
     seconds: float
     probability: float
-    parts: tuple[tuple[SourceNode, float], ...] = ()
+    parts: tuple[tuple[ResolvedNode, float], ...] = ()
 
 
 class Gap(Record):
     """Why no bound is known: the node, and the reason in words to follow its name."""
 
-    node: SourceNode
+    node: ResolvedNode
     reason: str
 
 
@@ -97,29 +97,29 @@ class Budgets:
         self._store: Final = store
         self._viewpoint: Final = viewpoint
 
-    def of(self, node: SourceNode) -> Budget:
+    def of(self, node: ResolvedNode) -> Budget:
         """How long a node takes, if it and all below it are as demanded: what its parent counts with."""
         return self._in_tree(node).of(node)
 
-    def composed(self, node: SourceNode) -> Budget:
+    def composed(self, node: ResolvedNode) -> Budget:
         """How long a node takes, if all below it are as demanded: what its own bounds are held against."""
         root, seen = self._run_by(node)
         return self._in_tree(node).composed(node) if root is None else _as_part(root, seen.budget)
 
-    def composed_of_known(self, node: SourceNode) -> Budget:
+    def composed_of_known(self, node: ResolvedNode) -> Budget:
         """The same, if what has no known bound takes no longer than it must: what the others may take alone."""
         return self._in_tree(node).composed_of_known(node)
 
-    def success(self, node: SourceNode) -> Success | None:
+    def success(self, node: ResolvedNode) -> Success | None:
         """How likely a node succeeds, and within which time, if all below it are as demanded; None: that is unknown."""
         root, seen = self._run_by(node)
         return self._in_tree(node).composed_success(node) if root is None else _success_as_part(root, seen.success)
 
-    def success_of_known(self, node: SourceNode) -> Success | None:
+    def success_of_known(self, node: ResolvedNode) -> Success | None:
         """The same, if nodes of which it is unknown always succeed, at once: no more is ensured."""
         return self.success(node) or self._in_tree(node).success_of_known(node)
 
-    def gaps(self, node: SourceNode) -> tuple[Gap, ...]:
+    def gaps(self, node: ResolvedNode) -> tuple[Gap, ...]:
         """Why a node has no bound, if all below it are as demanded; the first reasons, if there are many."""
         found: dict[Gap, None] = {}
         seen: set[int] = set()  # a tree may be run from many places
@@ -139,10 +139,10 @@ class Budgets:
             waiting += [child for child in reversed(below) if not self.of(child).is_bounded]
         return tuple(found)
 
-    def _in_tree(self, node: SourceNode) -> TreeBudgets:
+    def _in_tree(self, node: ResolvedNode) -> TreeBudgets:
         return self._store.ask(tree_budgets, self._viewpoint, node.path, node.facts)
 
-    def _run_by(self, node: SourceNode) -> tuple[SourceNode | None, Outcome]:
+    def _run_by(self, node: ResolvedNode) -> tuple[ResolvedNode | None, Outcome]:
         """The root that a SubTree node runs, unless that tree contains itself, and what is seen of it."""
         name = node.node.id
         if node.category != "SubTree" or name is None:
@@ -160,7 +160,7 @@ class TreeBudgets:
 
     __slots__ = ("_claims", "_composed", "_held", "_outcomes", "_successes")
 
-    def __init__(self, tree: TreeNodes, applied: tuple[Applied, ...], outcomes: Mapping[str, Outcome]) -> None:
+    def __init__(self, tree: ResolvedTree, applied: tuple[Applied, ...], outcomes: Mapping[str, Outcome]) -> None:
         """
         Args:
             applied: what holds for its nodes.
@@ -176,22 +176,22 @@ class TreeBudgets:
         self._held: dict[int, Budget] = {}
         self._successes: dict[int, Success | None] = {}
 
-    def of(self, node: SourceNode) -> Budget:
+    def of(self, node: ResolvedNode) -> Budget:
         """How long a node takes, if it and all below it are as demanded."""
         self._work_out(node)
         return self._held[id(node)]
 
-    def composed(self, node: SourceNode) -> Budget:
+    def composed(self, node: ResolvedNode) -> Budget:
         """How long a node takes, if all below it are as demanded."""
         self._work_out(node)
         return self._composed[id(node)]
 
-    def success(self, node: SourceNode) -> Success | None:
+    def success(self, node: ResolvedNode) -> Success | None:
         """What a node's own claims say of its success, else what its children's do."""
         self._work_out(node)
         return self._successes[id(node)]
 
-    def composed_of_known(self, node: SourceNode) -> Budget:
+    def composed_of_known(self, node: ResolvedNode) -> Budget:
         """As of all budgets."""
         composed = self.composed(node)
         if node.category == "SubTree" or node.kind is None or not node.children or _is_sure(composed):
@@ -200,7 +200,7 @@ class TreeBudgets:
         found = compose(node, [parts.get(id(child), _shortest(_XML)) for child in node.node.children])
         return found if found.is_bounded else _shortest(composed)
 
-    def success_of_known(self, node: SourceNode) -> Success | None:
+    def success_of_known(self, node: ResolvedNode) -> Success | None:
         """As of all budgets."""
         found = self.composed_success(node)
         if found is not None or node.category == "SubTree" or not node.children or _may_be_passed(node):
@@ -211,7 +211,7 @@ class TreeBudgets:
         known = [_success_as_part(child, part) for child, part in zip(node.children, parts, strict=True)]
         return _success_of(node, [part or _SURE for part in known])
 
-    def composed_success(self, node: SourceNode) -> Success | None:
+    def composed_success(self, node: ResolvedNode) -> Success | None:
         """What is known of a node's success from its children's."""
         if node.category == "SubTree":
             return self._outcome_of(node).success
@@ -227,7 +227,7 @@ class TreeBudgets:
             return None
         return _success_of(node, known)
 
-    def _work_out(self, top: SourceNode) -> None:
+    def _work_out(self, top: ResolvedNode) -> None:
         """Compose a node, and before it what it rests on."""
         waiting = [top] if id(top) not in self._held else []
         while waiting:
@@ -244,12 +244,12 @@ class TreeBudgets:
                 self._held[id(node)] = _with_attributes(node, held) if node.node.attributes else held
                 self._successes[id(node)] = self._succeeding(node)
 
-    def _outcome_of(self, node: SourceNode) -> Outcome:
+    def _outcome_of(self, node: ResolvedNode) -> Outcome:
         """What is seen of the tree that a SubTree node runs."""
         name = node.node.id
         return self._outcomes[name.text] if name is not None else _UNKNOWN_TREE
 
-    def _compose(self, node: SourceNode) -> Budget:
+    def _compose(self, node: ResolvedNode) -> Budget:
         if node.category == "SubTree":
             return self._outcome_of(node).budget
         if node.kind is None and not node.node.children:
@@ -261,7 +261,7 @@ class TreeBudgets:
         parts = {id(child.node): _as_part(child, self._held[id(child)]) for child in node.children}
         return compose(node, [parts.get(id(child), _XML) for child in node.node.children])
 
-    def _known(self, node: SourceNode) -> Budget:
+    def _known(self, node: ResolvedNode) -> Budget:
         held = self.of(node)
         if _is_sure(held):
             return held
@@ -269,7 +269,7 @@ class TreeBudgets:
         found = _all_narrowed(self.composed_of_known(node), sure)
         return found if found.is_bounded else _shortest(found)
 
-    def _succeeding(self, node: SourceNode) -> Success | None:
+    def _succeeding(self, node: ResolvedNode) -> Success | None:
         found: list[Success] = []
         for applied, claim in self._claims.get(id(node), ()):
             if VERBS[claim.verb].limits == "success":
@@ -281,12 +281,12 @@ class TreeBudgets:
         return self.composed_success(node)
 
 
-def _may_be_passed(node: SourceNode) -> bool:
+def _may_be_passed(node: ResolvedNode) -> bool:
     """Whether the outcome of one of a node's children may be another than that of what it does."""
     return any(pair.key.text in _CHANGING for child in node.children for pair in child.node.attributes)
 
 
-def _success_of(node: SourceNode, parts: list[Success]) -> Success | None:
+def _success_of(node: ResolvedNode, parts: list[Success]) -> Success | None:
     """By the union bound: what all its parts do is as unlikely to be missed as the sum of what each of them misses."""
     first = parts[0]
     together = tuple(part for each in parts for part in each.parts)
@@ -305,7 +305,7 @@ def _success_of(node: SourceNode, parts: list[Success]) -> Success | None:
     return None
 
 
-def _success_as_part(node: SourceNode, found: Success | None) -> Success | None:
+def _success_as_part(node: ResolvedNode, found: Success | None) -> Success | None:
     """A child's success, as a part of its parent's."""
     return Success(found.seconds, found.probability, ((node, 1.0 - found.probability),)) if found is not None else None
 
@@ -321,7 +321,7 @@ def _shortest(budget: Budget) -> Budget:
     return replace(found, probability=1.0, endless=False)
 
 
-def _as_part(node: SourceNode, budget: Budget) -> Budget:
+def _as_part(node: ResolvedNode, budget: Budget) -> Budget:
     """A child's budget as its parent sees it: each outcome is one term."""
 
     def part(each: Range | None) -> Range | None:
@@ -361,7 +361,7 @@ def _with_claims(composed: Budget, claims: list[tuple[Applied, Claim]]) -> Budge
     return max(choices, key=lambda each: each.probability, default=held)
 
 
-def _with_attributes(node: SourceNode, budget: Budget) -> Budget:
+def _with_attributes(node: ResolvedNode, budget: Budget) -> Budget:
     """What a node's pre-conditions add: it may end at once, and with `_while` at any time."""
     keys = {pair.key.text for pair in node.node.attributes}
     if "_failureIf" in keys:

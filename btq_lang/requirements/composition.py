@@ -30,10 +30,10 @@ from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Flow, Role
-    from btq_lang.requirements.model import SourceNode
     from btq_lang.syntax.tree import Word
+    from btq_lang.workspace.resolved import ResolvedNode
 
-    _Rule: TypeAlias = Callable[["SourceNode", Sequence["Budget"]], "Budget | None"]
+    _Rule: TypeAlias = Callable[["ResolvedNode", Sequence["Budget"]], "Budget | None"]
 
 
 class Budget(Record):
@@ -80,7 +80,7 @@ class Budget(Record):
         return longest is not None and longest.high < inf
 
 
-def compose(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def compose(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     """How long a node takes, from its kind, its ports and its children's budgets; SubTrees and custom nodes are not
     known here.
 
@@ -107,7 +107,7 @@ def unknown(reason: str) -> Budget:
     return Budget(ANY, ANY, ANY, reason=reason, endless=True)
 
 
-def port_seconds(node: SourceNode) -> float | None:
+def port_seconds(node: ResolvedNode) -> float | None:
     """The milliseconds that are written as its time, in seconds; None where another thing is, or nothing."""
     word, _ = _port(node, "time")
     if word is None:
@@ -119,7 +119,7 @@ def port_seconds(node: SourceNode) -> float | None:
     return int(word.text) / 1000 if word.text.isdecimal() and len(word.text) < 12 else None
 
 
-def port_count(node: SourceNode, role: Role) -> int | None:
+def port_count(node: ResolvedNode, role: Role) -> int | None:
     """The whole number that is written as the value of the port, or is its default; None where another thing is."""
     word, text = _port(node, role)
     if word is not None:
@@ -127,7 +127,7 @@ def port_count(node: SourceNode, role: Role) -> int | None:
     return int(text) if text.removeprefix("-").isdecimal() and len(text) < 12 else None
 
 
-def _port(node: SourceNode, role: Role) -> tuple[Word | None, str]:
+def _port(node: ResolvedNode, role: Role) -> tuple[Word | None, str]:
     """The value of the port, and its default."""
     port = node.kind.port_for(role) if node.kind is not None else None
     return (None, "") if port is None else (node.node.attribute(port.name), port.default or "")
@@ -136,7 +136,7 @@ def _port(node: SourceNode, role: Role) -> tuple[Word | None, str]:
 # ---- control nodes ----
 
 
-def _sequence(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _sequence(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     if node.kind is not None and node.kind.keeps_place:
         return _with_memory(children)
     go, end, skip = _in_order([(each.success, each.failure, each.skip) for each in children])
@@ -144,7 +144,7 @@ def _sequence(node: SourceNode, children: Sequence[Budget]) -> Budget:
     return _reactive(children, found, "failure") if node.kind is not None and node.kind.reactive else found
 
 
-def _fallback(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _fallback(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     go, end, skip = _in_order([(each.failure, each.success, each.skip) for each in children])
     found = _made(children, end, go, skip)
     return _reactive(children, found, "success") if node.kind is not None and node.kind.reactive else found
@@ -196,7 +196,7 @@ def _reactive(children: Sequence[Budget], found: Budget, ends: str) -> Budget:
     return found
 
 
-def _parallel(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
+def _parallel(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
     """Counts how many have succeeded and how many have failed, and is done when one of both is enough."""
     n = len(children)
     wanted, failures = port_count(node, "successes"), port_count(node, "failures")
@@ -224,7 +224,7 @@ def _parallel(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
     )
 
 
-def _with_skips(node: SourceNode, children: Sequence[Budget], asks_again: bool) -> Budget | None:
+def _with_skips(node: ResolvedNode, children: Sequence[Budget], asks_again: bool) -> Budget | None:
     """All at once, where some may be skipped; None: none may.  Who is skipped is asked again as long as another runs,
     so they may as well run one after the other; two that are interrupted by a skip may keep each other going.
 
@@ -248,7 +248,7 @@ def _nth(children: Sequence[Budget], outcome: str, count: int) -> float:
     return sorted(each.low if each is not None else inf for each in found)[count - 1]
 
 
-def _parallel_all(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _parallel_all(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     """Waits for all of them, then counts the failures."""
     n = len(children)
     most = port_count(node, "failures")
@@ -270,7 +270,7 @@ def _slowest(ranges: Sequence[Range]) -> Range:
     return replace(max(ranges, key=lambda each: each.high), low=max(each.low for each in ranges))
 
 
-def _choice(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
+def _choice(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
     if len(children) not in (2, 3):
         return None
     found = _if_then_else(children)
@@ -314,7 +314,7 @@ def _rechecking(children: Sequence[Budget], found: Budget) -> Budget:
     )
 
 
-def _switch(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _switch(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     cases = children if node.node.attribute("variable") is not None else children[-1:]
     found = _made(
         children,
@@ -325,7 +325,7 @@ def _switch(node: SourceNode, children: Sequence[Budget]) -> Budget:
     return replace(found, probability=min(child.probability for child in cases))
 
 
-def _try(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
+def _try(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
     """The last child cleans up after a failure; whatever it says, it was one."""
     if len(children) < 2:
         return None
@@ -337,22 +337,22 @@ def _try(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
 # ---- decorators ----
 
 
-def _invert(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _invert(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     return replace(child, success=child.failure, failure=child.success)
 
 
-def _force_success(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _force_success(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     return replace(child, success=child.completes, failure=None)
 
 
-def _force_failure(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _force_failure(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     return replace(child, success=None, failure=child.completes)
 
 
-def _retry(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _retry(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     count = port_count(node, "count")
     go, end, skip, reason = _again(child.failure, child.success, child.skip, count)
@@ -361,7 +361,7 @@ def _retry(node: SourceNode, children: Sequence[Budget]) -> Budget:
     )
 
 
-def _repeat(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _repeat(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     count = port_count(node, "count")
     go, end, skip, reason = _again(child.success, child.failure, child.skip, count)
@@ -401,7 +401,7 @@ def _before(go: Range | None, end: Range | None, count: float) -> Range | None:
     return hull(end, plus(times(int(count), go), end))
 
 
-def _timeout(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _timeout(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     """It can interrupt only what returns RUNNING."""
     (child,) = children
     limit = port_seconds(node)
@@ -420,7 +420,7 @@ def _timeout(node: SourceNode, children: Sequence[Budget]) -> Budget:
     )
 
 
-def _delay(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _delay(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     seconds = port_seconds(node)
     wait = ANY if seconds is None else Range(seconds, seconds)
@@ -435,7 +435,7 @@ def _delay(node: SourceNode, children: Sequence[Budget]) -> Budget:
     )
 
 
-def _until_failure(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _until_failure(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     again = child.success is not None or child.skip is not None
     failure = without_end(child.failure) if again else child.failure
@@ -444,7 +444,7 @@ def _until_failure(node: SourceNode, children: Sequence[Budget]) -> Budget:
     return Budget(None, failure, None, True, likely, reason, child.endless or again)
 
 
-def _once(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _once(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     """Later it is skipped, or says at once what it said before."""
     (child,) = children
     return replace(
@@ -455,7 +455,7 @@ def _once(node: SourceNode, children: Sequence[Budget]) -> Budget:
     )
 
 
-def _precondition(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _precondition(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     """4.6 asks at every tick, later ones when the child starts."""
     (child,) = children
     word, default = _port(node, "otherwise")
@@ -467,7 +467,7 @@ def _precondition(node: SourceNode, children: Sequence[Budget]) -> Budget:
     return replace(child, **{key: hull(getattr(child, key), running)})
 
 
-def _for_each(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _for_each(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     if child.running.high == 0.0:
         return Budget(ZERO, ZERO, ZERO, True, child.probability)
@@ -475,12 +475,12 @@ def _for_each(node: SourceNode, children: Sequence[Budget]) -> Budget:
     return Budget(ANY, ANY, ANY, True, 0.0 if child.probability < 1.0 else 1.0, reason, True)
 
 
-def _skip_unless_updated(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _skip_unless_updated(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     return replace(child, skip=hull(child.skip, ZERO))
 
 
-def _wait_until_updated(node: SourceNode, children: Sequence[Budget]) -> Budget:
+def _wait_until_updated(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     return replace(
         child,
@@ -493,7 +493,7 @@ def _wait_until_updated(node: SourceNode, children: Sequence[Budget]) -> Budget:
     )
 
 
-def _sleep(node: SourceNode) -> Budget:
+def _sleep(node: ResolvedNode) -> Budget:
     seconds = port_seconds(node)
     if seconds is None:
         return Budget(ANY, None, reason="reads from the blackboard how long it waits")

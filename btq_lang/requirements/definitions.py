@@ -6,12 +6,12 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.requirements.clauses import parameter_of, with_clauses
 from btq_lang.requirements.model import Parameter, Requirement
 from btq_lang.requirements.reader import Problems, Reader
-from btq_lang.requirements.trees import tree_nodes
 from btq_lang.syntax.tree import Requirement as WrittenRequirement
 from btq_lang.syntax.tree import Tree
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import tree_nodes
 from btq_lang.workspace.workspace import Workspace
 
 

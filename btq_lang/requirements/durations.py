@@ -10,14 +10,14 @@ from collections.abc import Iterable
 from math import inf
 from typing import Final
 
-from btq_lang.requirements.model import SourceNode
 from btq_lang.util.record import Record, replace
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 class Term(Record):
     """A node's share of a duration: `times` runs of at most `seconds` each."""
 
-    node: SourceNode
+    node: ResolvedNode
     times: int
     seconds: float
 

@@ -12,10 +12,8 @@ from btq_lang.diagnostics.model import Place
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import Flow, NodeKind
     from btq_lang.catalog.units import Dimension, Unit
-    from btq_lang.syntax.tree import Node, Tree
-    from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.resolved import ResolvedNode
 
     Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]
     Happening: TypeAlias = Literal["starts", "succeeds", "fails", "finishes", "halts", "when"]
@@ -29,80 +27,6 @@ if TYPE_CHECKING:
 # ---- Nodes ----------------------------------------------------------------------------------------------------------
 
 
-class SourceNode:
-    """A node as it is written, with what is around it.  Equal to nothing but itself: its place is what it is.
-
-    Attributes:
-        path, item: where it is written; its offsets count from the item.
-        facts: the facts of that item, by which queries name it.
-        tree: the name of its tree; None where that is missing.
-        parent: None for a node at the top of its tree.
-        index: which child of its parent it is, verbatim XML counted.
-        kind: the built-in that it is, if it is one.
-        category: as written, or as the built-in or the model has it; None where that is unknown.
-    """
-
-    __slots__ = ("_names", "category", "children", "facts", "index", "item", "kind", "node", "parent", "path", "tree")
-
-    def __init__(
-        self,
-        node: Node,
-        path: str,
-        facts: Facts,
-        item: Tree,
-        tree: str | None,
-        parent: SourceNode | None,
-        index: int,
-        kind: NodeKind | None,
-        category: str | None,
-    ) -> None:
-        self.node: Final = node
-        self.path: Final = path
-        self.facts: Final = facts
-        self.item: Final = item
-        self.tree: Final = tree
-        self.parent: Final = parent
-        self.index: Final = index
-        self.kind: Final = kind
-        self.category: Final = category
-        self.children: list[SourceNode] = []  # filled while the tree is read
-        self._names: frozenset[str] | None = None
-
-    @property
-    def names(self) -> frozenset[str]:
-        """Every name that a path can call it by: its ID, all spellings of its kind, its label."""
-        if self._names is None:
-            from btq_lang.requirements.names import names_of  # few requirements name nodes by a path
-
-            self._names = names_of(self.node, self.kind, self.category)
-        return self._names
-
-    @property
-    def shown(self) -> str:
-        """As a message names it: its kind and, where it has one, its instance name."""
-        name = self.node.name
-        head = self.node.head.text
-        return f"`{head}`" if name is None or name.text == head else f"`{head} {name.text}`"
-
-    @property
-    def place(self) -> Place:
-        """The place of its head."""
-        return Place(self.node.head.span, self.path, self.item)
-
-    @property
-    def tag(self) -> str:
-        """The built-in's tag; empty for a custom node."""
-        return self.kind.tag if self.kind is not None else ""
-
-    @property
-    def flow(self) -> Flow:
-        """What the built-in does with its children; empty for a custom node."""
-        return self.kind.flow if self.kind is not None else ""
-
-    def __repr__(self) -> str:
-        return f"<{self.shown} in {self.tree}>"
-
-
 class Target(Record):
     """A node that a path names.
 
@@ -111,14 +35,14 @@ class Target(Record):
             SubTree nodes; empty: every instance of the node is meant.
     """
 
-    node: SourceNode
+    node: ResolvedNode
     through: tuple[str, ...] = ()
 
 
 class Mission(Record):
     """The whole run: the main tree's written root, None where it is unknown which tree runs."""
 
-    node: SourceNode | None
+    node: ResolvedNode | None
 
 
 # ---- Values ---------------------------------------------------------------------------------------------------------
@@ -463,7 +387,7 @@ class Applied(Record):
     how: Literal["subject", "satisfies", "apply"]
 
     @property
-    def node(self) -> SourceNode | None:
+    def node(self) -> ResolvedNode | None:
         """The node that it holds for; None for a span, a sum, and an unknown mission."""
         return self.subject.node if isinstance(self.subject, Target | Mission) else None
 
@@ -488,7 +412,7 @@ class Applied(Record):
         return f"`{self.tree}`" if self.tree is not None else self.node.shown
 
     @property
-    def nodes(self) -> tuple[SourceNode, ...]:
+    def nodes(self) -> tuple[ResolvedNode, ...]:
         """The nodes that its subject names: of a span those of its events."""
         if isinstance(self.subject, Total):
             return tuple(target.node for target in self.subject.targets)
@@ -501,7 +425,7 @@ class Trace(Record):
     """A node that satisfies a requirement whose claims name their subjects themselves: a link, no verdict."""
 
     requirement: str
-    node: SourceNode
+    node: ResolvedNode
 
 
 NO_DIMENSION: Final[Dimension] = (0, 0, 0, 0, 0, 0, 0, 0, 0)

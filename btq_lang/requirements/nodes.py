@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
-from btq_lang.requirements.model import SourceNode, Target
-from btq_lang.requirements.trees import TreeNodes, tree_named, tree_nodes
+from btq_lang.requirements.model import Target
 from btq_lang.syntax.tree import Node, Tree
 from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree, tree_named, tree_nodes
 from btq_lang.workspace.workspace import Workspace
 
 # ---- queries: each of its own, so that an answer that comes out as before ends the wave of an edit here ----
@@ -29,7 +29,7 @@ def find(store: Store[Workspace], viewpoint: str, names: tuple[str, ...]) -> tup
     return store.ask(nodes, viewpoint).find(names)
 
 
-def every(store: Store[Workspace], viewpoint: str, name: str) -> tuple[SourceNode, ...]:
+def every(store: Store[Workspace], viewpoint: str, name: str) -> tuple[ResolvedNode, ...]:
     """The nodes of an ID or kind, as `Nodes.every` says."""
     return store.ask(nodes, viewpoint).every(name)
 
@@ -39,17 +39,17 @@ def has_any(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     return bool(store.ask(every, viewpoint, name))
 
 
-def tagged(store: Store[Workspace], viewpoint: str, tag: str) -> tuple[SourceNode, ...]:
+def tagged(store: Store[Workspace], viewpoint: str, tag: str) -> tuple[ResolvedNode, ...]:
     """The nodes with a tag."""
     return store.ask(nodes, viewpoint).tagged(tag)
 
 
-def every_under(store: Store[Workspace], viewpoint: str, name: str, top: Target) -> tuple[SourceNode, ...]:
+def every_under(store: Store[Workspace], viewpoint: str, name: str, top: Target) -> tuple[ResolvedNode, ...]:
     """The nodes of an ID or kind below a node, or in a tree that runs below it."""
     return store.ask(nodes, viewpoint).under(store.ask(every, viewpoint, name), top)
 
 
-def callers(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[SourceNode, ...]:
+def callers(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[ResolvedNode, ...]:
     """The SubTree nodes that run a tree."""
     return store.ask(_callers_by_tree, viewpoint).get(tree, ())
 
@@ -85,13 +85,13 @@ def knows_all_nodes(store: Store[Workspace], viewpoint: str) -> bool:
     )
 
 
-def mission(store: Store[Workspace], viewpoint: str) -> SourceNode | None:
+def mission(store: Store[Workspace], viewpoint: str) -> ResolvedNode | None:
     """The root of the main tree; None where it is unknown which tree runs."""
     main = inputs.main_tree(store, viewpoint)
     return store.ask(tree_nodes, viewpoint, *main).root if main is not None else None
 
 
-def root(store: Store[Workspace], viewpoint: str, tree: str) -> SourceNode | None:
+def root(store: Store[Workspace], viewpoint: str, tree: str) -> ResolvedNode | None:
     """The root of the tree that a name means."""
     found = store.ask(tree_named, viewpoint, tree)
     return found.root if found is not None else None
@@ -102,7 +102,7 @@ def has_nodes(store: Store[Workspace], viewpoint: str) -> bool:
     return store.ask(nodes, viewpoint).are_known
 
 
-def _callers_by_tree(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[SourceNode, ...]]:
+def _callers_by_tree(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[ResolvedNode, ...]]:
     return store.ask(nodes, viewpoint).callers_by_tree
 
 
@@ -116,16 +116,16 @@ class Nodes:
         trees: in the order of the files and of their text.
     """
 
-    def __init__(self, trees: Sequence[TreeNodes]) -> None:
+    def __init__(self, trees: Sequence[ResolvedTree]) -> None:
         self.trees = tuple(trees)
-        self._counting: dict[str, TreeNodes] = {}  # of several trees of one name the first one
+        self._counting: dict[str, ResolvedTree] = {}  # of several trees of one name the first one
         for tree in trees:
             if tree.name is not None:
                 self._counting.setdefault(tree.name, tree)
         self._roots = {name: tree.root for name, tree in self._counting.items() if tree.root is not None}
 
     @cached_property
-    def all(self) -> tuple[SourceNode, ...]:
+    def all(self) -> tuple[ResolvedNode, ...]:
         """In the order of the files and of their text."""
         return tuple([node for tree in self.trees for node in tree.all])
 
@@ -134,11 +134,11 @@ class Nodes:
         """Whether there are any."""
         return any(tree.all for tree in self.trees)
 
-    def root(self, tree: str) -> SourceNode | None:
+    def root(self, tree: str) -> ResolvedNode | None:
         """The written root of a tree; None where the tree has none, or is unknown."""
         return self._roots.get(tree)
 
-    def within(self, item: Tree) -> TreeNodes:
+    def within(self, item: Tree) -> ResolvedTree:
         """The nodes of one of the trees.
 
         Raises:
@@ -147,27 +147,27 @@ class Nodes:
         return self._of_item[id(item)]
 
     @cached_property
-    def _of_item(self) -> dict[int, TreeNodes]:
+    def _of_item(self) -> dict[int, ResolvedTree]:
         return {id(tree.item): tree for tree in self.trees}
 
-    def of(self, node: Node) -> SourceNode | None:
+    def of(self, node: Node) -> ResolvedNode | None:
         """A node of the syntax as one of these."""
         return self._of_node.get(id(node))
 
-    def callers(self, tree: str | None) -> tuple[SourceNode, ...]:
+    def callers(self, tree: str | None) -> tuple[ResolvedNode, ...]:
         """The SubTree nodes that run a tree."""
         return self.callers_by_tree.get(tree, ()) if tree is not None else ()
 
     @cached_property
-    def callers_by_tree(self) -> dict[str, tuple[SourceNode, ...]]:
+    def callers_by_tree(self) -> dict[str, tuple[ResolvedNode, ...]]:
         """The same of all trees that any runs."""
-        found: dict[str, list[SourceNode]] = {}
+        found: dict[str, list[ResolvedNode]] = {}
         for tree in self.trees:
             for name, node in tree.calls:
                 found.setdefault(name, []).append(node)
         return {name: tuple(nodes) for name, nodes in found.items()}
 
-    def run_by(self, node: SourceNode) -> SourceNode | None:
+    def run_by(self, node: ResolvedNode) -> ResolvedNode | None:
         """The root of the tree that a SubTree node runs."""
         name = node.node.id
         return self._roots.get(name.text) if node.category == "SubTree" and name is not None else None
@@ -188,16 +188,16 @@ class Nodes:
             return (of_tree, *others)
         return tuple(found)
 
-    def every(self, name: str) -> tuple[SourceNode, ...]:
+    def every(self, name: str) -> tuple[ResolvedNode, ...]:
         """The nodes of an ID or kind; a tree's name, where no SubTree runs it, is its root."""
-        found = [node for node in self._by_name.get(name, ()) if name in _kinds(node)]
+        found = [node for node in self._by_name.get(name, ()) if name in node.kinds]
         if not found and (root := self._roots.get(name)) is not None:
             return (root,)
         return tuple(found)
 
-    def tagged(self, tag: str) -> tuple[SourceNode, ...]:
+    def tagged(self, tag: str) -> tuple[ResolvedNode, ...]:
         """The nodes with a tag; a tag of a tree is one of its root."""
-        found: list[SourceNode] = []
+        found: list[ResolvedNode] = []
         for tree in self.trees:
             if tag in tree.by_tag:
                 tagged = set(map(id, tree.by_tag[tag]))
@@ -212,9 +212,9 @@ class Nodes:
     @cached_property
     def kinds(self) -> frozenset[str]:
         """Every ID and kind that a node has."""
-        return frozenset().union(*map(_kinds, self.all))
+        return frozenset().union(*(node.kinds for node in self.all))
 
-    def under(self, nodes: Sequence[SourceNode], top: Target) -> tuple[SourceNode, ...]:
+    def under(self, nodes: Sequence[ResolvedNode], top: Target) -> tuple[ResolvedNode, ...]:
         """Those of the nodes that are below a node, or in a tree that runs below it."""
         below = self._below(top.node)
         return tuple(node for node in nodes if id(node) in below)
@@ -229,18 +229,18 @@ class Nodes:
         return (*self._by_name, *self._roots)
 
     @cached_property
-    def _by_name(self) -> dict[str, list[SourceNode]]:
-        found: dict[str, list[SourceNode]] = {}
+    def _by_name(self) -> dict[str, list[ResolvedNode]]:
+        found: dict[str, list[ResolvedNode]] = {}
         for tree in self.trees:
             for name, nodes in tree.by_name.items():
                 found.setdefault(name, []).extend(nodes)
         return found
 
     @cached_property
-    def _of_node(self) -> dict[int, SourceNode]:
+    def _of_node(self) -> dict[int, ResolvedNode]:
         return {id(node.node): node for node in self.all}
 
-    def _target(self, node: SourceNode, above: tuple[str, ...], is_tree: bool) -> Target | None:
+    def _target(self, node: ResolvedNode, above: tuple[str, ...], is_tree: bool) -> Target | None:
         """The node as a target of a path with these other names, if they are found above it.
 
         Args:
@@ -274,7 +274,7 @@ class Nodes:
             missed = missed or not callers
             for caller in callers:
                 open_ = wanted
-                at: SourceNode | None = caller
+                at: ResolvedNode | None = caller
                 while open_ and at is not None:
                     if above[open_ - 1] in at.names and not (at is caller and above[open_ - 1] == called):
                         open_ -= 1
@@ -287,7 +287,7 @@ class Nodes:
                     matched = True
         return matched, missed
 
-    def _below(self, top: SourceNode) -> set[int]:
+    def _below(self, top: ResolvedNode) -> set[int]:
         found: set[int] = set()
         waiting = [top]
         while waiting:
@@ -300,12 +300,6 @@ class Nodes:
         return found
 
 
-def _runs(node: SourceNode, tree: str) -> bool:
+def _runs(node: ResolvedNode, tree: str) -> bool:
     """Whether it is a SubTree node of that tree, whatever its label."""
     return node.category == "SubTree" and node.node.id is not None and node.node.id.text == tree
-
-
-def _kinds(node: SourceNode) -> frozenset[str]:
-    from btq_lang.requirements.names import kinds_of  # few requirements name nodes by their kind
-
-    return kinds_of(node.node, node.kind, node.category)

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.requirements import nodes
-from btq_lang.requirements.model import SourceNode, Target
+from btq_lang.requirements.model import Target
 from btq_lang.syntax.tree import Path, Word, is_name, quote
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ class PathReader:
         """The nodes that a path means."""
         return self.store.ask(nodes.find, self.viewpoint, names)
 
-    def every(self, name: str) -> tuple[SourceNode, ...]:
+    def every(self, name: str) -> tuple[ResolvedNode, ...]:
         """The nodes of an ID or kind."""
         return self.store.ask(nodes.every, self.viewpoint, name)
 
@@ -92,7 +93,7 @@ class PathReader:
         return near(word, [name for kind in kinds for name in self.names(kind)])
 
     @property
-    def mission(self) -> SourceNode | None:
+    def mission(self) -> ResolvedNode | None:
         """The main tree's root; None where it is unknown which tree runs."""
         return self.store.ask(nodes.mission, self.viewpoint)
 

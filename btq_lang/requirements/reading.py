@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.requirements.model import Signal, SourceNode
+from btq_lang.requirements.model import Signal
 from btq_lang.util.record import fields_of
 
 
@@ -19,7 +19,7 @@ def signals_in(part: object) -> Iterator[Signal]:
             yield part
         elif isinstance(part, tuple):
             waiting += reversed(part)
-        elif part is not None and type(part).__module__ == Signal.__module__ and not isinstance(part, SourceNode):
+        elif part is not None and type(part).__module__ == Signal.__module__:
             if id(part) in contexts:
                 continue
             contexts.add(id(part))

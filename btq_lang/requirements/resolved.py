@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, SourceNode, Trace
+    from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, Trace
     from btq_lang.requirements.nodes import Nodes
     from btq_lang.requirements.paths import Problem
     from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 
@@ -40,7 +41,7 @@ class Requirements:
         attached: frozenset[str],
         problems: tuple[Problem, ...],
         nodes: Nodes,
-        mission: SourceNode | None,
+        mission: ResolvedNode | None,
     ) -> None:
         self.store = store
         self.viewpoint = viewpoint
@@ -54,7 +55,7 @@ class Requirements:
         self.nodes = nodes
         self.mission = mission
 
-    def of(self, node: SourceNode) -> tuple[Applied, ...]:
+    def of(self, node: ResolvedNode) -> tuple[Applied, ...]:
         """What holds for a node."""
         return tuple(each for each in self.applied if each.node is node)
 

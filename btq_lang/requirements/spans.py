@@ -8,10 +8,11 @@ so does its last one.
 from __future__ import annotations
 
 from btq_lang.requirements.budgets import Budgets
-from btq_lang.requirements.model import Event, SourceNode, Span, Target
+from btq_lang.requirements.model import Event, Span, Target
+from btq_lang.workspace.resolved import ResolvedNode
 
 
-def node_of(span: Span, budgets: Budgets) -> SourceNode | None:
+def node_of(span: Span, budgets: Budgets) -> ResolvedNode | None:
     """The innermost node whose time a span is; None: there is no such node."""
     first, last = _node(span.first, ("starts",)), _node(span.last, ("succeeds", "finishes"))
     if first is None or last is None:
@@ -25,7 +26,7 @@ def node_of(span: Span, budgets: Budgets) -> SourceNode | None:
     return None if may_be_skipped else node
 
 
-def _node(event: Event, happenings: tuple[str, ...]) -> SourceNode | None:
+def _node(event: Event, happenings: tuple[str, ...]) -> ResolvedNode | None:
     """The node of an event that is one of these, in all of its instances."""
     subject = event.subject
     if event.happening not in happenings or not isinstance(subject, Target) or subject.through:
@@ -33,7 +34,7 @@ def _node(event: Event, happenings: tuple[str, ...]) -> SourceNode | None:
     return subject.node
 
 
-def _chain(node: SourceNode, *, at_end: bool) -> list[SourceNode]:
+def _chain(node: ResolvedNode, *, at_end: bool) -> list[ResolvedNode]:
     """A node and the Sequences above it that begin with it, or end with it."""
     chain = [node]
     while (parent := node.parent) is not None and _takes_no_ticks_of_its_own(parent):
@@ -44,7 +45,7 @@ def _chain(node: SourceNode, *, at_end: bool) -> list[SourceNode]:
     return chain
 
 
-def _takes_no_ticks_of_its_own(node: SourceNode) -> bool:
+def _takes_no_ticks_of_its_own(node: ResolvedNode) -> bool:
     """Whether it is a sequence that starts with the start of its first child, and ends with the end of its last."""
     kind = node.kind
     return kind is not None and kind.flow == "sequence" and not (kind.reactive or kind.pauses)

@@ -14,7 +14,7 @@ from btq_lang.catalog.qualities import get, qualities
 from btq_lang.diagnostics.model import Place
 from btq_lang.graph.figure import Box, Note
 from btq_lang.graph.missions import arguments, by_tree, concerns, figure, said
-from btq_lang.requirements.model import Applied, Mission, Requirement, SourceNode, Span, Target, Total
+from btq_lang.requirements.model import Applied, Mission, Requirement, Span, Target, Total
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.syntax.tree import QualityDecl
@@ -34,6 +34,7 @@ from btq_lang.trace.ways import declared_ways, is_hard
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span as TextSpan
 from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
     from btq_lang.trace.overview import Carries
     from btq_lang.trace.ways import Ways
 
-    SaidOf: TypeAlias = Callable[[SourceNode], tuple[tuple[str, ...], str]]
+    SaidOf: TypeAlias = Callable[[ResolvedNode], tuple[tuple[str, ...], str]]
 
 
 def collect(
@@ -224,7 +225,7 @@ def _said_in(box: Box, said: tuple[tuple[str, ...], str]) -> Box:
 class _Node:
     """A node; tree: the place of its tree; notes: those at it in its figure, by what they represent."""
 
-    def __init__(self, key: str, source: SourceNode, at: At, tree: At) -> None:
+    def __init__(self, key: str, source: ResolvedNode, at: At, tree: At) -> None:
         self.key = key
         self.source = source
         self.at = at
@@ -317,13 +318,13 @@ def _place_of(requirement: Requirement) -> tuple[int, int]:
     return id(requirement.place.anchor), requirement.place.span.start
 
 
-def _tree_place(source: SourceNode) -> Place:
+def _tree_place(source: ResolvedNode) -> Place:
     tree = source.item
     name = tree.name.span if tree.name is not None else TextSpan(tree.start, tree.start)
     return Place(name, source.path, tree)
 
 
-def _is_below(found: Requirements, source: SourceNode, own: dict[int, None]) -> bool:
+def _is_below(found: Requirements, source: ResolvedNode, own: dict[int, None]) -> bool:
     """Whether, on each path to a node through SubTree nodes, a node above carries something."""
     waiting = [source]
     seen: set[int] = set()
@@ -357,7 +358,7 @@ def _subject(applied: Applied) -> str:
     return claim.text.partition(f" {claim.verb} ")[0]
 
 
-def _name(source: SourceNode) -> str:
+def _name(source: ResolvedNode) -> str:
     """Its kind and its instance name; for a placeholder of a skill, those of the skill."""
     if is_placeholder(source.node) and source.node.name is not None:
         return source.node.name.text

@@ -11,6 +11,7 @@ mission, and how it is written as XML.
     item_index.py    what is known of an item from itself
     references.py    every word that names something
     queries.py, inputs.py   the one memory, and what queries read in the workspace
+    resolved.py, node_names.py   what written nodes mean, and by which names they are found
     comments.py      to which element a comment belongs
     placeholders.py, port_types.py, custom_nodes.py   what names, ports and undeclared nodes are taken for
     findings.py, fixes.py   diagnostics placed in a file, and fixes put into its text

@@ -15,8 +15,8 @@ from kept_checks import Kept
 from btq_lang.checks import CHECKS, Check, check
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.requirements.trees import TreeNodes
 from btq_lang.syntax.tree import Entry, Tree
+from btq_lang.workspace.resolved import ResolvedTree
 from btq_lang.workspace.workspace import Workspace
 
 EVERY_FORM = (Path(__file__).parents[1] / "every_form.btq").read_text(encoding="utf-8")
@@ -266,4 +266,4 @@ def test_what_an_edit_replaces_goes_when_it_is_swept() -> None:
     gc.collect()  # nodes and their parents hold each other
     after = Counter(type(each) for each in gc.get_objects())
     trees = sum(len(file.of_type(Tree)) for file in workspace.files.values())
-    assert after[TreeNodes] - before[TreeNodes] == trees
+    assert after[ResolvedTree] - before[ResolvedTree] == trees

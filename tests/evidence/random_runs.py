@@ -28,7 +28,7 @@ from btq_lang.evidence.model import (
     LoggedTree,
     Series,
 )
-from btq_lang.requirements.model import SourceNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import SampleValue, Transition
@@ -309,7 +309,7 @@ class LoggedRun(engine.Run):
     """
 
     def __init__(
-        self, mission: Candidate, root: SourceNode, chance: random.Random, rows: list[Transition], resets: bool
+        self, mission: Candidate, root: ResolvedNode, chance: random.Random, rows: list[Transition], resets: bool
     ) -> None:
         super().__init__(mission.requirements, root, chance.randrange(1 << 30), lambda *_: None)
         self.rows = rows
@@ -323,7 +323,7 @@ class LoggedRun(engine.Run):
         for child in node.children:
             self.number(child)
 
-    def drawn(self, leaf: SourceNode) -> float:
+    def drawn(self, leaf: ResolvedNode) -> float:
         return self.chance.choice([0.0, 0.25, 0.5, 1.0, 1.0, 2.0, 3.5])
 
     def change(self, node: engine.Sim, status: str) -> None:
@@ -337,7 +337,7 @@ class LoggedRun(engine.Run):
             self.rows.append((START + round(self.now * 1e6), self.uids[node], STATUS[status]))
 
 
-def runs(mission: Candidate, root: SourceNode, chance: random.Random, now: float) -> tuple[float, list[Transition]]:
+def runs(mission: Candidate, root: ResolvedNode, chance: random.Random, now: float) -> tuple[float, list[Transition]]:
     """When some runs from a time on have ended, and their rows."""
     resets = chance.random() < 0.7
     rows: list[Transition] = []

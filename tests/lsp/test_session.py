@@ -316,7 +316,7 @@ def test_what_edits_replace_goes_when_it_is_swept(folder: Path) -> None:
             workspace.store.sweep(always=True)
         gc.collect()  # written nodes and their parents hold each other
         kinds = Counter(type(each).__name__ for each in gc.get_objects())
-        return Counter({name: kinds[name] for name in ("File", "Workspace", "TreeNodes", "View", "set")})
+        return Counter({name: kinds[name] for name in ("File", "Workspace", "ResolvedTree", "View", "set")})
 
     rounds(0)
     assert rounds(20) == rounds(40)

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.requirements.budgets import Budgets, Range
 from btq_lang.requirements.composition import _RULES
-from btq_lang.requirements.model import SourceNode
 from btq_lang.requirements.resolved import Requirements
+from btq_lang.workspace.resolved import ResolvedNode
 
 # ---- no run lies outside --------------------------------------------------------------------------------------------
 
@@ -58,7 +58,7 @@ def assert_within_budgets(text: str, seed: int) -> set[str]:
     ended: set[str] = set()
     budgets = Budgets(found.store, found.viewpoint)
 
-    def report(node: SourceNode, status: str, seconds: float) -> None:
+    def report(node: ResolvedNode, status: str, seconds: float) -> None:
         budget = budgets.of(node)
         allowed = getattr(budget, status)
         assert allowed is not None, f"{node} {status} after {seconds}: {budget}"
@@ -93,7 +93,7 @@ QualityReq b "t"
 """
 
 
-def budget(tree: str, requirements: str = LEAVES) -> tuple[Budgets, SourceNode]:
+def budget(tree: str, requirements: str = LEAVES) -> tuple[Budgets, ResolvedNode]:
     """The budgets of a tree, and its root."""
     lines = "".join(f"    {line}\n" for line in tree.strip("\n").split("\n"))
     everyone = "BehaviorTree Unused\n    ->\n        A\n        B\n        X\n"  # so that each name is one of a node

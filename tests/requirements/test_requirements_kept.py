@@ -15,12 +15,12 @@ from btq_lang.checks import check
 from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.budgets import Budget, Budgets, Range, Success, tree_budgets
-from btq_lang.requirements.model import SourceNode
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.workspace import inputs
 from btq_lang.workspace.inputs import advance
 from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 MAIN = """include "skills.btq"
@@ -226,7 +226,7 @@ def said(workspace: Workspace, found: Requirements) -> Iterator[object]:
         assert place.path is not None, "these places have a path"
         return place.path, workspace.files[place.path].start_of(place.anchor) + place.span.start
 
-    def named(node: SourceNode | None) -> object:
+    def named(node: ResolvedNode | None) -> object:
         return (node.shown, node.tree, at(node.place)) if node is not None else None
 
     yield [node.names for node in found.nodes.all]
@@ -251,7 +251,7 @@ def said(workspace: Workspace, found: Requirements) -> Iterator[object]:
         yield [(named(gap.node), gap.reason) for gap in budgets.gaps(node)]
 
 
-def shown(budget: Budget, named: Callable[[SourceNode], object]) -> object:
+def shown(budget: Budget, named: Callable[[ResolvedNode], object]) -> object:
     def one(each: Range | None) -> object:
         return each and (each.low, each.high, [(named(term.node), term.times, term.seconds) for term in each.terms])
 
@@ -259,7 +259,7 @@ def shown(budget: Budget, named: Callable[[SourceNode], object]) -> object:
     return ranges, budget.waits, budget.probability, budget.reason, budget.endless
 
 
-def likely(found: Success | None, named: Callable[[SourceNode], object]) -> object:
+def likely(found: Success | None, named: Callable[[ResolvedNode], object]) -> object:
     return found and (found.seconds, found.probability, [(named(node), share) for node, share in found.parts])
 
 

@@ -1,17 +1,35 @@
-"""By which names a written node is found.
+"""What a written node is called, and which built-in that means: the node alone says so.
 
-One invariant: a name is what is written, or a spelling of the built-in that is written.
+One invariant: nothing is looked up.  Whether a name that is no built-in's has a model is known to resolved.py.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
-from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.names import legal_name
-from btq_lang.catalog.nodes import BUILTINS, spellings
-from btq_lang.syntax.tree import Node
+from btq_lang.catalog.nodes import BUILTINS, lookup, spellings, xml_tag
 from btq_lang.workspace.placeholders import is_placeholder
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import NodeKind
+    from btq_lang.syntax.tree import Node
+
+
+def kind_of(node: Node) -> NodeKind | None:
+    """The built-in that a node's word means; None for a custom node, and where another tree is run.  A placeholder has
+    the word of a script node."""
+    name = node.id
+    if name is None or (node.category is not None and node.category.raw == "SubTree"):
+        return None
+    return lookup(name.text, name.quoted, len(node.nodes) if node.children else 0)
+
+
+def tag_of(node: Node) -> str:
+    """The XML tag of a node's word; a custom node's is its own name.  Verbatim XML among its children counts there."""
+    name = node.id
+    return xml_tag(name.text, name.quoted, len(node.children)) if name is not None else ""
 
 
 def names_of(node: Node, kind: NodeKind | None, category: str | None) -> frozenset[str]:

@@ -1,0 +1,87 @@
+"""The nodes of a tree, sorted by what checks look for: nearly every check would look at each node of a file.
+
+One invariant: nothing is said here of a node that it does not say itself (workspace/resolved.py).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.workspace.resolved import tree_nodes
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import Flow
+    from btq_lang.syntax.tree import Node
+    from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.resolved import ResolvedNode
+    from btq_lang.workspace.workspace import Workspace
+
+
+def sorted_nodes(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> SortedNodes:
+    """The nodes of a tree, sorted.
+
+    Args:
+        path: the file in which it is written.
+    """
+    return SortedNodes(store.ask(tree_nodes, viewpoint, path, tree).all)
+
+
+class SortedNodes:
+    """The nodes of a tree, each list of them depth first, in document order.
+
+    Attributes:
+        all: all of them.
+        given: those with attributes.
+        marked: those with attributes that are no port by their first letter, as `_while`.
+        demanding: those with clauses.
+        categorized: those whose category is written.
+        subtrees: those that run another tree.
+        named: those with an instance name.
+        placeholders: those that represent a skill.
+        strangers: those that are neither a built-in, a placeholder nor a SubTree, and have no model.
+        by_tag: the built-ins, by their tag.
+    """
+
+    __slots__ = (
+        "all",
+        "by_tag",
+        "categorized",
+        "demanding",
+        "given",
+        "marked",
+        "named",
+        "placeholders",
+        "strangers",
+        "subtrees",
+    )
+
+    def __init__(self, nodes: tuple[ResolvedNode, ...]) -> None:
+        self.all: Final = nodes
+        self.given: Final = [seen for seen in nodes if seen.node.attributes]
+        self.marked: Final = [seen for seen in self.given if _is_marked(seen.node)]
+        self.demanding: Final = [seen for seen in nodes if seen.node.clauses]
+        self.named: Final = [seen for seen in nodes if seen.name is not None]
+        self.categorized: Final = [seen for seen in nodes if seen.node.category is not None]
+        self.subtrees: Final = [seen for seen in nodes if seen.is_subtree]
+        self.placeholders: Final = [seen for seen in nodes if seen.is_placeholder]
+        self.strangers: Final = [
+            seen
+            for seen in nodes
+            if seen.kind is None and seen.of_model is None and not (seen.is_placeholder or seen.is_subtree)
+        ]
+        self.by_tag: Final[dict[str, list[ResolvedNode]]] = {}
+        for seen in nodes:
+            if seen.kind is not None:
+                self.by_tag.setdefault(seen.kind.tag, []).append(seen)
+
+    def of_flow(self, *flows: Flow) -> list[ResolvedNode]:
+        """The built-ins of these flows, tag by tag."""
+        return [seen for same in self.by_tag.values() if same[0].flow in flows for seen in same]
+
+
+def _is_marked(node: Node) -> bool:
+    return any(not pair.key.raw[:1].isalpha() for pair in node.attributes)
+
+
+NO_NODES: Final = SortedNodes(())

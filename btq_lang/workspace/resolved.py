@@ -1,0 +1,281 @@
+"""The written nodes of a tree, and what each of them means from a viewpoint: for checks, requirements and all else.
+
+One invariant: what is said of a node rests on its tree and on the categories of the models in scope, so that an edit
+elsewhere leaves it the same object unless such a category changes.  No other tree is known here, nor a model's ports.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cache, partial
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS
+from btq_lang.diagnostics.model import Place
+from btq_lang.syntax.tree import Node, NodeClause, Satisfices, Tags, Tree
+from btq_lang.workspace import inputs
+from btq_lang.workspace.node_names import kind_of, kinds_of, names_of
+from btq_lang.workspace.placeholders import is_placeholder
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import Flow, NodeKind
+    from btq_lang.syntax.tree import Word
+    from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
+
+
+def tree_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> ResolvedTree:
+    """The nodes of a tree.
+
+    Args:
+        path, facts: where it is written.
+    """
+    return ResolvedTree(path, facts, cache(partial(inputs.category, store, viewpoint)))
+
+
+def tree_named(store: Store[Workspace], viewpoint: str, name: str) -> ResolvedTree | None:
+    """The nodes of the tree that a name means."""
+    found = inputs.definition(store, viewpoint, Kind.TREE, name)
+    return store.ask(tree_nodes, viewpoint, *found) if found is not None else None
+
+
+def trees_called(store: Store[Workspace], viewpoint: str, name: str) -> tuple[str, ...]:
+    """The trees that the tree runs that a name means."""
+    tree = store.ask(tree_named, viewpoint, name)
+    return tree.called if tree is not None else ()
+
+
+class ResolvedNode:
+    """A node as it is written, with what is around it and what it means.  Equal to nothing but itself: its place is
+    what it is.
+
+    Attributes:
+        within: its tree.
+        parent: None for a node at the top of its tree.
+        index: which child of its parent it is, verbatim XML counted.
+        children: the nodes below it.
+        id, name: those of the node, which are looked for in its attributes if they are nowhere else.
+        kind: the built-in that it is, if it is one; for an older engine's word the one of today.
+        is_placeholder: it represents a skill (placeholders.py).
+        of_model: the category that its model has; None where no model of it is in scope.
+        category: as written, or as the built-in, the placeholder, the model or an older engine's word has it; None
+            where that is unknown.
+        is_outdated: its category is that of an older engine's word, and nothing of today takes its place.
+        is_subtree: it runs another tree, by the word that the engine of today has for that.
+    """
+
+    __slots__ = (
+        "_names",
+        "category",
+        "children",
+        "id",
+        "index",
+        "is_outdated",
+        "is_placeholder",
+        "is_subtree",
+        "kind",
+        "name",
+        "node",
+        "of_model",
+        "parent",
+        "within",
+    )
+
+    def __init__(
+        self,
+        node: Node,
+        within: ResolvedTree,
+        parent: ResolvedNode | None,
+        index: int,
+        category_of_model: Callable[[str], str | None],
+    ) -> None:
+        self.node: Final = node
+        self.within: Final = within
+        self.parent: Final = parent
+        self.index: Final = index
+        self.children: list[ResolvedNode] = []  # filled while the tree is read
+        self.id: Final = node.id
+        self.name: Final[Word | None] = node.name
+        self.is_placeholder: Final = is_placeholder(node)
+        self.kind: NodeKind | None = None
+        self.of_model: str | None = None
+        self.category: str | None = node.category.raw if node.category is not None else None
+        self.is_outdated = False
+        self._names: frozenset[str] | None = None
+        if self.id is not None and self.category != "SubTree":
+            self._resolve(self.id, category_of_model)
+        self.is_subtree: Final = self.category == "SubTree" and not self.is_outdated
+
+    def _resolve(self, name: Word, category_of_model: Callable[[str], str | None]) -> None:
+        if self.is_placeholder:
+            self.category = PLACEHOLDERS[name.raw]
+            return
+        self.kind = kind_of(self.node)
+        if self.kind is None:
+            self.of_model = category_of_model(name.text)
+            if self.of_model is None and not name.quoted and (known := KNOWN_WORDS.get(name.text)) is not None:
+                self.kind = BUILTINS.get(known.replacement or "")
+                self.is_outdated = self.kind is None and self.category is None
+                self.category = self.category or known.category
+        if self.category is None:
+            self.category = self.kind.category if self.kind is not None else self.of_model
+
+    # ---- its place ----
+
+    @property
+    def path(self) -> str:
+        """The file in which it is written."""
+        return self.within.path
+
+    @property
+    def facts(self) -> Facts:
+        """Those of its item, by which queries name it."""
+        return self.within.facts
+
+    @property
+    def item(self) -> Tree:
+        """The item from which its offsets count."""
+        return self.within.item
+
+    @property
+    def tree(self) -> str | None:
+        """The name of its tree; None where that is missing."""
+        return self.within.name
+
+    @property
+    def place(self) -> Place:
+        """The place of its head."""
+        return Place(self.node.head.span, self.path, self.item)
+
+    def ancestors(self) -> Iterator[ResolvedNode]:
+        """Its parent, the parent's parent, and so on."""
+        above = self.parent
+        while above is not None:
+            yield above
+            above = above.parent
+
+    # ---- its names ----
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Every name that a path can call it by: its ID, all spellings of its kind, its label."""
+        if self._names is None:
+            self._names = names_of(self.node, self.kind, self.category)
+        return self._names
+
+    @property
+    def kinds(self) -> frozenset[str]:
+        """The names that say what it is, and not which one."""
+        return kinds_of(self.node, self.kind, self.category)
+
+    @property
+    def shown_kind(self) -> str:
+        """As a message names it: its kind, or what is written in its place."""
+        return f"`{self.node.head.text}`"
+
+    @property
+    def shown(self) -> str:
+        """As a message names it among others: its kind and, where it has one, its instance name."""
+        head = self.node.head.text
+        return f"`{head}`" if self.name is None or self.name.text == head else f"`{head} {self.name.text}`"
+
+    # ---- what it means ----
+
+    @property
+    def flow(self) -> Flow:
+        """What the built-in does with its children; empty for a custom node."""
+        return self.kind.flow if self.kind is not None else ""
+
+    @property
+    def tag(self) -> str:
+        """The built-in's tag; empty for a custom node."""
+        return self.kind.tag if self.kind is not None else ""
+
+    @property
+    def is_defined(self) -> bool:
+        """Whether a model of it is in scope."""
+        return self.of_model is not None
+
+    @property
+    def stated_category(self) -> str | None:
+        """Its category, unless nobody but an older engine says so."""
+        return None if self.is_outdated else self.category
+
+    def __repr__(self) -> str:
+        return f"<{self.shown} in {self.tree}>"
+
+
+class ResolvedTree:
+    """The nodes of one tree.
+
+    Attributes:
+        path, facts, item: where it is written.
+        name: None where that is missing.
+        all: in the order of the text.
+        root: the node at the top; None where there is none, or several.
+        calls: the SubTree nodes, each with the name of the tree that it runs.
+        called: those names.
+        by_tag: the nodes by what `tags` at them says; a tag of the tree is one of its root.
+        qualities: the quality that encloses a requirement in `Quality = performance (QualityReq …)`, by its `id`.
+    """
+
+    __slots__ = ("_by_name", "all", "by_tag", "called", "calls", "facts", "item", "name", "path", "qualities", "root")
+
+    def __init__(self, path: str, facts: Facts, category_of_model: Callable[[str], str | None]) -> None:
+        """category_of_model: that of a node's model in scope, by the node's name."""
+        item = facts.item
+        assert isinstance(item, Tree), "only trees have nodes"
+        self.path: Final = path
+        self.facts: Final = facts
+        self.item: Final = item
+        self.name: Final = item.name.text if item.name is not None else None
+        self.by_tag: Final[dict[str, list[ResolvedNode]]] = {}
+        self.qualities: Final[dict[int, str]] = {}
+        self._by_name: dict[str, list[ResolvedNode]] | None = None
+        self.all: Final = tuple(self._read(category_of_model))
+        subtrees = [(node.id, node) for node in self.all if node.category == "SubTree"]
+        self.calls: Final = tuple([(called.text, node) for called, node in subtrees if called is not None])
+        self.called: Final = tuple([name for name, _ in self.calls])
+        for node in self.all:
+            if node.node.clauses:
+                self._note(node.node.clauses, [node])
+        tops = [node for node in self.all if node.parent is None]
+        self.root: Final = tops[0] if len(tops) == 1 else None
+        self._note(item.clauses, tops)
+
+    @property
+    def by_name(self) -> dict[str, list[ResolvedNode]]:
+        """The nodes by every name that they have."""
+        if self._by_name is None:
+            self._by_name = {}
+            for node in self.all:
+                for name in node.names:
+                    self._by_name.setdefault(name, []).append(node)
+        return self._by_name
+
+    def _note(self, clauses: tuple[NodeClause, ...], nodes: list[ResolvedNode]) -> None:
+        for clause in clauses:
+            if isinstance(clause, Tags):
+                for name in clause.names:
+                    self.by_tag.setdefault(name.text, []).extend(nodes)
+            elif isinstance(clause, Satisfices):
+                for quality in clause.qualities:
+                    for requirement in quality.requirements:
+                        self.qualities[id(requirement)] = ".".join(name.text for name in quality.path.names)
+
+    def _read(self, category_of_model: Callable[[str], str | None]) -> Iterator[ResolvedNode]:
+        waiting: list[tuple[Node, ResolvedNode | None, int]] = []
+        waiting += [(child, None, at) for at, child in enumerate(self.item.children) if isinstance(child, Node)]
+        waiting.reverse()
+        while waiting:
+            node, parent, index = waiting.pop()
+            found = ResolvedNode(node, self, parent, index, category_of_model)
+            if parent is not None:
+                parent.children.append(found)
+            yield found
+            if node.children:
+                children = [(child, found, at) for at, child in enumerate(node.children) if isinstance(child, Node)]
+                children.reverse()
+                waiting += children
