@@ -14,7 +14,6 @@ from btq_lang.btcpp.by_hand import ByHand, NodeGuards, changed_by_hand
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.side_file import FORMAT, VERSIONS
 from btq_lang.catalog.names import legal_name
-from btq_lang.catalog.nodes import xml_tag
 from btq_lang.lexer import tokens
 from btq_lang.parser import Parsed, parse
 from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
@@ -37,6 +36,7 @@ from btq_lang.syntax.tree import (
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Edit, LineIndex, Span, apply_edits
 from btq_lang.workspace.file import is_btq
+from btq_lang.workspace.node_names import tag_of
 from btq_lang.workspace.placeholders import is_placeholder
 
 
@@ -181,8 +181,7 @@ def _called(node: Node) -> tuple[str, str]:
     if is_placeholder(node):
         ID = legal_name(name)
         return ID, "" if name == ID else name
-    word = node.id
-    return xml_tag(word.text, word.quoted, len(node.children)) if word is not None else "", name
+    return tag_of(node), name
 
 
 def _place_of_items(parsed: Parsed) -> int:

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final, Protocol, TypeAlias
 
 from btq_lang.catalog.names import legal_name
-from btq_lang.catalog.nodes import BUILTINS, xml_tag
+from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.qualities import EDITIONS, find
 from btq_lang.catalog.units import convert, parse_unit, to_si
 from btq_lang.lexer import tokens
@@ -57,6 +57,7 @@ from btq_lang.syntax.tree import (
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.file import File
+from btq_lang.workspace.node_names import tag_of
 from btq_lang.workspace.placeholders import is_placeholder
 from btq_lang.workspace.symbols import requirements_at
 from btq_lang.workspace.workspace import Workspace
@@ -208,8 +209,6 @@ class _Reader:
         return top
 
     def _node(self, node: Node) -> Part:
-        word = node.id
-        text = word.text if word is not None else ""
         part = Part("", node.head.text, self._place(node.start, node.end))
         part.category = node.category.raw if node.category is not None else None
         part.name = node.name.text if node.name is not None else None
@@ -217,9 +216,9 @@ class _Reader:
             part.kind = part.word = legal_name(part.name)
             part.name = part.name if part.name != part.kind else None
         elif part.category == SUBTREE:
-            part.kind, part.target, part.category = SUBTREE, text, None
+            part.kind, part.target, part.category = SUBTREE, node.id.text if node.id is not None else "", None
         else:
-            part.kind = xml_tag(text, word is not None and word.quoted, len(node.children))
+            part.kind = tag_of(node)
         self._pairs(part, node.attributes, node.category is not None and node.kind is None)
         self._clauses(part, node.clauses)
         return part

@@ -18,6 +18,7 @@ from btq_lang.syntax.tree import Entry, Model, Qualities, QualityPath, Requireme
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.file import Definition
+from btq_lang.workspace.node_names import kind_of
 from btq_lang.workspace.references import Mention, What, called
 from btq_lang.workspace.workspace import Workspace
 
@@ -226,7 +227,7 @@ def _node(workspace: Workspace, path: str, mention: Mention) -> Subject:
     is_kind = node is not None and node.kind is not None and mention.word == node.kind
     quoted = mention.word.quoted
     if is_kind or (mention.defines and not quoted):
-        builtin = lookup(mention.name, quoted, len(node.nodes) if node else None)
+        builtin = kind_of(node) if node is not None else lookup(mention.name, quoted)
         if builtin is not None:
             return Subject(What.NODE, builtin.tag, ENGINE)
     return _defined(workspace, path, What.NODE, mention.name)
@@ -300,7 +301,7 @@ def _port(workspace: Workspace, found: Found) -> Subject:
         return Subject(What.PORT, mention.name, f"tree {name.text}")
     if node.id is None:
         return Subject(What.PORT, mention.name)
-    kind = lookup(node.id.text, node.id.quoted, len(node.nodes))
+    kind = kind_of(node)
     if kind is not None:
         return Subject(What.PORT, mention.name, f"{ENGINE} {kind.tag}")
     owner = _defined(workspace, found.path, What.NODE, node.id.text)

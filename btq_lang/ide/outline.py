@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import lookup
 from btq_lang.syntax.tree import (
     Apply,
     Context,
@@ -26,6 +25,7 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
+from btq_lang.workspace.node_names import kind_of
 from btq_lang.workspace.symbols import requirements_at
 from btq_lang.workspace.workspace import Workspace
 
@@ -162,10 +162,10 @@ def _node(workspace: Workspace, path: str, node: Node, by: int) -> Outline:
 def _category(workspace: Workspace, path: str, node: Node) -> str:
     if node.category is not None:
         return node.category.raw.lower()
-    name = node.id
-    kind = lookup(name.text, name.quoted, len(node.nodes)) if name is not None else None
+    kind = kind_of(node)
     if kind is not None:
         return kind.category.lower()
+    name = node.id
     found = workspace.scope(path).find(Kind.MODEL, name.text) if name is not None else None
     target = found.symbol.target if found else None
     return target.category.raw.lower() if isinstance(target, Model) else "node"

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import lookup, port_type
+from btq_lang.catalog.nodes import NodeKind, lookup, port_type
 from btq_lang.syntax.tree import Model, Node, Port, Tree
 from btq_lang.util.record import Record
+from btq_lang.workspace.node_names import kind_of
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -43,14 +44,17 @@ def ports_of(workspace: Workspace, path: str, node: Node) -> tuple[NodePort, ...
     if node.kind is not None and node.kind.raw == "SubTreePlus":
         called = node.attribute("ID")
         return ports_of_tree(workspace, path, called.text) if called is not None else ()
-    return () if name is None else ports_of_kind(workspace, path, name.text, name.quoted, len(node.nodes))
+    return () if name is None else _ports(workspace, path, kind_of(node), name.text)
 
 
 def ports_of_kind(
     workspace: Workspace, path: str, name: str, quoted: bool = False, child_count: int | None = None
 ) -> tuple[NodePort, ...]:
     """The ports of a built-in or of a model in scope."""
-    kind = lookup(name, quoted, child_count)
+    return _ports(workspace, path, lookup(name, quoted, child_count), name)
+
+
+def _ports(workspace: Workspace, path: str, kind: NodeKind | None, name: str) -> tuple[NodePort, ...]:
     if kind is not None:
         version = workspace.project.target
         return tuple(

@@ -13,9 +13,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS, port_type, xml_tag
+from btq_lang.catalog.nodes import BUILTINS, port_type
 from btq_lang.syntax.tree import Model, Node, Pair, Port, Tree
 from btq_lang.util.record import Record
+from btq_lang.workspace.node_names import tag_of
 
 if TYPE_CHECKING:
     from btq_lang.workspace.file import Definition
@@ -85,7 +86,7 @@ def is_number(text: str) -> bool:
 def _port_type(scope: Scope, version: str, node: Node, key: str) -> str:
     if node.id is None:
         return ""
-    builtin = BUILTINS.get(xml_tag(node.id.text, node.id.quoted, len(node.children)))
+    builtin = BUILTINS.get(tag_of(node))
     if builtin is not None:
         port = builtin.port(key)
         return _plain(port_type(port, version)) if port is not None else ""

@@ -15,7 +15,7 @@ from typing import TypeAlias
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.names import legal_name
-from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
+from btq_lang.catalog.nodes import PLACEHOLDERS
 from btq_lang.syntax.tokens import BRACED, NAME, NUMBER, QUANTITY, STRING
 from btq_lang.syntax.tree import (
     Amount,
@@ -52,6 +52,7 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
+from btq_lang.workspace.node_names import kind_of
 from btq_lang.workspace.symbols import requirements_at
 
 
@@ -314,7 +315,7 @@ def _content(key: str, node: Node) -> str | None:
     attribute = RESERVED_ATTRIBUTES.get(key)
     if attribute is not None:
         return "script" if attribute.is_script else None
-    kind = None if node.kind is None else lookup(node.kind.text, node.kind.quoted, len(node.nodes))
+    kind = kind_of(node)
     port = kind.port(key) if kind is not None else None
     return None if port is None else port.content
 
