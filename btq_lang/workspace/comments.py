@@ -1,9 +1,8 @@
-"""The comments of a file: to which element each belongs, for everything that writes a tree in another notation.
+"""The comments of a file: to which element each belongs, for all that writes a tree in another notation.
 
-One invariant: every comment of the file is in exactly one place.  An element is what begins a logical line: an item, a
-node, a port, a line of clauses, a clause in the block of a requirement.  This module knows where comments belong
-(docs/language.md) and no grammar: which elements another notation has, and how it writes a comment, is the reader's
-business.
+One invariant: every comment of the file has exactly one place.  An element is what begins a logical line: an item, a
+node, a port, a line of clauses, a clause in the block of a requirement.  The module knows where comments belong
+(docs/language.md) but no grammar; which elements another notation has, and how it writes a comment, is for the caller.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from btq_lang.util.text import LINE_END
 if TYPE_CHECKING:
 
     class CodeLine(Protocol):
-        """A logical line: how many blocks are open around it, and the blanks it begins with."""
+        """A logical line: the number of open blocks around it, and its indentation."""
 
         @property
         def level(self) -> int: ...
@@ -35,7 +34,7 @@ class Comment(Record):
 
     Attributes:
         start: where it begins in the file.
-        raw: as it stands there, but for blanks at the end of a line comment.
+        raw: as it is written, without blanks at the end of a line comment.
     """
 
     start: int
@@ -43,12 +42,12 @@ class Comment(Record):
 
     @property
     def is_block(self) -> bool:
-        """Written `/* … */`, and not to the end of a line."""
+        """Whether it is written `/* … */`, and not to the end of a line."""
         return self.raw.startswith("/*")
 
     @property
     def text(self) -> str:
-        """What stands behind `#` or `//`, or between `/*` and `*/`; line ends are `\\n`."""
+        """The text after `#` or `//`, or between `/*` and `*/`; line ends are `\\n`."""
         if not self.is_block:
             return self.raw.removeprefix("//") if self.raw.startswith("/") else self.raw[1:]
         inside = self.raw[2:-2] if len(self.raw) >= 4 and self.raw.endswith("*/") else self.raw[2:]
@@ -59,11 +58,11 @@ class Comments(Record):
     """The comments of an element, by place, each in the order of the file.
 
     Attributes:
-        before: on lines of their own above it, in the block that it stands in.
-        within: on its line (or lines, where it has brackets) before its last word: in brackets, or in front.
-        behind: behind it on its line, where it has no block.
-        first: behind it on its line, where a block follows: they are the first thing in the block.
-        last: on lines of their own at the end of its block; an element without other block may have them too.
+        before: on lines of their own above it, in its block.
+        within: on its line (or lines, if it has brackets) before its last word: in brackets, or before it.
+        behind: after it on its line, if it has no block.
+        first: after it on its line, if a block follows: they are the first thing in the block.
+        last: on lines of their own at the end of its block; an element without a block may have them too.
     """
 
     before: tuple[Comment, ...] = ()
@@ -79,8 +78,8 @@ NO_COMMENTS: Final = Comments()
 def comments(parsed: Parsed) -> Mapping[int, Comments]:
     """The comments of a file by the elements they belong to; elements without comments are left out.
 
-    The key of an element is the place in the file where it begins, `entry.start + part.start`; what begins no logical
-    line, as a clause behind a node, has none.  Comments below all items that stand in no block are `before` the key
+    The key of an element is its offset in the file, `entry.start + part.start`; what does not begin a logical line,
+    like a clause after a node, has none.  Comments below all items and outside of blocks are `before` the key
     `len(text)`.
     """
     if "#" not in parsed.text and "/" not in parsed.text:
@@ -91,7 +90,7 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
         if remarks:
             found.setdefault(line.start, {}).setdefault(place, []).extend(remarks)
 
-    open_lines: list[_Line] = []  # the line above and those whose blocks it stands in
+    open_lines: list[_Line] = []  # the line above and those whose blocks it is in
     for comment_lines, line in _lines(parsed.text):
         for blanks, remarks in comment_lines:
             owner = block_of(blanks, open_lines, line.level)
@@ -99,7 +98,7 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
                 add(line, "before", remarks)
             else:
                 add(owner, "last", remarks)
-        if open_lines and open_lines[-1].behind:  # whether it has a block is known now
+        if open_lines and open_lines[-1].behind:  # now it is known whether it has a block
             above = open_lines[-1]
             has_block = above.level < line.level or "last" in found.get(above.start, ())
             add(above, "first" if has_block else "behind", above.behind)
@@ -115,13 +114,13 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
 
 
 def block_of(blanks: str, open_lines: Sequence[L], level: int) -> L | None:
-    """The line at the end of whose block a comment line stands (docs/language.md): the last one above it that stands
-    further left; None where it stands beside the line below, for it is never further out than that.
+    """The line whose block a comment line ends (docs/language.md): the last one above it with less indentation; None if
+    it belongs to the line below, for it is never further out than that.
 
     Args:
-        blanks: what the comment line begins with.
-        open_lines: the line above and those whose blocks it stands in, from the outermost on.
-        level: that of the line below.
+        blanks: the indentation of the comment line.
+        open_lines: the line above and those whose blocks it is in, the outermost first.
+        level: of the line below.
     """
     for line in reversed(open_lines):
         if _further_left(line.blanks, blanks):
@@ -130,8 +129,8 @@ def block_of(blanks: str, open_lines: Sequence[L], level: int) -> L | None:
 
 
 def _further_left(first: str, second: str) -> bool:
-    """Whether the first indentation is less than the second; where tabs and blanks do not compare, a tab goes to the
-    next multiple of four columns, as in the editor that the classic files were written in."""
+    """Whether the first indentation is less than the second; if tabs and blanks do not compare, a tab goes to the next
+    multiple of four columns, as in the editor of the classic files."""
     if second.startswith(first) or first.startswith(second):
         return len(first) < len(second)
     return len(first.expandtabs(4)) < len(second.expandtabs(4))
@@ -141,10 +140,10 @@ class _Line:
     """A logical line.
 
     Attributes:
-        start: where its first word begins.
-        level: how many blocks are open around it.
-        blanks: what stands before it on its line of text.
-        within, behind: its comments, before its last word and behind it.
+        start: of its first word.
+        level: number of open blocks around it.
+        blanks: the text before it on its physical line.
+        within, behind: its comments, before and after its last word.
     """
 
     __slots__ = ("behind", "blanks", "level", "start", "within")
@@ -158,7 +157,7 @@ class _Line:
 
 
 def _lines(text: str) -> Iterator[tuple[list[tuple[str, list[Comment]]], _Line]]:
-    """Each logical line, and the last one is the end of the file, with the comment lines above it and their blanks."""
+    """Each logical line, the end of the file as the last, with the comment lines above it and their blanks."""
     lexer = Lexer(text)
     found = lexer.comments
     while True:
@@ -178,12 +177,12 @@ def _lines(text: str) -> Iterator[tuple[list[tuple[str, list[Comment]]], _Line]]
         line = _Line(lexer.position, lexer.level, lexer.blanks, in_front)
         plain = _PLAIN.match(text, lexer.position)
         if plain is not None:
-            lexer.position = plain.end()  # cutting it into tokens would find nothing
+            lexer.position = plain.end()  # it has no comment, so it need not be tokenized
         else:
             known = len(found)
             lexer.scan()
             line.start = lexer.starts[0]
-            last = lexer.starts[-2] if len(lexer.starts) > 1 else line.start  # the very last one is the line's end
+            last = lexer.starts[-2] if len(lexer.starts) > 1 else line.start  # the very last is the end of the line
             for start, comment_end in found[known:]:
                 (line.within if start < last else line.behind).append(_comment(text, start, comment_end))
         yield above, line
@@ -194,7 +193,8 @@ def _comment(text: str, start: int, end: int) -> Comment:
     return Comment(start, raw if raw.startswith("/*") else raw.rstrip(" \t"))
 
 
-# A line without a comment, its brackets and strings closed; a Root line is none, for the lexer remembers it.
+# A line without a comment, its brackets and strings closed; a Root line does not match, for the lexer changes state
+# after it.
 _INSIDE: Final = r"""[^#/"'()\\\r\n]*"""
 _QUOTED: Final = r"""(?:"[^"\\\r\n]*"|'[^'\\\r\n]*')"""
 _PLAIN: Final = re.compile(rf"(?!Root\b){_INSIDE}(?:(?:{_QUOTED}|\({_INSIDE}(?:{_QUOTED}{_INSIDE})*\)){_INSIDE})*\n")

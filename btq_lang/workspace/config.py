@@ -2,8 +2,8 @@
 
     engine = "4.10"                   # or a list; without it files must hold for every known version
     qualities = "iso25010-2023"       # or "iso25010-2011"
-    include-paths = ["missions"]      # where includes are looked for, after the including file's own folder
-    exclude = ["generated/"]          # what a folder's check leaves out: see globs.py
+    include-paths = ["missions"]      # where includes are searched, after the including file's own folder
+    exclude = ["generated/"]          # what the check of a folder leaves out: see globs.py
     select = ["unknown-node"]         # only these rules
     ignore = ["unused-tree"]          # all but these
 
@@ -12,8 +12,8 @@
 
     [evidence]                        # logs of what robots did: see project_evidence.py
 
-One invariant: every text gives a project and never an exception; what is wrong in it is left out and told.  Not known
-here: the disk, and where the file was found.
+One invariant: every text gives a project and never an exception; what is wrong in it is left out and reported.  Not
+known here: the disk, and where the file was found.
 """
 
 from __future__ import annotations
@@ -42,16 +42,16 @@ class Project(Record):
 
     Attributes:
         root: the folder of the project file.
-        include_paths: folders, with `root` before them where they were relative.
-        lost_paths: those of them that are no folders, as far as the loader has looked.
+        include_paths: folders, joined to `root` if they were relative.
+        lost_paths: those that the loader did not find.
         engines: the versions of BehaviorTree.CPP that a file must hold for, oldest first.
-        qualities: the edition of the quality model where a file names none.
+        qualities: the edition of the quality model for files that name none.
         severities: the rules set in `[rules]`; None is off.
         select: the only rules to apply; empty for all.
         ignore: rules not to apply.
-        exclude: patterns of what a folder's check leaves out.
-        folders: those that people work in: an editor's folders, or the current one.
-        evidence: what it says about logs; None where it says nothing.
+        exclude: patterns of paths that the check of a folder leaves out.
+        folders: working folders: an editor's, or the current one.
+        evidence: its table about logs, if it has one.
     """
 
     root: str = "."
@@ -67,7 +67,7 @@ class Project(Record):
     evidence: Evidence | None = None
 
     def shown(self, path: str) -> str:
-        """A path as people read it: relative to the folder that they work in where it is inside one, else as it is."""
+        """A path for display: relative to a working folder if it is inside one, else as it is."""
         for folder in self.folders or (self.root,):
             if path == folder:
                 return "."
@@ -77,7 +77,7 @@ class Project(Record):
 
     @property
     def pinned(self) -> bool:
-        """Whether the project says which versions it is for."""
+        """Whether the project names the versions it is for."""
         return self.engines != VERSIONS
 
     @property
@@ -87,7 +87,7 @@ class Project(Record):
 
 
 class ProjectProblem(Record):
-    """Something in a project file that was left out, and where it stands if it could be found."""
+    """A part of a project file that was left out, and its place if it could be found."""
 
     message: str
     position: Position | None = None
@@ -97,8 +97,8 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
     """The project that a file describes, and what is wrong with the file.
 
     Args:
-        kind: which of the two files it is; of a pyproject.toml only `[tool.btq]` is looked at.
-        root: the folder of the file, before which relative include paths count.
+        kind: which of the two files it is; in a pyproject.toml only `[tool.btq]` counts.
+        root: the folder of the file, which relative include paths are relative to.
     """
     try:
         table: object = _toml(text)
@@ -129,7 +129,7 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
 
 
 def has_btq_table(text: str) -> bool:
-    """Whether a pyproject.toml has a table `[tool.btq]`, or one below it; seen without reading it as TOML."""
+    """Whether a pyproject.toml has a table `[tool.btq]`, or one below it, without parsing it."""
     return _BTQ_TABLE.search(text) is not None
 
 
@@ -149,7 +149,7 @@ def configured(project: Project, diagnostics: Iterable[Diagnostic]) -> Iterator[
 
 
 def unknown_rule(name: str) -> str | None:
-    """What to say of a name that is no rule's; None for a rule."""
+    """The message about an unknown rule; None if the rule exists."""
     return None if name in RULES else f"unknown rule `{name}`{_meant(name, RULES)}"
 
 
@@ -187,12 +187,12 @@ def _engines(key: str, value: object) -> _Read:
 
 
 def _meant_engine(version: str) -> str:
-    """A near version with the same major number: `3.8` is not a misspelt 4.8."""
+    """A similar version with the same major number: `3.8` is not a misspelt 4.8."""
     return (_meant(version, VERSIONS) if version.startswith("4.") else "") or ";"
 
 
 def is_engine(version: str) -> bool:
-    """A release line such as 4.9, also one between those that the catalog was held against."""
+    """Whether it is a release line such as 4.9, also one between those that the catalog was tested with."""
     known = _RELEASE_LINE.fullmatch(version) is not None
     return known and at_least(version, VERSIONS[0]) and at_least(VERSIONS[-1], version)
 
@@ -266,7 +266,8 @@ def _toml(text: str) -> object:
 def _syntax_problem(text: str, error: Exception) -> ProjectProblem:
     if isinstance(error, RecursionError):
         return ProjectProblem("nested too deeply")
-    # The reader's messages say the place in words, from 1; only Python 3.14's errors have it as numbers too.
+    # The parser's messages describe the place in words, counted from 1; only Python 3.14's errors have it as numbers
+    # too.
     message, _, place = str(error).partition(" (at ")
     if numbers := _DIGITS.findall(place):
         return ProjectProblem(message, Position(int(numbers[0]) - 1, int(numbers[1]) - 1))

@@ -1,6 +1,6 @@
-"""What the uses of a custom node suggest of it: its category, its ports, which way they go and what they take.
+"""What the uses of a custom node suggest about it: its category, and its ports with directions and types.
 
-One invariant: the files of a mission suggest the same of a node, in whichever of them somebody asks.
+One invariant: the result is the same for all files of a mission.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class LikelyPort(Record):
-    """A port as the uses of its node suggest it; type: empty where they do not say."""
+    """A port as the uses of its node suggest it; type: empty if they do not suggest one."""
 
     direction: str
     name: str
@@ -34,11 +34,11 @@ class LikelyPort(Record):
 
 
 class CustomNode:
-    """A node that is none of the engine's, as its uses have it.
+    """A node that is not the engine's, as its uses suggest it.
 
     Attributes:
-        said: the category that a use says; None: none does.
-        children: how many a use has, at most.
+        said: the category that a use names, if any does.
+        children: the largest number in a use.
     """
 
     __slots__ = ("_values", "children", "said")
@@ -52,16 +52,16 @@ class CustomNode:
 
     @property
     def category(self) -> str:
-        """What it is, or may be as far as the number of its children goes."""
+        """Its category, or the one that its number of children suggests."""
         return self.said or likely_category(self.children)
 
     @property
     def ports(self) -> tuple[LikelyPort, ...]:
-        """Its ports, in the order in which they are met."""
+        """Its ports, in the order of their first use."""
         return tuple([_likely_port(name, tuple(values.values())) for name, values in self._values.items()])
 
     def add(self, use: Node, said: str | None) -> None:
-        """What a use tells; said: its category, where the use says it."""
+        """Add what a use tells; said: its category, if the use names it."""
         self.said = self.said or said
         self.children = max(self.children, len(use.children))
         for pair in use.attributes:
@@ -87,7 +87,7 @@ def _custom_nodes(store: Store[Workspace], mission: str) -> dict[str, CustomNode
 
 
 def custom_node(workspace: Workspace, path: str, name: str) -> CustomNode:
-    """One of them; only the items that name it are looked at."""
+    """One of them; only the items that name it are read."""
     uses = [
         use.node
         for other in sorted(workspace.linked(path))
@@ -105,7 +105,7 @@ def custom_nodes_of(file: File) -> frozenset[str]:
 
 
 def likely_category(children: int) -> str:
-    """The category of a custom node of so many children, where nothing says it."""
+    """The category of a custom node with so many children, if no use names it."""
     return ("Action", "Decorator", "Control")[min(children, 2)]
 
 
@@ -116,7 +116,7 @@ def _nodes(file: File) -> Iterator[Node]:
 
 
 def _named(node: Node) -> tuple[str, str | None]:
-    """The ID of a node, as it is written, and the category that it says; no ID of a SubTree."""
+    """The ID of a node, as it is written, and the category that it names; a SubTree's ID does not count."""
     kind = node.kind
     if is_placeholder(node):
         return legal_name(node.name.text if node.name else ""), PLACEHOLDERS[node.head.raw]
@@ -134,11 +134,11 @@ def _named(node: Node) -> tuple[str, str | None]:
 
 
 def _likely_port(name: str, values: tuple[Word, ...]) -> LikelyPort:
-    """A literal can only go in; what an entry is for, nobody says, and its type others say."""
+    """A literal can only be an input; the direction of an entry is unknown, and other nodes determine its type."""
     if any(value.text.startswith("{") for value in values):
         return LikelyPort("inout", name, "")
     if any(value.kind == QUANTITY for value in values):
-        return LikelyPort("input", name, "")  # a number, in whatever unit the port is
+        return LikelyPort("input", name, "")  # a number, in whatever unit the port has
     return LikelyPort("input", name, next(type_ for type_ in _TYPES if all(_takes(type_, value) for value in values)))
 
 

@@ -1,8 +1,8 @@
-"""One file as a value: its text, and what was made of it so far.
+"""One file as a value: its text, and cached results about it.
 
-One invariant: a file is a function of its path and texts; one reached by an edit equals one made afresh, and shares
-with the one before it all that the edit does not touch.  It knows no other files: what its includes say, but not what
-they bring.
+One invariant: a file is a function of its path and texts; one reached by an edit equals a new one, and shares with its
+predecessor all that the edit does not touch.  It knows no other files: it knows the paths of its includes, but not
+their contents.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ SUFFIXES = (".btq", ".qualitybtcpp")  # of files in this language; the second is
 
 
 class File:
-    """One file: its text, and what was made of it so far.  Two files with one path and text are equal.
+    """One file: its text, and cached results about it.  Files with equal path and text are equal.
 
     Attributes:
-        text: in this language, whatever the file on the disk is written in.
-        origin: that file, where it is written in another one.
+        text: in this language, whatever the language of the file on the disk.
+        origin: that file, if it is in another language.
     """
 
     def __init__(self, path: str, text: str, origin: Origin | None = None) -> None:
@@ -73,7 +73,7 @@ class File:
             if "item_places" in self.__dict__ and change is not None:
                 replacing = text[change.start : change.end + len(text) - len(self.text)]
                 is_in_line = _LINE_ENDS.isdisjoint((*self.text[change.start : change.end], *replacing))
-                if is_in_line and after.lines.line_count == self.lines.line_count:  # no \r has come to a \n
+                if is_in_line and after.lines.line_count == self.lines.line_count:  # no \r has been joined to a \n
                     places = after.item_places = self.item_places.copy()
                     for each in gone:
                         del places[id(each.item)]
@@ -83,11 +83,11 @@ class File:
 
     @property
     def is_parsed(self) -> bool:
-        """Whether its tree is held."""
+        """Whether its tree is in memory."""
         return "parsed" in self.__dict__
 
     def let_go(self) -> None:
-        """Hold nothing but the text and the names in it; the rest is made again for whoever asks."""
+        """Release all but the text and its names; the rest is recomputed on demand."""
         kept = {known: getattr(self, known) for known in _KEPT}
         kept.update({known: self.__dict__[known] for known in _KEPT_IF_ASKED if known in self.__dict__})
         self.__dict__.clear()
@@ -99,7 +99,7 @@ class File:
 
     @property
     def source(self) -> str:
-        """The text as it stands on the disk: the one that people see."""
+        """The text on the disk, which users see."""
         return self.origin.text if self.origin else self.text
 
     @property
@@ -109,7 +109,7 @@ class File:
 
     @cached_property
     def facts(self) -> dict[int, Facts]:
-        """What is known of each item, by its id."""
+        """The facts of each item, by its id."""
         return {id(entry.item): Facts(entry.item) for entry in self.parsed.entries}
 
     @cached_property
@@ -176,7 +176,7 @@ class File:
 
     @property
     def runs(self) -> frozenset[str]:
-        """The trees that the file's items refer to, of trees the other ones."""
+        """The trees that the file's items refer to; a tree's reference to itself does not count."""
         return self._said("runs")
 
     def used(self, kind: Kind) -> frozenset[str]:
@@ -198,18 +198,18 @@ class File:
         return Names.of(self.facts.values())
 
     def definitions(self, kind: Kind, name: str) -> tuple[Definition, ...]:
-        """What a name means by this file alone, in the order of its text."""
+        """The definitions of a name in this file, in the order of its text."""
         found = self.names.found.get((kind, name), ())
         return tuple([Definition(self.path, self._entries[id(item)], symbol) for item, symbol in found])
 
     def defines(self, kind: Kind, name: str) -> bool:
-        """Whether the file defines a name; not parsed where its text says that it cannot."""
+        """Whether the file defines a name; not parsed if the text rules it out."""
         may = "defined_names" in self.__dict__ or name in self.text or not _ESCAPED.isdisjoint(name)
         return may and (kind, name) in self.defined_names
 
     @cached_property
     def problems(self) -> tuple[Diagnostic, ...]:
-        """What is wrong with its syntax; spans count from the items."""
+        """The diagnostics of its syntax; spans count from the items."""
         found: tuple[Diagnostic, ...] = ()
         for entry in self.parsed.entries:
             if entry.diagnostics:
@@ -218,19 +218,19 @@ class File:
 
     @cached_property
     def is_swallowed(self) -> bool:
-        """Whether a forgotten quote may have made text of what declares names."""
+        """Whether a forgotten quote may have turned declarations into text."""
         return any(problem.rule in _SWALLOWING for problem in self.problems)
 
     def mentions_of(self, entry: Entry) -> tuple[Mention, ...]:
-        """Every word of one of the file's entries that names something."""
+        """Every word of an entry that names something."""
         return self.facts[id(entry.item)].mentions
 
     def mentioned(self, name: str) -> Iterator[tuple[Entry, Mention]]:
-        """The words that say a name and name something, in the order of the text; looked for as they are asked for."""
+        """The references with a name, in the order of the text, found lazily."""
         return ((entry, one) for entry in self._saying(name) for one in self.mentions_of(entry) if one.name == name)
 
     def _saying(self, name: str) -> Sequence[Entry]:
-        """The entries that may say a name: those that hold it as it is, or all, where it may be written otherwise."""
+        """The entries that may contain a name: those with its exact text, or all if it may be written otherwise."""
         entries = self.parsed.entries
         if not name or not _NOT_AS_IT_IS.isdisjoint(name):
             return entries
@@ -244,7 +244,7 @@ class File:
 
     @cached_property
     def kinds(self) -> frozenset[tuple[str, bool]]:
-        """What its nodes are, and whether that is quoted."""
+        """The kinds of its nodes, and whether they are quoted."""
         return frozenset().union(*[each.kinds for each in self.facts.values()])
 
     @cached_property
@@ -253,12 +253,12 @@ class File:
 
     @cached_property
     def item_places(self) -> dict[int, tuple[int, str]]:
-        """Where each item begins, by its `id`: in which line, and behind what."""
+        """Where each item begins, by its `id`: its line, and the text before it."""
         place = self.lines.place
         return {id(entry.item): place(entry.start) for entry in self.parsed.entries}
 
     def _places_on_line(self, offset: int) -> dict[int, tuple[int, str]]:
-        """The same of the items that begin in the line of an offset."""
+        """The same for the items that begin in the line of an offset."""
         place, entries = self.lines.place, self.parsed.entries
         line, behind = place(offset)
         found: dict[int, tuple[int, str]] = {}
@@ -273,7 +273,7 @@ class File:
         """Where one of the file's items begins.
 
         Raises:
-            KeyError: the item is none of this file's.
+            KeyError: the item does not belong to this file.
         """
         return self._entries[id(item)].start
 
@@ -303,7 +303,7 @@ class File:
 
     @cached_property
     def included_paths(self) -> tuple[tuple[str, bool], ...]:
-        """What its includes name, and whether a ROS package is to have it."""
+        """The paths of its includes, and whether a ROS package has them."""
         return tuple(
             (include.path.text, is_of_package(include)) for include in self.includes if include.path is not None
         )
@@ -338,14 +338,14 @@ class File:
 
 
 def _sharing(before: Parsed, now: Parsed, change: Span | None) -> Parsed:
-    """The same, but where the item before the change was read again and says what it said, it is the same object: a
-    change in the first line of an item may touch the one before it.  Of an item that is the same all text up to the
-    next one is the same, too; so it is not where that has become a comment."""
+    """The same, except that the item before the change is the old object if it was reparsed with an equal result: a
+    change in the first line of an item may touch the one before it.  All text up to the next item must be equal too, as
+    it is not if a following item has become a comment."""
     old, new = before.entries, now.entries
     at = bisect_right(old, change.start, key=_start_of) - 2 if change is not None else -1
     is_first_one = 0 <= at < len(new) - 1 and new[at] is not old[at] and (at == 0 or new[at - 1] is old[at - 1])
     if not is_first_one or new[at + 1].start != old[at + 1].start or new[at] != old[at]:
-        return now  # and those that are others stay in one row
+        return now  # and changed ones stay consecutive
     return Parsed(now.text, (*new[:at], old[at], *new[at + 1 :]), now.starts)
 
 
@@ -353,9 +353,9 @@ def _start_of(entry: Entry) -> int:
     return entry.start
 
 
-_ESCAPED = frozenset("\"'\\\r\n\t")  # a name with one of these may be written otherwise than it is
-_NOT_AS_IT_IS = _ESCAPED | {"."}  # between the names of a quality blanks may stand
-# When the tree is let go: what holds nothing of it.
+_ESCAPED = frozenset("\"'\\\r\n\t")  # a name with one of these may be written with escapes
+_NOT_AS_IT_IS = _ESCAPED | {"."}  # between the names of a quality there may be blanks
+# Kept when the tree is released: what refers to no part of it.
 _KEPT = ("path", "text", "origin", "included_paths", "defined_names", "used_names")
 _KEPT_IF_ASKED = ("kinds",)  # seldom
 _DIRECTIVE = "btq:"
@@ -364,7 +364,7 @@ _SWALLOWING = frozenset(("unclosed-string", "string-over-items"))
 
 
 class Definition(Record):
-    """A symbol and where it stands."""
+    """A symbol and its file."""
 
     path: str
     entry: Entry
@@ -377,13 +377,13 @@ class Definition(Record):
 
 
 class Origin(Record):
-    """What a file stands for that is written in another language.
+    """The file in another language from which a file was translated.
 
     Attributes:
-        text: as it stands on the disk.
-        places: what in the file's text was made of what in this one.
+        text: on the disk.
+        places: maps the file's text to this one.
         diagnostics: what is wrong with it in its own language; spans count from its start.
-        is_complete: all of it could be read, so a name that is not in the file's text is not in this one.
+        is_complete: whether all of it could be read, so that a name that is not in the file's text is not in this one.
     """
 
     text: str
@@ -393,7 +393,7 @@ class Origin(Record):
 
 
 def is_btq(path: str) -> bool:
-    """Whether a file is written in this language; an XML file may be included too."""
+    """Whether a file is in this language; an XML file may be included too."""
     return not path.endswith(".xml")
 
 

@@ -1,7 +1,7 @@
-"""What was found in a file: of each item, counted from where it begins, and where that is.
+"""The diagnostics of a file: those of each item, with offsets from its start, and these starts.
 
-One invariant: what is reported of an item is one object for as long as it says the same, however far the item moves.
-So after an edit nothing is counted anew that has only moved, until somebody asks where it is.
+One invariant: the diagnostics of an item are one object as long as they are equal, however far the item moves.  So
+after an edit, offsets of items that only moved are not recomputed until they are needed.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 class Reported:
-    """What is reported of an item.
+    """The diagnostics of an item.
 
     Attributes:
-        diagnostics: in the order of the text, counted from where the item begins.
-        items: first the item, then the others that places in them count from, each after its file; none where all of
-            it counts from the start of a file.
+        diagnostics: in the order of the text, counted from the start of the item.
+        items: the item, then the others that places count from, each after its file; empty if everything counts from
+            the start of a file.
         fixed: the related places that do, after their files.
-        written: for who writes it down: what that rests on besides, and how it reads.
+        written: a cache for writers: their other inputs, and their output.
     """
 
     __slots__ = ("diagnostics", "fixed", "items", "written")
@@ -40,7 +40,7 @@ class Reported:
         self.written: tuple[object, str] | None = None
 
     def __eq__(self, other: object) -> bool:
-        """Whether both say the same of the very same item."""
+        """Whether both have equal diagnostics of the very same item."""
         return isinstance(other, Reported) and (
             self.diagnostics == other.diagnostics and all(map(_is_same, self.items, other.items))
         )
@@ -48,22 +48,22 @@ class Reported:
     __hash__ = None  # type: ignore[assignment]  # nobody looks for one
 
     def starts(self, workspace: Workspace) -> list[int]:
-        """Where the items begin."""
+        """The starts of the items."""
         files = workspace.files
         return [files[path].start_of(item) for path, item in self.items]
 
     def placed(self, starts: Sequence[int]) -> list[Diagnostic]:
-        """The diagnostics, with every place counted from the start of its file; `starts`: where the items begin."""
+        """The diagnostics, with every place counted from the start of its file; `starts`: of the items."""
         of_item = dict(zip([id(item) for _, item in self.items], starts, strict=True))
         return [_placed(each, starts[0] if starts else 0, of_item) for each in self.diagnostics]
 
 
 class Findings:
-    """What is reported of a file.
+    """The diagnostics of a file.
 
     Attributes:
-        of_items: what is reported of each item of which anything is, in the order of the text, and where the items
-            begin that it counts from.
+        of_items: the diagnostics of each item that has any, in the order of the text, with the starts of the items that
+            they count from.
     """
 
     def __init__(self, of_items: list[tuple[Reported, list[int]]]) -> None:
@@ -72,13 +72,13 @@ class Findings:
 
     @classmethod
     def placed(cls, diagnostics: Iterable[Diagnostic]) -> Findings:
-        """What is reported of a file, where all of it counts from the start of the file already."""
+        """The diagnostics of a file that count from its start already."""
         reported = Reported(diagnostics)
         return cls([(reported, [])] if reported.diagnostics else [])
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """All of it in the order of the text, counted from the start of the file."""
+        """All diagnostics in the order of the text, counted from the start of the file."""
         if self._diagnostics is None:
             placed = (each for reported, starts in self.of_items for each in reported.placed(starts))
             self._diagnostics = in_order(placed)
@@ -86,7 +86,7 @@ class Findings:
 
 
 def in_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """In the order of the text, and of several at one place in that of their rules."""
+    """In the order of the text, and at one place in that of their rules."""
     return tuple(sorted(diagnostics, key=lambda each: (each.span, each.rule)))
 
 

@@ -1,4 +1,4 @@
-"""Applying fixes: which of many can be applied together, and the texts after it."""
+"""Applying fixes: which of them can be applied together, and the resulting texts."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def fixed(workspace: Workspace, found: Mapping[str, Sequence[Diagnostic]]) -> tuple[dict[str, str], int]:
-    """The texts of files after their safe fixes, and how many were applied.
+    """The texts of files after their safe fixes, and the number of applied ones.
 
-    Of fixes that touch one place only the first is applied; a second round may apply the next.
+    Of overlapping fixes only the first is applied; a second round may apply the next.
 
     Args:
         found: the diagnostics of each file that may be changed; a fix that would change another file is left out.

@@ -1,10 +1,10 @@
-"""What queries read in the workspace: the inputs of the store (queries.py) that several rooms ask for, each a function
+"""What queries read in the workspace: the inputs of the store (queries.py) that several packages use, each a function
 of the store and of a *viewpoint*, the path of the file in whose scope names are looked up.
 
-One invariant: an answer holds no syntax nodes but through the facts of their items, which are equal to nothing but
-themselves, and no offsets that an edit elsewhere would move; two that compare as equal are as good as each other, for
-queries keep what they made of the first.  An item is known by its facts, which stay the same object for as long as it
-does.  What only checks look up is in checks/lookups.py.
+One invariant: a result refers to syntax nodes only through the facts of their items, which are equal only to
+themselves, and has no offsets that an edit elsewhere would move; equal results are interchangeable, for queries keep
+what they computed from the first.  An item is identified by its facts, which live as long as it does.  What only checks
+look up is in checks/lookups.py.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
 
 Placed: TypeAlias = tuple[str, Facts]  # an item, and the path of its file
 
-# ---- topics: what an edit has to touch before an input is read again ----
+# ---- topics: what an edit has to touch to invalidate an input ----
 
 
 def of_viewpoint(
     read: Callable[Concatenate[Workspace, str, P], T],
 ) -> Callable[Concatenate[Store[Workspace], str, P], T]:
-    """An input that an edit of any file may change that the viewpoint is linked with by includes."""
+    """An input that may change with an edit of any file that is linked with the viewpoint by includes."""
 
     @wraps(read)
     def ask(store: Store[Workspace], viewpoint: str, /, *key: P.args, **_: P.kwargs) -> T:
@@ -49,7 +49,7 @@ def of_viewpoint(
 def of_name(
     read: Callable[[Workspace, str, Kind, str], T],
 ) -> Callable[[Store[Workspace], str, Kind, str], T]:
-    """An input that depends on nothing but the items that define a name, in whatever file."""
+    """An input that depends only on the items that define a name, in whatever file."""
 
     @wraps(read)
     def ask(store: Store[Workspace], viewpoint: str, kind: Kind, name: str) -> T:
@@ -61,7 +61,7 @@ def of_name(
 def of_item(
     read: Callable[[Workspace, str, Facts], T],
 ) -> Callable[[Store[Workspace], str, Facts], T]:
-    """An input that never changes, for an item that is edited is another one."""
+    """An input that never changes, for an edited item is a new one."""
 
     @wraps(read)
     def ask(store: Store[Workspace], path: str, facts: Facts) -> T:
@@ -71,8 +71,7 @@ def of_item(
 
 
 def advance(before: Workspace, after: Workspace) -> None:
-    """Leave to a workspace what was asked about the one before it; nothing where there are other files, or another
-    project."""
+    """Pass cached answers on to the workspace after an edit; nothing if its files or its project differ."""
     if before.project != after.project or [*before.files] != [*after.files]:
         return
     edited = [(file, after.files[path]) for path, file in before.files.items() if after.files[path] is not file]
@@ -101,7 +100,7 @@ def _project(workspace: Workspace) -> Project:
 
 @of_viewpoint
 def everything(workspace: Workspace, viewpoint: str) -> Workspace:
-    """The workspace itself: who reads it runs again after every edit of a linked file."""
+    """The workspace itself: a query that reads it runs again after every edit of a linked file."""
     return workspace
 
 
@@ -128,7 +127,7 @@ def attaching(workspace: Workspace, viewpoint: str) -> tuple[Placed, ...]:
 
 @of_viewpoint
 def has_xml(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether any file in scope has XML of its own among its items."""
+    """Whether an item of a file in scope is verbatim XML."""
     return bool(_items(workspace, viewpoint, Verbatim))
 
 
@@ -143,20 +142,20 @@ def main_tree(workspace: Workspace, viewpoint: str) -> Placed | None:
 
 @of_item
 def entry(workspace: Workspace, path: str, facts: Facts) -> Entry:
-    """An item of a file and what is wrong with its syntax, as it would be at the start of the file."""
+    """An item of a file with its syntax diagnostics, as it would be at the start of the file."""
     found = workspace.files[path].entry_of(facts.item)
     return Entry(0, found.item, found.in_root, found.diagnostics)
 
 
 @of_item
 def text(workspace: Workspace, path: str, facts: Facts) -> str:
-    """The text from where the offsets of an item count up to the next item."""
+    """The text from the origin of an item's offsets up to the next item."""
     return workspace.files[path].text_of(facts.item)
 
 
 @of_item
 def unknown_units(workspace: Workspace, path: str, facts: Facts) -> tuple[int, ...]:
-    """Where the words begin in an item that its diagnostics call unknown units."""
+    """Where the words of an item begin that its diagnostics call unknown units."""
     problems = workspace.files[path].entry_of(facts.item).diagnostics
     return tuple(sorted([problem.span.start for problem in problems if problem.rule == "unknown-unit"]))
 
@@ -166,7 +165,7 @@ def unknown_units(workspace: Workspace, path: str, facts: Facts) -> tuple[int, .
 
 @of_name
 def definition(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Placed | None:
-    """The item that defines what a name means."""
+    """The item with the definition of a name that counts."""
     for file in _files(workspace, viewpoint):
         if found := file.names.found.get((kind, name)):
             return file.path, file.facts[id(found[0][0])]
@@ -174,7 +173,7 @@ def definition(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> P
 
 
 def category(store: Store[Workspace], viewpoint: str, name: str) -> str | None:
-    """The category of a custom node, as its model has it; None where it has no model."""
+    """The category of a custom node according to its model; None if it has none."""
     return _category(store, viewpoint, Kind.MODEL, name)
 
 
@@ -230,7 +229,7 @@ def paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
 
 @of_viewpoint
 def is_complete(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether a name that is not in scope is nowhere."""
+    """Whether a name that is not in scope does not exist."""
     return workspace.scope(viewpoint).complete
 
 
@@ -242,7 +241,7 @@ def is_included(workspace: Workspace, viewpoint: str) -> bool:
 
 @of_viewpoint
 def is_well_formed(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether nothing is wrong with the syntax of the files in scope."""
+    """Whether the files in scope have no syntax errors."""
     return not any(file.problems for file in _files(workspace, viewpoint))
 
 

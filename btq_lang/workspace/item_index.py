@@ -1,8 +1,8 @@
-"""What items say by themselves, and what a file's items say together by name.
+"""Facts that follow from single items, and indexes of a file's items by name.
 
-One invariant: facts rest on their item alone, so they stay true for as long as it stays, wherever it moves; names and
-tallies are kept up through an edit from the items that it took away and those that it brought.  Nothing is known here
-of files, nor of what a name means.
+One invariant: facts depend on their item alone, so they stay valid as long as it exists, wherever it moves; names and
+tallies are updated at an edit from the items that it removed and added.  Neither files nor the meaning of names are
+known here.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ Name: TypeAlias = tuple[Kind, str]
 
 
 class Facts:
-    """What an item says by itself: found out when first asked for, and true for as long as the item stays.
+    """What follows from an item alone: computed on demand, and valid as long as the item exists.
 
     Attributes:
-        colours: what colours its words: of the features, who know what else it depends on.
+        colours: a cache of its semantic tokens, for `ide`, which knows what else they depend on.
     """
 
     def __init__(self, item: Item) -> None:
@@ -49,13 +49,13 @@ class Facts:
     @cached_property
     def mentions(self) -> tuple[Mention, ...]:
         """Every word of it that names something."""
-        from btq_lang.workspace.references import mentions  # only editors ask
+        from btq_lang.workspace.references import mentions  # only editors need them
 
         return mentions(self.item)
 
     @cached_property
     def kinds(self) -> frozenset[tuple[str, bool]]:
-        """What its nodes are, and whether that is quoted."""
+        """The kinds of its nodes, and whether they are quoted."""
         from btq_lang.workspace.references import kinds  # as above
 
         nodes = self.item.walk() if isinstance(self.item, Tree) else ()
@@ -70,7 +70,7 @@ class Facts:
         return {kind: frozenset(names) for kind, names in found.items()}
 
     def said(self, of: Kind | str) -> frozenset[str]:
-        """The names of a kind that it refers to, or what else is said here of it by this name."""
+        """The names of a kind that it refers to, or the value of the property with this name."""
         names: frozenset[str] = self.used.get(of, frozenset()) if isinstance(of, Kind) else getattr(self, of)
         return names
 
@@ -84,14 +84,14 @@ class Facts:
 
     @cached_property
     def runs(self) -> frozenset[str]:
-        """The trees that it refers to; of a tree, the other ones."""
+        """The trees that it refers to, except itself."""
         used = self.used.get(Kind.TREE, frozenset())
         name = self.item.name.text if isinstance(self.item, Tree) and self.item.name is not None else ""
         return used - {name} if used else used
 
 
 class Tally:
-    """How many items of a file say each of some names."""
+    """For each of some names, the number of a file's items that have it."""
 
     def __init__(self, of: Kind | str, counts: dict[str, int]) -> None:
         self._of = of
@@ -99,7 +99,7 @@ class Tally:
 
     @classmethod
     def of(cls, items: Iterable[Facts], of: Kind | str) -> Tally:
-        """A tally of the names of a kind that items use, or of another set of names that their facts have."""
+        """A tally of the names of a kind that items use, or of another set of names in their facts."""
         said = [each.said(of) for each in items if type(each.item) not in _SAYING_NOTHING]
         counts: dict[str, int] = {}
         for name in chain.from_iterable(said):
@@ -107,7 +107,7 @@ class Tally:
         return cls(of, counts)
 
     def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Tally:
-        """The tally after an edit that has put other items in the place of some; the same one if they say the same."""
+        """The tally after an edit that replaced some items; the same object if it is equal."""
         changes: dict[str, int] = {}
         for facts, change in (*((each, 1) for each in come), *((each, -1) for each in gone)):
             for name in facts.said(self._of):
@@ -126,7 +126,7 @@ class Tally:
         return frozenset(self._counts)
 
 
-_SAYING_NOTHING = (Model, Signal)  # of others; most items are such
+_SAYING_NOTHING = (Model, Signal)  # most other items are of these types
 
 
 class Names:
@@ -144,8 +144,8 @@ class Names:
         return cls(found)
 
     def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Names | None:
-        """The names after an edit that has put other items in the place of some; None where that says too little: a
-        name has several definitions, or nothing says where the new ones stand, as where they are in several places."""
+        """The names after an edit that replaced some items; None if they must be recomputed: a name has several
+        definitions, or the position of the new ones is unclear, for instance because they are in several places."""
         before = [(symbol.kind, symbol.name) for each in gone for symbol in each.summary.symbols]
         now = {(one.kind, one.name): [(each.item, one)] for each in come for one in each.summary.symbols}
         if any(len(self.found[key]) > 1 for key in before):
@@ -169,7 +169,7 @@ class Names:
         return after
 
     def _take_over(self, other: Names, before: list[Name], now: list[Name]) -> None:
-        """What is as it was."""
+        """Copy what has not changed."""
         touched = {kind for kind, _ in (*before, *now)}
         if before == now and "all" in other.__dict__:
             self.all = other.all
@@ -177,7 +177,7 @@ class Names:
             self.by_kind = other.by_kind if before == now else other.by_kind | self._by_kind(touched)
         if "symbols" in other.__dict__:
             self.symbols = other.symbols | (self._replaced(other, now) if before == now else self._symbols(touched))
-        if "repeated" in other.__dict__:  # what is gone and what has come is defined once
+        if "repeated" in other.__dict__:  # what was removed and added is defined once
             self.repeated = other.repeated
 
     @cached_property
@@ -193,14 +193,14 @@ class Names:
 
     @cached_property
     def symbols(self) -> dict[Kind, tuple[Symbol, ...]]:
-        """The symbols of each kind, of each name the first one."""
+        """The symbols of each kind, the first one of each name."""
         return self._symbols(Kind)
 
     def _symbols(self, kinds: Iterable[Kind]) -> dict[Kind, tuple[Symbol, ...]]:
         return {kind: tuple([same[0][1] for (of, _), same in self.found.items() if of is kind]) for kind in kinds}
 
     def _replaced(self, other: Names, names: list[Name]) -> dict[Kind, tuple[Symbol, ...]]:
-        """The symbols of those kinds of which some are others, by the same names."""
+        """The symbols with those of some kinds replaced, by the same names."""
         symbols = {kind: [*other.symbols[kind]] for kind, _ in names}
         for kind, name in names:
             symbols[kind][self.by_kind[kind].index(name)] = self.found[kind, name][0][1]

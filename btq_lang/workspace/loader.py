@@ -1,9 +1,9 @@
-"""Files: finding the project file, collecting, reading with what they include, and writing.
+"""Files: finding the project file, collecting files, reading them with what they include, and writing.
 
-The only module that reads or writes the user's disk.  One invariant: what cannot be read is told as a problem, never
-as an exception, and what is written is written whole or not at all.  Paths inside btq are absolute and normalised, with
-`/` between names; `shown` makes them readable.  Not known here: what the texts mean, not even how they name what they
-include.
+The only module that reads or writes the user's disk.  One invariant: what cannot be read is reported as a problem,
+never as an exception, and what is written is written whole or not at all.  Paths inside btq are absolute and
+normalised, with `/` between names; `shown` makes them readable.  Not known here: what the texts mean, not even the
+syntax of includes.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _BOM = "\ufeff"
 
 
 class LoadProblem(Record):
-    """Something about a file that kept btq from doing what was asked."""
+    """A problem with a file that kept btq from a part of its task."""
 
     path: str
     message: str
@@ -38,7 +38,7 @@ class LoadProblem(Record):
 
 
 class Found(Record):
-    """The project that holds for a folder, and the file it was read from; None where there is no such file."""
+    """The project of a folder, and the file it was read from; None if there is no such file."""
 
     project: Project
     path: str | None
@@ -49,12 +49,12 @@ class Loaded(Record):
     """Files with all that they include.
 
     Attributes:
-        texts: the text of each file that could be read: first those asked for, then the included ones.
-        given: the paths of `texts` that were asked for.
-        damaged: the paths of `texts` whose bytes are no UTF-8, so that writing the text back would lose something.
-        absent: where files that are included but were not found would be, for whoever waits for them.
-        problems: what could not be read, or not well.  An included file that exists nowhere is none: the rule
-            `missing-include` tells that at the line that includes it.
+        texts: the text of each file that could be read: first the given ones, then the included ones.
+        given: the paths of `texts` that the caller named.
+        damaged: the paths of `texts` that are not UTF-8, so that writing the text back would lose something.
+        absent: where included files that were not found would be, for watchers.
+        problems: what could not be read, or not fully.  A missing included file is not one of them: the rule
+            `missing-include` reports it at the include.
     """
 
     texts: dict[str, str]
@@ -67,10 +67,10 @@ class Loaded(Record):
 def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:
     """The project of a file or folder: the nearest folder above with a btq.toml, or a pyproject.toml with `[tool.btq]`.
 
-    Where both stand in one folder, btq.toml is the one.
+    If a folder has both, btq.toml counts.
 
     Args:
-        known: texts that count instead of those on the disk, by path.
+        known: texts that replace those on the disk, by path.
     """
     known = known or {}
     start = absolute(start)
@@ -78,7 +78,7 @@ def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:
     for root in _upwards(folder):
         for kind in PROJECT_FILES:
             path = absolute(os.path.join(root, kind))
-            if path not in known and not os.path.exists(path):  # a folder of that name is a mistake worth telling
+            if path not in known and not os.path.exists(path):  # a folder of that name is a mistake worth reporting
                 continue
             text, problem = (known[path], None) if path in known else read(path)
             if kind == "pyproject.toml" and not has_btq_table(text or ""):
@@ -91,7 +91,7 @@ def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:
 
 
 def is_project_file(path: str) -> bool:
-    """Whether a file has the name of those that describe projects."""
+    """Whether a file has the name of a project file."""
     return path.rpartition("/")[2] in PROJECT_FILES
 
 
@@ -101,12 +101,12 @@ def load(
     includes_of: Callable[[str, str], Iterable[str]],
     known: Mapping[str, str] | None = None,
 ) -> Loaded:
-    """Read files and folders, and what the files include, and what that includes.
+    """Read files and folders, and all that the files include, directly or not.
 
     Args:
-        paths: what `collect` takes.
+        paths: as for `collect`.
         includes_of: the include strings of a file, from its path and its text.
-        known: texts that come from elsewhere (standard input), by path: asked for, and not read from the disk.
+        known: texts from elsewhere (standard input), by path: they are given files that are not read from the disk.
     """
     given, unreachable = collect(paths, project)
     problems = list(unreachable)
@@ -139,7 +139,7 @@ def load(
 def collect(
     paths: Iterable[str], project: Project, suffixes: tuple[str, ...] = SUFFIXES
 ) -> tuple[tuple[str, ...], tuple[LoadProblem, ...]]:
-    """The files that paths stand for, each once: a file is itself, a folder is all btq files below it, sorted.
+    """The files that paths denote, each once: a file itself, a folder all btq files below it, sorted.
 
     Left out below a folder: hidden files and folders, `build`, `node_modules`, and what the project excludes.  Links to
     folders are followed, but no folder is entered twice.
@@ -157,11 +157,11 @@ def collect(
 def read(path: str) -> tuple[str | None, LoadProblem | None]:
     """The text of a file without its byte order mark, and what is wrong with it.
 
-    Bytes that are no UTF-8 become U+FFFD, and the problem says where the first one is; UTF-16 is a problem and is read
-    as what it is, for nothing in it would be worth telling else.  Without a text there is always a problem: so it is
-    for bytes among which there is a NUL.  Line ends stay as they are.
+    Bytes that are not UTF-8 become U+FFFD, and the problem locates the first one; UTF-16 is a problem but is decoded,
+    so that its contents can be checked.  Without a text there is always a problem, for instance if the bytes contain a
+    NUL.  Line ends stay as they are.
     """
-    if is_special(path) and not path.startswith(("/dev/stdin", "/dev/fd/")):  # what a shell has opened has an end
+    if is_special(path) and not path.startswith(("/dev/stdin", "/dev/fd/")):  # a stream that a shell has opened ends
         return None, LoadProblem(path, IS_SPECIAL)
     try:
         with open(path, "rb") as file:
@@ -172,7 +172,7 @@ def read(path: str) -> tuple[str | None, LoadProblem | None]:
 
 
 def decoded(path: str, data: bytes) -> tuple[str | None, LoadProblem | None]:
-    """The text of what was read, as `read` says."""
+    """Decode the bytes of a file as `read` describes."""
     problem = None
     is_utf16 = data.startswith((b"\xff\xfe", b"\xfe\xff"))
     if b"\0" in data and not is_utf16:
@@ -188,7 +188,7 @@ def decoded(path: str, data: bytes) -> tuple[str | None, LoadProblem | None]:
 
 
 def is_special(path: str) -> bool:
-    """Whether a path is a pipe or a device: to read one might take for ever."""
+    """Whether a path is a pipe or a device, which might never end."""
     try:
         mode = os.stat(path).st_mode
     except (OSError, ValueError):  # ValueError: a NUL in the path
@@ -197,7 +197,7 @@ def is_special(path: str) -> bool:
 
 
 def write_whole(path: str, text: str) -> None:
-    """Put a text into a file so that at every moment the file is the old one or the new one, whole.
+    """Write a text into a file so that at every moment the file is entirely the old one or the new one.
 
     The new text goes into a temporary file beside it, which then takes the name (POSIX rename; MoveFileEx on Windows).
     A file that exists keeps its mode and its byte order mark, and a link stays a link.
@@ -211,7 +211,7 @@ def write_whole(path: str, text: str) -> None:
     data = text.encode("utf-8")
     mode = None
     if os.path.exists(path):
-        if not os.access(path, os.W_OK):  # a rename would not ask
+        if not os.access(path, os.W_OK):  # a rename would not check that
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), path)
         mode = stat.S_IMODE(os.stat(path).st_mode)
         with open(path, "rb") as old:
@@ -233,7 +233,7 @@ def write_whole(path: str, text: str) -> None:
 
 
 def stamp(path: str) -> tuple[int, int] | None:
-    """What changes when a file does: its modification time and its size; None where there is no file."""
+    """A value that changes when a file does: its modification time and its size; None if the file does not exist."""
     try:
         status = os.stat(path)
     except (OSError, ValueError):
@@ -242,7 +242,7 @@ def stamp(path: str) -> tuple[int, int] | None:
 
 
 def absolute(path: str) -> str:
-    """The one spelling of a path that btq uses inside; links stay as they are."""
+    """The unique spelling of a path that btq uses inside; links stay as they are."""
     return os.path.abspath(path).replace(os.sep, "/")
 
 
@@ -253,7 +253,7 @@ def work_in(folder: str) -> None:
 
 
 def shown(path: str) -> str:
-    """An absolute path as people read it: relative to the folder that they work in where it is inside it."""
+    """An absolute path for display: relative to the working folder if it is inside it."""
     here = (_folder or absolute(".")).rstrip("/") + "/"
     return path.removeprefix(here)
 
@@ -276,7 +276,7 @@ def _files_below(top: str, project: Project, problems: list[LoadProblem], suffix
     links: list[str] = []
     seen: set[tuple[int, int]] = set()
     while folders or links:
-        # Links come last: a folder is then met under its own name first.
+        # Links come last: a folder is then found under its own name first.
         folder = folders.pop() if folders else links.pop(0)
         try:
             status = os.stat(folder)
@@ -300,10 +300,11 @@ def _files_below(top: str, project: Project, problems: list[LoadProblem], suffix
 
 
 def excluder(project: Project) -> Callable[[str], bool]:
-    """Whether the project leaves a path out, or a folder that it is in; a folder's path ends with `/`."""
+    """A function that tells whether the project excludes a path, or a folder that it is in; a folder's path ends with
+    `/`."""
     if not project.exclude:
         return lambda path: False
-    from btq_lang.util.globs import glob_matcher  # few projects leave something out
+    from btq_lang.util.globs import glob_matcher  # few projects exclude anything
 
     matcher = glob_matcher(project.exclude)
     root = absolute(project.root).rstrip("/") + "/"
@@ -326,7 +327,7 @@ def _is_folder(entry: os.DirEntry[str]) -> bool:
 
 
 def _is_file(path: str) -> bool:
-    """Not for pipes and devices: reading one that a file includes could wait for ever."""
+    """Whether it is a regular file: reading an included pipe or device could block."""
     try:
         return os.path.isfile(path)
     except ValueError:  # a NUL in the path
@@ -343,17 +344,17 @@ def _bom_of(file: BinaryIO) -> bytes:
 
 
 def _temporary(folder: str) -> BinaryIO:
-    """A new file in a folder; `tempfile` would cost more to import than all the rest of a small run."""
+    """A new file in a folder; `tempfile` costs more to import than all the rest of a small run."""
     number = 0
     while True:
         try:
             return open(os.path.join(folder, f".btq-{os.getpid()}-{number}.tmp"), "xb")
-        except FileExistsError:  # another thread's, or left by a process that was killed
+        except FileExistsError:  # another thread's, or one that a killed process left
             number += 1
 
 
 def _sync(folder: str) -> None:
-    """Make a rename last through a power cut, where the system lets a folder be synchronised."""
+    """Make a rename survive a power cut, if the system can synchronise a folder."""
     try:
         descriptor = os.open(folder, os.O_RDONLY)
     except OSError:  # Windows opens no folders

@@ -1,6 +1,6 @@
-"""What a written node is called, and which built-in that means: the node alone says so.
+"""What a written node is called, and which built-in that means, as far as the node alone determines it.
 
-One invariant: nothing is looked up.  Whether a name that is no built-in's has a model is known to resolved.py.
+One invariant: nothing is looked up.  Whether a custom node has a model is known to `resolved`.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 
 def kind_of(node: Node) -> NodeKind | None:
-    """The built-in that a node's word means; None for a custom node, and where another tree is run.  A placeholder has
-    the word of a script node."""
+    """The built-in that a node's word means; None for a custom node, and for one that runs another tree.  A placeholder
+    has the word of a script node."""
     name = node.id
     if name is None or (node.category is not None and node.category.raw == "SubTree"):
         return None
@@ -27,26 +27,26 @@ def kind_of(node: Node) -> NodeKind | None:
 
 
 def tag_of(node: Node) -> str:
-    """The XML tag of a node's word; a custom node's is its own name.  Verbatim XML among its children counts there."""
+    """The XML tag of a node's word; a custom node's is its own name.  Verbatim XML counts among its children."""
     name = node.id
     return xml_tag(name.text, name.quoted, len(node.children)) if name is not None else ""
 
 
 def names_of(node: Node, kind: NodeKind | None, category: str | None) -> frozenset[str]:
-    """Every name that a path can call a node by: its ID, all spellings of its kind, its label."""
+    """Every name by which a path can name a node: its ID, all spellings of its kind, its label."""
     label = node.name.text if node.name is not None else None
     found = _called(node.id.text if node.id is not None else None, label, kind.tag if kind else "", category)
     return found | {legal_name(label)} if label is not None and is_placeholder(node) else found
 
 
 def kinds_of(node: Node, kind: NodeKind | None, category: str | None) -> frozenset[str]:
-    """The names of a node that say what it is, and not which one; a placeholder's name says both."""
+    """The names of a node's kind, not of the instance; a placeholder's name is both."""
     if is_placeholder(node):
         return names_of(node, kind, category)
     return _called(node.id.text if node.id is not None else None, None, kind.tag if kind else "", category)
 
 
-@lru_cache(1000)  # most nodes of a mission are called as others of it are
+@lru_cache(1000)  # many nodes of a mission have equal names
 def _called(name: str | None, label: str | None, tag: str, category: str | None) -> frozenset[str]:
     of_kind = spellings(BUILTINS[tag]) if tag else ()
     words = (name, label, category if category == "SubTree" else None, *of_kind)

@@ -1,4 +1,4 @@
-"""Classic placeholders: the script nodes without code that stand for a skill (docs/language.md).
+"""Classic placeholders: script nodes without code that represent a skill (docs/language.md).
 
 One invariant: only the unquoted words are placeholders.  The published language has no custom nodes, so its files write
 skills as `ScriptAction (name = "MoveBase")`.
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def is_placeholder(node: Node) -> bool:
-    """Whether a script node without code stands for a skill; a misspelt `code` is no skill's port."""
+    """Whether a script node without code represents a skill; a skill has no port that is a misspelt `code`."""
     return (
         node.kind is not None
         and node.kind.raw in PLACEHOLDERS

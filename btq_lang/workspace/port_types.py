@@ -1,7 +1,7 @@
-"""The types that what a SubTree gives to a port meets in the tree below it.
+"""The types as which the value of a SubTree's port is read in the tree below it.
 
-One invariant: the answer follows the engine: an entry of the tree, given to a node's port, meets the type of that port,
-and a SubTree in there hands it on.  A type that nobody knows, and one that takes anything, is no type.
+One invariant: the result follows the engine: an entry of the tree is read as the type of each port to which it is
+assigned, and a SubTree passes it on.  Unknown types, and those that accept anything, are left out.
 
 Source: instantiateTreeFromXML in src/xml_parsing.cpp of 4.10.0.
 """
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 
 
 class Meeting(Record):
-    """A node's port that an entry is given to.
+    """A node's port to which an entry is assigned.
 
     Attributes:
-        tree: where the node stands.
-        type: of the port, as the engine prints it or as the node's model says.
+        tree: of the node.
+        type: of the port, as the engine prints it or as the node's model declares it.
     """
 
     tree: Definition
@@ -38,10 +38,10 @@ class Meeting(Record):
 
 
 def meetings(scope: Scope, version: str, tree: str, port: str) -> Iterator[Meeting]:
-    """The ports of a known type that a port of a tree meets, in the tree and in those below it.
+    """The ports of a known type to which a port of a tree is assigned, in the tree and in those below it.
 
     Args:
-        version: of the engine whose types count.
+        version: of the engine.
     """
     waiting = [(tree, port)]
     seen = set(waiting)
@@ -65,18 +65,18 @@ def meetings(scope: Scope, version: str, tree: str, port: str) -> Iterator[Meeti
 
 
 def declared_type(ports: tuple[Port, ...], name: str) -> str:
-    """The type that a port is declared with; nothing where it has none that says something."""
+    """The declared type of a port; empty if it has none that restricts values."""
     port = next((each for each in ports if each.name is not None and each.name.text == name), None)
     return _plain(port.type.text) if port is not None and port.type is not None else ""
 
 
 def is_text(type_: str) -> bool:
-    """Whether a type is that of texts."""
+    """Whether a type is one of texts."""
     return type_ in ("std::string", "string")
 
 
 def is_number(text: str) -> bool:
-    """Whether the engine (from 4.9.1 on) makes a number of what a SubTree gives to a port: all of it must be one.
+    """Whether the engine (from 4.9.1 on) turns a SubTree's port value into a number: all of it must be one.
 
     Source: std::from_chars, for an int and for a double.
     """

@@ -1,4 +1,4 @@
-"""The table `[evidence]` of a project file: which logs there are, and where the samples of signals come from.
+"""The table `[evidence]` of a project file: where logs are, and where the samples of signals come from.
 
     [evidence]
     logs = ["logs/**/*.btlog", "bags/*"]
@@ -8,7 +8,8 @@
     battery = { topic = "/battery_state", field = "percentage", scale = 100, unit = "%" }
     energy  = { file = "power.csv", time = "t", column = "wh", unit = "Wh" }
 
-One invariant: what is wrong is left out and told, and the rest is kept.  Not known here: missions, files and topics.
+One invariant: what is wrong is left out and reported, and the rest is kept.  Not known here: missions, files and
+topics.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
-    Complaint: TypeAlias = tuple[str, tuple[str, ...]]  # what is wrong, and the keys below `evidence` that lead to it
+    Complaint: TypeAlias = tuple[str, tuple[str, ...]]  # the message, and the keys below `evidence` to its place
 
 
 class SignalSource(Record):
@@ -48,11 +49,11 @@ class SignalSource(Record):
 
 
 class Evidence(Record):
-    """What a project says about logs.
+    """What a project declares about logs.
 
     Attributes:
         logs: patterns of paths, relative to the project file.
-        store: the folder of verdicts that are kept; None where there is none.
+        store: the folder where verdicts are kept, if any.
         signals: where samples come from, at most one source for each signal.
     """
 
@@ -62,7 +63,7 @@ class Evidence(Record):
 
 
 def read_evidence(table: object) -> tuple[Evidence, list[Complaint]]:
-    """What a table says, and what is wrong with it."""
+    """The contents of a table, and what is wrong with it."""
     if not isinstance(table, dict):
         return Evidence(), [("`evidence` must be a table", ())]
     complaints: list[Complaint] = [
@@ -91,7 +92,7 @@ def read_evidence(table: object) -> tuple[Evidence, list[Complaint]]:
 
 
 def _wrong(name: str, source: Any) -> Iterator[Complaint]:
-    """What is wrong with the source of a signal, and below which of its keys."""
+    """What is wrong with the source of a signal, and at which of its keys."""
     key = f"evidence.signals.{name}"
     if not isinstance(source, dict):
         yield f'`{key}` must be a table such as {{ topic = "/battery_state", field = "percentage" }}', ()
@@ -123,7 +124,7 @@ def _wrong(name: str, source: Any) -> Iterator[Complaint]:
 def _is_finite(number: float) -> bool:
     try:
         return isfinite(number)
-    except OverflowError:  # a whole number that no float holds
+    except OverflowError:  # an integer that is too large for a float
         return False
 
 

@@ -1,23 +1,23 @@
-"""The one memory: what was asked about a workspace, kept from one revision to the next.
+"""The query cache: answers about a workspace, kept from one revision to the next.
 
-There are two kinds of questions, both plain functions, and an answer is known by its function and its arguments:
+There are two kinds of cached functions; an answer is identified by its function and arguments:
 
-* an *input*, `read(state, *key)`, reads the workspace and asks nothing.  It belongs to a topic; `advance` brings a new
-  state and names the topics in which something may differ, and only inputs of these are read again.
+* an *input*, `read(state, *key)`, reads the workspace and asks nothing.  It belongs to a topic; `advance` sets a new
+  state and names the topics that may differ, and only inputs of these are read again.
 * a *query*, `query(store, *key)`, asks the store for inputs and for other queries, and reads nothing else.
 
-One invariant: an answer is the one that a store without memory would give, in whatever order questions are asked.
+One invariant: an answer is the one that a store without a cache would give, in whatever order queries are asked.
 
-*How.*  An answer knows what it asked and what asked it.  When an input differs, the answers that asked it are stale,
-and what rests on these is suspect; nothing is computed yet.  A suspect answer that is asked for looks at what it asked,
-in the same order: if none of it differs, it is kept; the first that differs makes it stale.  A stale one is computed,
-and one that comes out equal to the last keeps that, so what rests on it stays: the wave stops there.  (The "red-green"
-algorithm of salsa and rust-analyzer, with the cone of an edit marked from below.)
+*How.*  An answer knows its dependencies and its dependents.  When an input differs, its dependents are stale,
+and theirs are suspect; nothing is computed yet.  When a suspect answer is needed, its dependencies are verified in
+their order: if none differs, it is kept; the first that differs makes it stale.  A stale one is recomputed, and if it
+equals the old one, that is kept and its dependents stay valid: the wave stops there.  (The "red-green" algorithm of
+salsa and rust-analyzer, with the cone of an edit marked from below.)
 
-*Circles.*  A query that reaches itself gets the answer that its owner declared with `on_circle`, and so does every
-query on that circle: which one was asked first makes no difference.  What was computed inside of a circle that is still
-open is part of it if it asked for any answer that is (Tarjan's strongly connected components).  No chain of queries is
-too long: at the depth `_DEEPEST` its far half is begun anew, with no calls of Python below it.
+*Circles.*  A query that depends on itself gets the answer declared with `on_circle`, and so does every
+query on that circle, whichever was asked first.  An answer computed inside an open circle is part of it if it depends
+on one that is (Tarjan's strongly connected components).  No chain of queries is too long: at the depth `_DEEPEST` its
+far half is restarted with an empty Python stack.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ State = TypeVar("State")
 T = TypeVar("T")
 
 _CLEAN, _SUSPECT, _STALE = range(3)
-_FEW: Final = 10_000  # answers: to sort out fewer is not worth the time
-_DEEPEST: Final = 40  # queries that ask for each other; Python allows some twenty calls for each
-_NEAR: Final = 3  # levels of questions
+_FEW: Final = 10_000  # answers: sweeping fewer is not worth the time
+_DEEPEST: Final = 40  # nested queries; Python allows some twenty calls for each
+_NEAR: Final = 3  # levels of dependencies
 _ON_CIRCLE: dict[Callable[..., Any], object] = {}
 
 
 def on_circle(answer: object) -> Callable[[Callable[..., T]], Callable[..., T]]:
-    """Declares what a query says that reaches itself."""
+    """Declare the answer of a query that depends on itself."""
 
     def declare(query: Callable[..., T]) -> Callable[..., T]:
         _ON_CIRCLE[query] = answer
@@ -45,20 +45,20 @@ def on_circle(answer: object) -> Callable[[Callable[..., T]], Callable[..., T]]:
     return declare
 
 
-class Cancelled(Exception):  # it is no error: somebody has a newer question
-    """The answer is not wanted any more."""
+class Cancelled(Exception):  # not an error: a newer request has come
+    """The answer is not needed any more."""
 
 
 class _Answer:
-    """What is known of one question.
+    """A cached answer.
 
     Attributes:
         key: the function and its arguments.
-        asked: what it rests on, in the order in which it asked.
-        askers: what rests on it.
-        number: in which order answers were opened; one that is begun anew keeps its number.
-        low: the lowest number that it reaches while it or a circle that it is part of is open; None: neither is.
-        is_circular: it reaches itself.
+        asked: its dependencies, in the order in which it asked for them.
+        askers: its dependents.
+        number: in which order answers were opened; one that is restarted keeps its number.
+        low: the lowest number that it reaches while it, or a circle that it is part of, is open; else None.
+        is_circular: whether it depends on itself.
     """
 
     __slots__ = ("asked", "askers", "is_circular", "key", "low", "number", "state", "value")
@@ -74,15 +74,15 @@ class _Answer:
         self.is_circular = False
 
 
-class _TooDeep(Exception):  # a way back, and no error
-    """The path is longer than Python's calls may be."""
+class _TooDeep(Exception):  # used to unwind, not an error
+    """The path is too long for Python's stack."""
 
 
 class Store(Generic[State]):
     """The answers about a state, which is any value that inputs read.
 
     Attributes:
-        is_cancelled: asked before every computation; if it says yes, `Cancelled` is raised, and nothing is lost.
+        is_cancelled: called before every computation; if it returns true, `Cancelled` is raised, and nothing is lost.
     """
 
     def __init__(self, state: State) -> None:
@@ -92,20 +92,20 @@ class Store(Generic[State]):
         self._inputs: dict[Hashable, list[_Answer]] = {}  # by topic
         self._pinned: set[tuple[Any, ...]] = set()
         self._size = 0  # after the last sweep
-        self._asked: dict[_Answer, None] | None = None  # by the query that is being computed
+        self._asked: dict[_Answer, None] | None = None  # of the query that is being computed
         self._path: list[_Answer] = []  # the queries that are open, each asked by the one before it
         self._count = 0  # of numbers
-        self._first = 0  # the last number before the question that is being answered
-        self._start = 0  # where on the path the calls of Python begin
+        self._first = 0  # the last number before the current top-level query
+        self._start = 0  # the index on the path where Python's calls begin
         self._circles: list[_Answer] = []  # answers in circles of which another part is open
 
-    # ---- what queries use ----
+    # ---- used by queries ----
 
     def ask(self, query: Callable[..., T], *key: Hashable) -> T:
         """The answer of a query, `query(store, *key)`.
 
         Raises:
-            LookupError: the query reaches itself, and no answer is declared for that.
+            LookupError: the query depends on itself, and no answer is declared for that.
         """
         name = (query, *key)
         answer = self._answers.get(name)
@@ -130,23 +130,23 @@ class Store(Generic[State]):
             self._asked[answer] = None
         return answer.value  # type: ignore[no-any-return]  # it is what the function returns
 
-    # ---- what their owner uses ----
+    # ---- used by the store's owner ----
 
     @property
     def state(self) -> State:
-        """What inputs read."""
+        """The state that inputs read."""
         return self._state
 
     @property
     def topics(self) -> tuple[Hashable, ...]:
-        """Those of all inputs."""
+        """The topics of all inputs."""
         return tuple(self._inputs)
 
     def advance(self, state: State, topics: Iterable[Hashable]) -> None:
-        """There is a new state.
+        """Set a new state.
 
         Args:
-            topics: those in which it may differ from the last one.
+            topics: that may differ from the last state.
         """
         self._state = state
         for topic in topics:
@@ -161,14 +161,14 @@ class Store(Generic[State]):
                 self._inputs[topic] = kept
 
     def pin(self, query: Callable[..., object], *key: Hashable) -> None:
-        """Keep an answer, and all that it rests on, until it is unpinned."""
+        """Keep an answer, and all that it depends on, until it is unpinned."""
         self._pinned.add((query, *key))
 
     def unpin(self, query: Callable[..., object], *key: Hashable) -> None:
         self._pinned.discard((query, *key))
 
     def sweep(self, *, always: bool = False) -> None:
-        """Forget what no pinned answer rests on, if that has become much, or always."""
+        """Forget what no pinned answer depends on, if that has become much, or always."""
         if not always and len(self._answers) <= max(2 * self._size, _FEW):
             return
         waiting = [self._answers[key] for key in self._pinned if key in self._answers]
@@ -182,7 +182,7 @@ class Store(Generic[State]):
         for answer in self._answers.values():
             if answer in used:
                 answer.askers &= used
-            else:  # else answers and what asked them would hold each other
+            else:  # else answers and their dependents would keep each other alive
                 answer.asked, answer.askers = (), set()
         self._answers = kept_answers
         kept = {topic: [each for each in inputs if each in used] for topic, inputs in self._inputs.items()}
@@ -192,7 +192,7 @@ class Store(Generic[State]):
     # ---- how answers are settled ----
 
     def _settle(self, answer: _Answer) -> bool:
-        """Bring an answer up to date, unless it is part of a circle that is open: whether it is."""
+        """Bring an answer up to date unless it is part of an open circle; return whether it is up to date."""
         if _is_as_before(answer, _NEAR):
             return False
         if answer.low is None:
@@ -208,7 +208,7 @@ class Store(Generic[State]):
         return True
 
     def _open_first(self, answer: _Answer) -> None:
-        """Settle an answer that no query asks for; where a path becomes too long, its far half first."""
+        """Settle an answer that no query asks for; if a path becomes too long, its far half first."""
         self._first = self._count
         waiting = [(answer, 0)]
         try:
@@ -223,12 +223,12 @@ class Store(Generic[State]):
                     waiting.append((self._path[middle], middle))
         finally:
             self._close(0)
-            for each in self._circles:  # an exception has left them
+            for each in self._circles:  # an exception has left them open
                 each.low = None
             self._circles.clear()
 
     def _close(self, start: int) -> None:
-        """Leave a path from one place on."""
+        """Leave a path from an index on."""
         for each in self._path[start:]:
             each.low = None
         del self._path[start:]
@@ -240,7 +240,7 @@ class Store(Generic[State]):
             raise _TooDeep
         if self.is_cancelled():
             raise Cancelled
-        if answer.is_circular:  # whatever its parts say now, they may no longer be a circle
+        if answer.is_circular:  # its parts may no longer form a circle
             answer.state = _STALE
         if answer.number <= self._first:
             self._count += 1
@@ -262,11 +262,11 @@ class Store(Generic[State]):
             circle.append(self._circles.pop())
         for each in circle:
             self._replace(each, _declared(each))
-        for each in circle:  # each of which has just found that another one differs
+        for each in circle:  # each has just found that another one differs
             each.state = _CLEAN
 
     def _verify(self, answer: _Answer) -> None:
-        """Look whether what an answer asked is as it was; else it is stale."""
+        """Check whether the dependencies of an answer are unchanged; else it is stale."""
         for each in answer.asked:
             if each.state != _CLEAN:
                 self._settle(each)
@@ -289,7 +289,7 @@ class Store(Generic[State]):
         return value
 
     def _replace(self, answer: _Answer, value: object) -> None:
-        """An answer is settled; if it is another one, what asked for it is stale, and what rests on that is suspect."""
+        """Settle an answer; if it changed, its dependents are stale, and theirs suspect."""
         answer.low = None
         answer.state = _CLEAN
         if value is answer.value or value == answer.value:
@@ -308,7 +308,8 @@ class Store(Generic[State]):
 
 
 def _is_as_before(answer: _Answer, levels: int) -> bool:
-    """Whether a suspect answer stays, seen from what is near: most do, and to open each takes longer."""
+    """Whether a suspect answer is still valid, judged by a few levels of dependencies: most are, and opening each takes
+    longer."""
     if answer.state != _SUSPECT or answer.is_circular or answer.low is not None:
         return False
     for each in answer.asked:

@@ -1,8 +1,8 @@
-"""Mentions: every word of an item that names something, so that an editor can ask what stands under the cursor.
+"""References: every word of an item that names something, so that an editor can resolve the word under the cursor.
 
-One invariant: mentions depend on the item alone, and their spans count from it, so they hold for as long as the item
-does.  A summary (`symbols`) has what checks need; this has every word that a person may point at: ports, blackboard
-keys, parameters and the names in conditions too.  What a mention means in its file is for `features.meaning` to say.
+One invariant: mentions depend on the item alone, and their spans count from it, so they are valid as long as the item
+exists.  A summary (`symbols`) has what checks need; this has every word that a user may point at: ports, blackboard
+keys, parameters and the names in conditions too.  What a mention means in its file is for `ide.meaning`.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ from btq_lang.workspace.symbols import requirements_at
 
 
 class What(Enum):
-    """What a word may name, as far as its place says it."""
+    """What a word may name, as far as its place determines it."""
 
-    __hash__ = object.__hash__  # that of `Enum` is worked out in Python
+    __hash__ = object.__hash__  # `Enum` computes it in Python
 
     TREE = "tree"
     NODE = "node"  # a kind: a built-in, a model, or a custom node
@@ -89,16 +89,16 @@ class Mention(Record):
     """A word that names something.
 
     Attributes:
-        name: what is named; of a quality all its names, joined by `.`.
+        name: what is named; for a quality all its names, joined by `.`.
         span: the name, counted from the item; of a key without its braces and `@`.
-        word: the word it stands in, to see whether it is quoted.
-        defines: the name is given here, and not used.
-        node: the node it stands at, or in whose place it stands.
+        word: that contains it, to see whether it is quoted.
+        defines: whether the name is defined here, and not used.
+        node: that it is at, or that it replaces.
         owner: the requirement of a parameter, the model of a port, the tree of a key; else None.
-        pair: of a port or a key: the attribute it stands in.
-        writes: a key that a script assigns.
-        root: a key of the root blackboard: `{@key}`.
-        updates: a key that a script assigns and reads for that, as in `tries += 1`.
+        pair: the attribute with a port or a key.
+        writes: whether it is a key that a script assigns.
+        root: whether it is a key of the root blackboard: `{@key}`.
+        updates: whether it is a key that a script assigns and reads for that, as in `tries += 1`.
     """
 
     what: What
@@ -122,7 +122,7 @@ def mentions(item: Item) -> tuple[Mention, ...]:
 
 
 def tell(item: Item, to: Listener) -> None:
-    """Tell the words of an item that name something, nearly in the order of the text."""
+    """Report the words of an item that name something, nearly in the order of the text."""
     if isinstance(item, Tree):
         to.word(What.TREE, item.name, defines=True)
         _ports(item.ports, item, to)
@@ -169,7 +169,7 @@ def tell(item: Item, to: Listener) -> None:
 
 
 class Listener:
-    """Who is told the words of an item: for some a mention of each is too much."""
+    """Receives the words of an item that name something; a mention for each would be too slow for some."""
 
     def word(
         self,
@@ -180,11 +180,11 @@ class Listener:
         owner: Owner = None,
         pair: Pair | None = None,
     ) -> None:
-        """A whole word, or none where one might stand; all of it as in a mention."""
+        """A whole word, or None where one is missing; arguments as for a mention."""
         raise NotImplementedError
 
     def part(self, mention: Mention) -> None:
-        """Some of a word."""
+        """A part of a word."""
         raise NotImplementedError
 
     def words(self, what: What, words: tuple[Word, ...], span: Span, node: Node | None = None) -> None:
@@ -196,7 +196,7 @@ class Listener:
 
 
 class _Mentions(Listener):
-    """Who makes a mention of each."""
+    """Makes a mention of each."""
 
     def __init__(self) -> None:
         self.found: list[Mention] = []
@@ -262,7 +262,7 @@ def _node(node: Node, tree: Tree, to: Listener) -> None:
 
 
 def kinds(node: Node) -> list[Word]:
-    """The words that say what a node is: its kind, if that is no tree, and the skill that a placeholder stands for."""
+    """The words that determine what a node is: its kind, if that is not a tree, and the skill of a placeholder."""
     tree = called(node)
     return [word for word in (node.id, placeholder(node)) if word is not None and word is not tree]
 
@@ -275,7 +275,7 @@ def called(node: Node) -> Word | None:
 
 
 def placeholder(node: Node) -> Word | None:
-    """The skill that a classic placeholder stands for (docs/language.md), where its name can be a node's ID."""
+    """The skill of a classic placeholder (docs/language.md), if its name can be a node's ID."""
     is_one = node.category is None and node.kind is not None and node.kind.raw in PLACEHOLDERS
     name = node.name
     if not is_one or name is None or node.attribute("code") is not None or legal_name(name.text) != name.text:
@@ -311,7 +311,8 @@ def _pair(pair: Pair, node: Node, tree: Tree, stands_for: Word | None, to: Liste
 
 
 def _content(key: str, node: Node) -> str | None:
-    """What the value of an attribute is: of a port of a built-in node, or of what every node may have."""
+    """What the value of an attribute contains: of a port of a built-in node, or of an attribute that every node may
+    have."""
     attribute = RESERVED_ATTRIBUTES.get(key)
     if attribute is not None:
         return "script" if attribute.is_script else None
@@ -323,7 +324,7 @@ def _content(key: str, node: Node) -> str | None:
 def _keys_of(
     word: Word, node: Node | None, tree: Tree | None, pair: Pair | None, to: Listener, root: bool = False
 ) -> None:
-    """`{key}`, `{@key}`, and `{=}`, which is the entry that is called as the port."""
+    """`{key}`, `{@key}`, and `{=}`, which is the entry named as the port."""
     quotes = 1 if word.kind == STRING else 0
     inside = word.raw[quotes + 1 : -1 - quotes]
     name = inside.strip()
@@ -337,7 +338,7 @@ def _keys_of(
 
 
 def _script(word: Word, node: Node, tree: Tree, pair: Pair, to: Listener) -> None:
-    """The entries that a script reads and writes; one with escapes in it is left alone, for its offsets are others."""
+    """The entries that a script reads and writes; not of one with escapes, whose offsets differ."""
     text = word.text
     if len(text) != len(word.raw) - (2 if word.quoted else 0):
         return

@@ -1,7 +1,7 @@
-"""The written nodes of a tree, and what each of them means from a viewpoint: for checks, requirements and all else.
+"""The written nodes of a tree, and what each means from a viewpoint.
 
-One invariant: what is said of a node rests on its tree and on the categories of the models in scope, so that an edit
-elsewhere leaves it the same object unless such a category changes.  No other tree is known here, nor a model's ports.
+One invariant: the result depends on the tree and on the categories of the models in scope, so an edit elsewhere leaves
+it the same object unless such a category changes.  Neither other trees nor a model's ports are known here.
 """
 
 from __future__ import annotations
@@ -36,34 +36,34 @@ def tree_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts)
 
 
 def tree_named(store: Store[Workspace], viewpoint: str, name: str) -> ResolvedTree | None:
-    """The nodes of the tree that a name means."""
+    """The nodes of the tree with a name."""
     found = inputs.definition(store, viewpoint, Kind.TREE, name)
     return store.ask(tree_nodes, viewpoint, *found) if found is not None else None
 
 
 def trees_called(store: Store[Workspace], viewpoint: str, name: str) -> tuple[str, ...]:
-    """The trees that the tree runs that a name means."""
+    """The trees that the tree with a name runs."""
     tree = store.ask(tree_named, viewpoint, name)
     return tree.called if tree is not None else ()
 
 
 class ResolvedNode:
-    """A node as it is written, with what is around it and what it means.  Equal to nothing but itself: its place is
-    what it is.
+    """A node as it is written, with what is around it and what it means.  Equal only to itself: its place is its
+    identity.
 
     Attributes:
         within: its tree.
         parent: None for a node at the top of its tree.
-        index: which child of its parent it is, verbatim XML counted.
+        index: among the children of its parent, counting verbatim XML.
         children: the nodes below it.
-        id, name: those of the node, which are looked for in its attributes if they are nowhere else.
-        kind: the built-in that it is, if it is one; for an older engine's word the one of today.
-        is_placeholder: it represents a skill (placeholders.py).
-        of_model: the category that its model has; None where no model of it is in scope.
-        category: as written, or as the built-in, the placeholder, the model or an older engine's word has it; None
-            where that is unknown.
-        is_outdated: its category is that of an older engine's word, and nothing of today takes its place.
-        is_subtree: it runs another tree, by the word that the engine of today has for that.
+        id, name: of the node, from its attributes if they are not written before.
+        kind: the built-in, if it is one; for an older engine's word, the one of today.
+        is_placeholder: whether it represents a skill (placeholders.py).
+        of_model: the category of its model; None if no model of it is in scope.
+        category: as written, or that of the built-in, the placeholder, the model or an older engine's word; None if
+            unknown.
+        is_outdated: whether its category is that of an older engine's word which has no replacement today.
+        is_subtree: whether it runs another tree, under the name that the engine of today has for that.
     """
 
     __slots__ = (
@@ -131,7 +131,7 @@ class ResolvedNode:
 
     @property
     def facts(self) -> Facts:
-        """Those of its item, by which queries name it."""
+        """The facts of its item, by which queries identify it."""
         return self.within.facts
 
     @property
@@ -141,7 +141,7 @@ class ResolvedNode:
 
     @property
     def tree(self) -> str | None:
-        """The name of its tree; None where that is missing."""
+        """The name of its tree; None if that is missing."""
         return self.within.name
 
     @property
@@ -160,14 +160,14 @@ class ResolvedNode:
 
     @property
     def names(self) -> frozenset[str]:
-        """Every name that a path can call it by: its ID, all spellings of its kind, its label."""
+        """Every name by which a path can name it: its ID, all spellings of its kind, its label."""
         if self._names is None:
             self._names = names_of(self.node, self.kind, self.category)
         return self._names
 
     @property
     def kinds(self) -> frozenset[str]:
-        """The names that say what it is, and not which one."""
+        """The names of its kind, not of the instance."""
         return kinds_of(self.node, self.kind, self.category)
 
     @property
@@ -177,7 +177,7 @@ class ResolvedNode:
 
     @property
     def shown(self) -> str:
-        """As a message names it among others: its kind and, where it has one, its instance name."""
+        """As a message names it among others: its kind and its instance name, if it has one."""
         head = self.node.head.text
         return f"`{head}`" if self.name is None or self.name.text == head else f"`{head} {self.name.text}`"
 
@@ -200,7 +200,7 @@ class ResolvedNode:
 
     @property
     def stated_category(self) -> str | None:
-        """Its category, unless nobody but an older engine says so."""
+        """Its category, unless only an older engine's word determines it."""
         return None if self.is_outdated else self.category
 
     def __repr__(self) -> str:
@@ -212,19 +212,19 @@ class ResolvedTree:
 
     Attributes:
         path, facts, item: where it is written.
-        name: None where that is missing.
+        name: None if that is missing.
         all: in the order of the text.
-        root: the node at the top; None where there is none, or several.
+        root: the node at the top; None if there are none or several.
         calls: the SubTree nodes, each with the name of the tree that it runs.
         called: those names.
-        by_tag: the nodes by what `tags` at them says; a tag of the tree is one of its root.
+        by_tag: the nodes by their `tags`; a tag of the tree is one of its root.
         qualities: the quality that encloses a requirement in `Quality = performance (QualityReq …)`, by its `id`.
     """
 
     __slots__ = ("_by_name", "all", "by_tag", "called", "calls", "facts", "item", "name", "path", "qualities", "root")
 
     def __init__(self, path: str, facts: Facts, category_of_model: Callable[[str], str | None]) -> None:
-        """category_of_model: that of a node's model in scope, by the node's name."""
+        """category_of_model: returns the category of a node's model in scope, given the node's name."""
         item = facts.item
         assert isinstance(item, Tree), "only trees have nodes"
         self.path: Final = path

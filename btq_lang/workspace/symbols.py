@@ -1,7 +1,7 @@
 """What an item defines and refers to: a summary made from its tree alone.
 
-One invariant: a summary depends on nothing but the item, so it is made once and holds for as long as the item does.
-Which definition a use means is the workspace's to say.
+One invariant: a summary depends only on the item, so it is made once and is valid as long as the item exists.  Which
+definition a use refers to is for the workspace.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Use(Record):
 
     Attributes:
         span: the name, counted from the item.
-        node: the node it stands at, where it stands at one.
+        node: that it is at, if any.
     """
 
     kind: Kind
@@ -98,7 +98,7 @@ def requirements_at(clauses: tuple[NodeClause, ...]) -> Iterator[Requirement | R
 
 
 def asked_for(item: Item) -> frozenset[str]:
-    """The names in an item's conditions, bounds and arguments: what a signal or a context has to be there for."""
+    """The names in an item's conditions, bounds and arguments: those that may be signals or contexts."""
     if isinstance(item, Context):
         return _words_in(item.condition)
     if isinstance(item, Requirement):
@@ -129,19 +129,19 @@ def _may_claim(requirement: Requirement) -> bool:
 
 
 def same_requirement(first: Requirement, second: Requirement) -> bool:
-    """Whether two definitions say the same (docs/language.md): texts compare after folding blanks."""
+    """Whether two definitions are equivalent (docs/language.md): texts compare after folding blanks."""
     return _saying(first) == _saying(second)
 
 
 def _asked_by(requirement: Requirement) -> frozenset[str]:
-    """What a requirement asks for in its clauses; without any, its text may hold some behind `FailureIf`."""
+    """The names in a requirement's clauses; without any, its text may hold some after `FailureIf`."""
     if requirement.clauses or requirement.text is None:
         return _words_in((requirement.parameters, requirement.clauses))
     return frozenset(_WORDS.findall(requirement.text.text) if "if" in requirement.text.text.lower() else ())
 
 
 def _words_in(part: object) -> frozenset[str]:
-    """Each name, and of `a-b`, which may be meant as a subtraction, both sides, too."""
+    """Each name, and of `a-b`, which may be meant as a subtraction, both sides too."""
     names: list[str] = []
     waiting = [part]
     while waiting:
@@ -162,7 +162,7 @@ def _saying(requirement: Requirement) -> object:
 
 
 class _Names:
-    """The names in an item, as they are met: no generators in generators, for every node of every file is looked at."""
+    """The names in an item, collected without nested generators, for every node of every file is visited."""
 
     def __init__(self) -> None:
         self.symbols: list[Symbol] = []
@@ -201,7 +201,7 @@ class _Names:
     def _add_node(self, node: Node) -> None:
         name, kind, category = node.id, node.kind, node.category
         if kind is not None and kind.raw == "SubTreePlus" and (tree := node.attribute("ID")) is not None:
-            self._use(Kind.TREE, tree, node)  # version 3's word for SubTree
+            self._use(Kind.TREE, tree, node)  # version 3's name of SubTree
         elif name is not None:
             is_subtree = category is not None and category.raw == "SubTree"
             self._use(Kind.TREE if is_subtree else Kind.MODEL, name, node)
@@ -222,7 +222,7 @@ class _Names:
                     self._add_requirement(requirement, node, attached=True)
 
     def _add_requirement(self, requirement: Requirement, node: Node | None, *, attached: bool) -> None:
-        """attached: it stands in a `satisfies` or `satisfices`, so without a text it refers to another place."""
+        """attached: it is in a `satisfies` or `satisfices`, so without a text it refers to another definition."""
         if attached and requirement.is_reference:
             self._use(Kind.REQUIREMENT, requirement.name, node)
         else:

@@ -1,9 +1,9 @@
-"""Waiting for files to change, by asking again and again.
+"""Waiting for files to change, by polling.
 
 Polling, because the standard library offers nothing else on all systems, and because it works on network drives and in
-containers, where notifications do not.  One invariant: a change is told once, when the files have come to rest, so that
-nobody reads a half-written one; but it is told, also of a file that never rests.  Not known here: the disk and the
-clock; both are given.
+containers, where notifications do not.  One invariant: a change is reported once, when the files have come to rest, so
+that no half-written file is read; but it is also reported of a file that never rests.  Not known here: the disk and the
+clock; both are arguments.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
 INTERVAL = 0.3
-_REST, _LOOKS = 0.05, 20  # between two looks at files that are changing, and how often at most
+_REST, _LOOKS = 0.05, 20  # seconds between two looks at files that are changing, and the maximum number of looks
 _SHARE = 10  # looking takes at most one part in this many of the time
 
 
@@ -22,16 +22,16 @@ def watch(
     now: Callable[[], float],
     interval: float = INTERVAL,
 ) -> Iterator[tuple[str, ...]]:
-    """The paths that came, went or changed since the last time, sorted; for ever.
+    """The paths that were added, removed or changed since the last time, sorted; for ever.
 
     Args:
-        files: the paths to look at; asked each time, for there may be new ones.
-        stamp: what changes when a file does; None for a file that does not exist.
-        wait: waits for so many seconds; what it raises ends the watching (KeyboardInterrupt).
+        files: returns the paths to watch; called each time, for there may be new ones.
+        stamp: returns a value that changes when a file does; None for a file that does not exist.
+        wait: waits for so many seconds; an exception from it (KeyboardInterrupt) ends the watching.
         now: a clock in seconds that only goes forward.
-        interval: how often to look, in seconds; less often where looking itself takes long.
+        interval: seconds between looks; more if looking itself takes long.
     """
-    # Looked at once already here, not when the first change is asked for: what changes from now on is told.
+    # Takes the first stamps now, not at the first iteration, so that changes from now on are reported.
     return _changes(_stamps(files, stamp), files, stamp, wait, now, interval)
 
 
@@ -59,7 +59,7 @@ def _changes(
                 break
         changed = tuple(sorted(path for path in before.keys() | after.keys() if before.get(path) != after.get(path)))
         before = after
-        if changed:  # else the files are again what they were
+        if changed:  # else the files are as they were
             yield changed
 
 

@@ -1,11 +1,11 @@
-"""The workspace: many files as one immutable value, and who means what across them.
+"""The workspace: many files as one immutable value, and name resolution across them.
 
-One invariant: a workspace is a function of its texts and its project; one reached by edits equals one built afresh,
-and shares with the one before it all files that did not change.  It knows no disk: the loader brings the texts,
-included ones too.
+One invariant: a workspace is a function of its texts and its project; one reached by edits equals a new one, and shares
+with its predecessor all files that did not change.  It does not use the disk: the loader provides the texts, included
+ones too.
 
 Names are looked up in a file's scope: the file and what it includes.  The project's other files are known as well, but
-only to say where a name could have come from.
+only to suggest where a name could be defined.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Workspace:
 
     Attributes:
         files: by path; paths are absolute or all relative to one folder, with `/`.
-        project: what holds for all of them.
+        project: settings for all of them.
     """
 
     def __init__(self, files: Mapping[str, File], project: Project) -> None:
@@ -52,7 +52,7 @@ class Workspace:
         return cls({path: File(path, text) for path, text in texts.items()}, project or Project())
 
     def with_file(self, path: str, text: str) -> Workspace:
-        """The workspace after an edit: `path` says `text`; every other file is shared."""
+        """The workspace after an edit that replaces the text of a file; every other file is shared."""
         before = self.files.get(path)
         file = before.edited(text) if before else File(path, text)
         after = Workspace({**self.files, path: file}, self.project)
@@ -61,10 +61,11 @@ class Workspace:
         return after
 
     def let_go(self, paths: Iterable[str]) -> None:
-        """Hold text and names alone of some files; who holds a definition in one of them must not ask for it again.
+        """Release all but text and names of some files; a caller that holds a definition in one must not look it up
+        again.
 
         Args:
-            paths: those of other workspaces among them are nothing to this one.
+            paths: may include paths that are not in this workspace, which are ignored.
         """
         gone = self.files.keys() & paths
         for path in gone:
@@ -76,7 +77,7 @@ class Workspace:
         self._referred.clear()
 
     def _take_over(self, before: Workspace, edited: str) -> None:
-        """What is known of which file includes which, and of the names in files that do not see the one edited."""
+        """Copy what is known of includes, and of the names in files that do not see the edited one."""
         for known in ("included_files", "missions", "_users"):
             if known in before.__dict__:
                 self.__dict__[known] = before.__dict__[known]
@@ -85,14 +86,14 @@ class Workspace:
 
     @cached_property
     def store(self) -> Store[Workspace]:
-        """The answers to what was asked about it."""
+        """The cached answers about it."""
         return Store(self)
 
     def pass_on(self, after: Workspace, topics: Iterable[Hashable]) -> None:
-        """Leave to the workspace after an edit what was asked about this one.
+        """Pass the cached answers on to the workspace after an edit.
 
         Args:
-            topics: those in which the two may differ.
+            topics: in which the two may differ.
         """
         store = after.__dict__["store"] = self.__dict__.pop("store", None) or Store(self)
         store.advance(after, topics)
@@ -111,27 +112,27 @@ class Workspace:
 
     @cached_property
     def origins(self) -> Mapping[str, Origin]:
-        """What the files that are written in another language stand for, by path."""
+        """The origins of the files that are written in another language, by path."""
         return {path: file.origin for path, file in self.files.items() if file.origin is not None}
 
     # ---- includes and scopes ----
 
     def included(self, path: str, include: str) -> str | None:
-        """The file that an `include` in `path` brings, if it is there."""
+        """The file that an `include` in `path` refers to, if it is there."""
         for candidate in include_candidates(self.project, path, include):
             if candidate in self.files:
                 return candidate
         return None
 
     def included_by(self, path: str, include: Include) -> str | None:
-        """As `included`; what a ROS package holds is known to none but the robot."""
+        """As `included`; files of a ROS package are known only on the robot."""
         return None if include.path is None else self._target(path, include.path.text, is_of_package(include))
 
     def _target(self, path: str, include: str, is_of_package: bool) -> str | None:
         return None if is_of_package else self.included(path, include)
 
     def closure(self, path: str) -> tuple[str, ...]:
-        """A file and all that it includes, included ones first; a file that includes itself is in it once."""
+        """A file and all that it includes, included ones first; each once, even if they include each other."""
         known = self._closures.get(path)
         if known is None:
             known = self._closures[path] = self._closure(path)
@@ -176,7 +177,7 @@ class Workspace:
 
     @cached_property
     def missions(self) -> Mapping[str, str]:
-        """For each file a name for all that it is linked with by includes, either way, over however many files."""
+        """For each file a name for all that it is linked with by includes, either way, directly or not."""
         found = {path: path for path in self.files}
 
         def first(path: str) -> str:
@@ -191,7 +192,7 @@ class Workspace:
         return {path: first(path) for path in self.files}
 
     def linked(self, path: str) -> list[str]:
-        """A file, those that see it, and those that it sees, over however many files."""
+        """A file, those that see it, and those that it sees, directly or not."""
         mission = self.missions[path]
         return [other for other, of in self.missions.items() if of == mission]
 
@@ -202,8 +203,8 @@ class Workspace:
         return self.files[path].defined
 
     def files_defining(self, kind: Kind, name: str) -> tuple[str, ...]:
-        """The files of the project that define a name, to say where it could have come from; of a file whose tree was
-        let go that is known still."""
+        """The files of the project that define a name, to suggest where it could come from; this is known even if a
+        file's tree was released."""
         return tuple([path for path, file in self.files.items() if file.defines(kind, name)])
 
     def defined_anywhere(self, kind: Kind, name: str) -> tuple[Definition, ...]:
@@ -215,7 +216,7 @@ class Workspace:
         return self._everywhere[key]
 
     def uses_in(self, path: str) -> Iterator[Reference]:
-        """What a file itself refers to, in the order of its text."""
+        """The references in a file, in the order of its text."""
         file = self.files[path]
         for entry, summary in zip(file.parsed.entries, file.summaries, strict=True):
             for use in summary.uses:
@@ -274,7 +275,7 @@ class Scope:
     """The names that a file can use: its own and those of the files it includes, directly or not.
 
     Attributes:
-        paths: those files, included ones before the file that includes them.
+        paths: of those files, included ones first.
     """
 
     def __init__(self, paths: tuple[str, ...], workspace: Workspace) -> None:
@@ -291,17 +292,17 @@ class Scope:
 
     @property
     def complete(self) -> bool:
-        """All includes were found and understood, and no string may have swallowed the rest of a file, so a name that
-        is not here is nowhere."""
+        """Whether all includes were found and understood, and no string may have swallowed the rest of a file, so that
+        a name that is not here does not exist."""
         return self._complete
 
     def defines(self, kind: Kind, name: str) -> bool:
-        """Whether a name means something."""
+        """Whether a name is defined."""
         key = kind, name
         return bool([file for file in self._files if key in file.names.found])
 
     def find(self, kind: Kind, name: str) -> Definition | None:
-        """The definition that a name means: the first one."""
+        """The definition of a name that counts: the first one."""
         found = self._found.get((kind, name))
         if found is None:
             found = self._look_up(kind, name)
@@ -313,7 +314,8 @@ class Scope:
         return self._look_up(kind, name) if found is None else found
 
     def is_repeated(self, kind: Kind, name: str) -> bool:
-        """Whether a name has several definitions: hardly any has, so who looks at all of them asks this first."""
+        """Whether a name has several definitions: hardly any has, so this is worth checking before looking at all of
+        them."""
         if self._repeated is None:
             self._repeated = _repeated([file.names for file in self._files])
         return (kind, name) in self._repeated
@@ -348,7 +350,7 @@ def _repeated(files: list[Names]) -> frozenset[Name]:
 
 
 class Reference(Record):
-    """A use and where it stands."""
+    """A use and its file."""
 
     path: str
     entry: Entry
