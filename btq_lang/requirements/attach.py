@@ -1,7 +1,7 @@
-"""Which requirement holds for which node: `satisfies`, `apply … to … except …`, and the claims' own subjects.
+"""Which requirement applies to which node: by `satisfies`, by `apply … to … except …`, or by the claims' own subjects.
 
-One invariant: of one parameterised requirement a node has one set of arguments, that of the most specific application;
-where two are equally specific and differ, a problem says so and neither counts.
+One invariant: a node has one set of arguments of a parameterised requirement, that of the most specific application; if
+two are equally specific and differ, a problem reports it and neither counts.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Uses(Record):
     """What a tree or an `apply` attaches.
 
     Attributes:
-        mentioned: the requirements, be it only where not all could be understood.
+        mentioned: all requirements, also those in attachments that could not be understood.
     """
 
     found: tuple[Use, ...]
@@ -60,10 +60,10 @@ class Uses(Record):
 
 
 class Attached(Record):
-    """What holds for nodes by its attachments.
+    """What applies to nodes by attachment.
 
     Attributes:
-        traces: `satisfies` at nodes, where all claims name their subjects themselves.
+        traces: `satisfies` at nodes, for requirements whose claims all name their own subjects.
     """
 
     applied: tuple[Applied, ...] = ()
@@ -97,11 +97,11 @@ def attached_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
     return frozenset().union(*[store.ask(mentioned_in, viewpoint, *each) for each in items])
 
 
-# ---- what holds for the nodes of a tree ----
+# ---- what applies to the nodes of a tree ----
 
 
 def applied_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Attached:
-    """What holds for nodes of a tree, in the order of the requirements; a span, too, by the node that it begins at."""
+    """What applies to nodes of a tree, in the order of the requirements; a span by the node that it begins at."""
     by_name: dict[str, tuple[list[Applied], list[Use]]] = {}
     for applied in store.ask(_claimed_in, viewpoint, facts):
         by_name.setdefault(applied.requirement.name, ([], []))[0].append(applied)
@@ -125,7 +125,7 @@ def applied_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts)
 
 
 def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequence[Use]) -> Attached:
-    """What a requirement holds for by some of its attachments: all of those to certain nodes."""
+    """What a requirement applies to by some of its attachments: all of those to certain nodes."""
     of_name, _ = store.ask(requirement, viewpoint, name)
     if not uses or of_name is None:
         return _NOTHING
@@ -141,7 +141,7 @@ def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequen
 
 
 def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Iterable[Use]:
-    """The attachments to nodes of a tree, in the order of the items that say them."""
+    """The attachments to nodes of a tree, in the order of the items that make them."""
     own = store.ask(uses_in, viewpoint, path, facts).found
     given = store.ask(_given_to, viewpoint, facts) if inputs.applies(store, viewpoint) else ()
     if not own or not given:
@@ -160,11 +160,11 @@ def _given(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[Use, ..
     return _by_tree((use.target.node.facts, use) for use in uses)
 
 
-# ---- what a claim holds for by its own subject ----
+# ---- claims with a subject of their own ----
 
 
 def claimed(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Applied, ...]:
-    """What the claims of a requirement hold for that name their subjects themselves."""
+    """What the claims of a requirement with subjects of their own apply to."""
     if name not in inputs.claiming(store, viewpoint):
         return ()
     of_name, _ = store.ask(requirement, viewpoint, name)
@@ -172,7 +172,7 @@ def claimed(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Applied
 
 
 def claimed_of_no_tree(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Applied, ...]:
-    """Those of them whose subject is in no tree: sums, and what begins with no node."""
+    """Those of them whose subject is in no tree: sums, and spans that do not begin with a node."""
     return tuple([each for each in store.ask(claimed, viewpoint, name) if _home(each) is None])
 
 
@@ -201,7 +201,7 @@ def _home(applied: Applied) -> Facts | None:
 
 
 def _order(store: Store[Workspace], viewpoint: str) -> dict[str, int]:
-    """The requirements, and where each is in their order."""
+    """The index of each requirement in their order."""
     return {name: at for at, name in enumerate(inputs.names(store, viewpoint, Kind.REQUIREMENT))}
 
 
@@ -215,7 +215,7 @@ def _with(
     which: tuple[int, ...],
     arguments: tuple[Argument, ...],
 ) -> Requirement:
-    """A requirement with some of its claims and with arguments: most nodes get the same one."""
+    """A requirement with some of its claims and with arguments; cached, for most nodes get the same one."""
     if not arguments and len(which) == len(of_name.claims):
         return of_name
     return store.ask(_filled, viewpoint, of_name.name, which, arguments)
@@ -231,7 +231,7 @@ def _filled(
 
 
 def fill(of_name: Requirement, arguments: tuple[Argument, ...]) -> Requirement:
-    """A requirement with arguments in the place of its parameters."""
+    """A requirement with arguments in place of its parameters."""
     if not arguments:
         return of_name
     values = {argument.name: argument.value for argument in arguments}
@@ -246,10 +246,10 @@ def _filled_part(part: object, values: dict[str, Bounded]) -> object:
     if isinstance(part, tuple):
         return tuple([_filled_part(each, values) for each in part])
     if type(part).__module__ != model.__name__ or isinstance(part, InContext):
-        return part  # no parameter is known in a context
+        return part  # a context has no parameters
     fields = fields_of(part)
     if "signal" in fields and "verb" not in fields:
-        return part  # what is read has no parameters in it, and its signal may be large
+        return part  # a signal has no parameters, and may be large
     changes = {}
     for field in fields:
         old = getattr(part, field)
@@ -260,7 +260,7 @@ def _filled_part(part: object, values: dict[str, Bounded]) -> object:
 
 
 def _by_subject(store: Store[Workspace], viewpoint: str, of_name: Requirement) -> Iterator[Applied]:
-    """A claim's own subject wins over whatever the requirement is attached to."""
+    """A claim's own subject takes precedence over what the requirement is attached to."""
     arguments = tuple(Argument(each.name, each.default) for each in of_name.parameters if each.default is not None)
     if len(arguments) < len(of_name.parameters):
         return
@@ -319,7 +319,7 @@ def _requirement(reader: Reader, name: str) -> Requirement | None:
 
 
 def _excepted(reader: Reader, apply: Apply, applied_to: set[int]) -> set[int]:
-    """The nodes after `except`; those of a selector should be among the ones applied to."""
+    """The nodes after `except`; a selector's should be among those that the requirement is applied to."""
     excepted: set[int] = set()
     for selector in apply.exceptions:
         named = {id(target.node) for target, _ in _selected(reader, selector)}
@@ -332,7 +332,7 @@ def _excepted(reader: Reader, apply: Apply, applied_to: set[int]) -> set[int]:
 
 
 def _selected(reader: Reader, selector: Selector) -> Iterator[tuple[Target, int]]:
-    """The nodes that a selector means, and how specific it is."""
+    """The nodes of a selector, and how specific it is."""
     if selector.tag is not None:
         found = reader.store.ask(nodes.tagged, reader.viewpoint, selector.tag.text)
         if not found:
@@ -365,7 +365,7 @@ def _under(reader: Reader, name: str, top: Target) -> tuple[ResolvedNode, ...]:
 def _arguments(
     reader: Reader, of_name: Requirement, written: WrittenRequirement | ReqRef, span: TextSpan
 ) -> tuple[Argument, ...] | None:
-    """The values of the parameters; None: something is missing or wrong, and reported."""
+    """The values of the parameters; None if one is missing or wrong, which is reported."""
     given: dict[str, Bounded] = {}
     complete = True
     parameters = {parameter.name: parameter for parameter in of_name.parameters}
@@ -413,7 +413,8 @@ def _no_parameter(reader: Reader, of_name: Requirement, argument: WrittenArgumen
 
 
 def _most_specific(of_name: Requirement, uses: Sequence[Use]) -> tuple[list[Use], Problems]:
-    """One use for each node, or for each way that a path leads to it; and where two are as specific, and differ."""
+    """One use for each node, or for each way that a path leads to it; and the problems where equally specific ones
+    differ."""
     found: list[Use] = []
     problems: list[Problem] = []
     of_node: dict[tuple[int, tuple[str, ...]], list[Use]] = {}
@@ -441,7 +442,7 @@ def _most_specific(of_name: Requirement, uses: Sequence[Use]) -> tuple[list[Use]
 
 
 def _values(use: Use) -> tuple[object, ...]:
-    """Arguments that say the same are equal, however they are typed."""
+    """Equal for arguments that mean the same, however they are written."""
     return tuple(getattr(argument.value, "si", argument.value) for argument in use.arguments)
 
 

@@ -1,8 +1,8 @@
-"""Budgets: how long nodes take if all that is demanded of the nodes below them holds, and how likely that is.
+"""Budgets: how long nodes take if the nodes below them meet their requirements, and how likely that is.
 
-One invariant: a node's budget rests on what its children are held to, and where a child has a bound of its own, on that
-bound and not on what its own children would need: a broken bound is reported at the node that has it.  A bound that
-holds for some activations only (a scope, some instances) does not count here.
+One invariant: a node's budget depends on what is demanded of its children; if a child has a bound of its own, on that
+bound and not on its own children: a violated bound is reported at the node that has it.  A bound that holds for some
+activations only (a scope, some instances) does not count here.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ __all__ = ["Budget", "Budgets", "Gap", "Range", "Success", "Term"]
 
 
 class Success(Record):
-    """A node succeeds within so many seconds, at least so likely.
+    """A node succeeds within a number of seconds, with at least a probability.
 
     Attributes:
-        parts: the children that this rests on, each with what it adds to the likelihood of missing it.
+        parts: the children that this depends on, each with what it adds to the probability of failure.
     """
 
     seconds: float
@@ -39,17 +39,17 @@ class Success(Record):
 
 
 class Gap(Record):
-    """Why no bound is known: the node, and the reason in words to follow its name."""
+    """Why no bound is known: the node, and the reason, which reads well after its name."""
 
     node: ResolvedNode
     reason: str
 
 
 class Outcome(Record):
-    """What other trees see of a tree: how long it takes, and how likely it succeeds, but not what that is made of.
+    """What other trees see of a tree: how long it takes, and how likely it succeeds, without its nodes.
 
     Attributes:
-        is_run: there is such a tree, and it does not contain itself.
+        is_run: whether the tree exists and does not contain itself.
     """
 
     budget: Budget
@@ -61,14 +61,14 @@ class Outcome(Record):
 
 
 def tree_budgets(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> TreeBudgets:
-    """The budgets of the nodes of a tree, with all that they rest on."""
+    """The budgets of the nodes of a tree, with all that they depend on."""
     tree = store.ask(tree_nodes, viewpoint, path, facts)
     applied = store.ask(applied_in, viewpoint, path, facts).applied
     return TreeBudgets(tree, applied, {name: store.ask(outcome, viewpoint, name) for name in tree.called})
 
 
 def outcome(store: Store[Workspace], viewpoint: str, name: str) -> Outcome:
-    """What other trees see of the tree that a name means."""
+    """What other trees see of the tree with a name."""
     tree = store.ask(tree_named, viewpoint, name)
     if tree is None or tree.root is None:
         return _UNKNOWN_TREE
@@ -91,36 +91,37 @@ def _contains_itself(store: Store[Workspace], viewpoint: str, name: str) -> bool
 
 
 class Budgets:
-    """The budgets of all nodes that a file sees: it asks the store for whoever asks."""
+    """The budgets of all nodes that a file sees, from the store."""
 
     def __init__(self, store: Store[Workspace], viewpoint: str) -> None:
         self._store: Final = store
         self._viewpoint: Final = viewpoint
 
     def of(self, node: ResolvedNode) -> Budget:
-        """How long a node takes, if it and all below it are as demanded: what its parent counts with."""
+        """How long a node takes, if it and all below it meet their requirements: what its parent counts with."""
         return self._in_tree(node).of(node)
 
     def composed(self, node: ResolvedNode) -> Budget:
-        """How long a node takes, if all below it are as demanded: what its own bounds are held against."""
+        """How long a node takes, if all below it meet their requirements: what its own bounds are compared with."""
         root, seen = self._run_by(node)
         return self._in_tree(node).composed(node) if root is None else _as_part(root, seen.budget)
 
     def composed_of_known(self, node: ResolvedNode) -> Budget:
-        """The same, if what has no known bound takes no longer than it must: what the others may take alone."""
+        """The same, if nodes without a known bound take no longer than they must: the time of the others alone."""
         return self._in_tree(node).composed_of_known(node)
 
     def success(self, node: ResolvedNode) -> Success | None:
-        """How likely a node succeeds, and within which time, if all below it are as demanded; None: that is unknown."""
+        """How likely a node succeeds, and within which time, if all below it meet their requirements; None if
+        unknown."""
         root, seen = self._run_by(node)
         return self._in_tree(node).composed_success(node) if root is None else _success_as_part(root, seen.success)
 
     def success_of_known(self, node: ResolvedNode) -> Success | None:
-        """The same, if nodes of which it is unknown always succeed, at once: no more is ensured."""
+        """The same, if unknown nodes always succeed, at once: an upper bound."""
         return self.success(node) or self._in_tree(node).success_of_known(node)
 
     def gaps(self, node: ResolvedNode) -> tuple[Gap, ...]:
-        """Why a node has no bound, if all below it are as demanded; the first reasons, if there are many."""
+        """Why a node has no bound, if all below it meet their requirements; the first reasons, if there are many."""
         found: dict[Gap, None] = {}
         seen: set[int] = set()  # a tree may be run from many places
         waiting = [node]
@@ -143,7 +144,7 @@ class Budgets:
         return self._store.ask(tree_budgets, self._viewpoint, node.path, node.facts)
 
     def _run_by(self, node: ResolvedNode) -> tuple[ResolvedNode | None, Outcome]:
-        """The root that a SubTree node runs, unless that tree contains itself, and what is seen of it."""
+        """The root of the tree that a SubTree node runs, unless that tree contains itself, and its outcome."""
         name = node.node.id
         if node.category != "SubTree" or name is None:
             return None, _UNKNOWN_TREE
@@ -155,19 +156,19 @@ class Budgets:
 
 
 class TreeBudgets:
-    """The budgets of a tree's nodes, as far as anybody has asked for them: most nodes of a file nobody asks for.  Those
-    of a SubTree node do not say what they are made of, for that is in another tree."""
+    """The budgets of a tree's nodes, computed on demand: most nodes of a file are never needed.  Those of a SubTree
+    node have no terms, for these are in another tree."""
 
     __slots__ = ("_claims", "_composed", "_held", "_outcomes", "_successes")
 
     def __init__(self, tree: ResolvedTree, applied: tuple[Applied, ...], outcomes: Mapping[str, Outcome]) -> None:
         """
         Args:
-            applied: what holds for its nodes.
+            applied: what applies to its nodes.
             outcomes: of the trees that it runs, by their names.
         """
         self._outcomes = outcomes
-        self._claims: dict[int, list[tuple[Applied, Claim]]] = {}  # those that count, by the `id` of the node
+        self._claims: dict[int, list[tuple[Applied, Claim]]] = {}  # the claims that count, by the `id` of the node
         for each in applied:
             if isinstance(each.subject, Target) and not each.subject.through and not each.requirement.scopes:
                 for claim in each.requirement.claims:
@@ -177,22 +178,22 @@ class TreeBudgets:
         self._successes: dict[int, Success | None] = {}
 
     def of(self, node: ResolvedNode) -> Budget:
-        """How long a node takes, if it and all below it are as demanded."""
+        """How long a node takes, if it and all below it meet their requirements."""
         self._work_out(node)
         return self._held[id(node)]
 
     def composed(self, node: ResolvedNode) -> Budget:
-        """How long a node takes, if all below it are as demanded."""
+        """How long a node takes, if all below it meet their requirements."""
         self._work_out(node)
         return self._composed[id(node)]
 
     def success(self, node: ResolvedNode) -> Success | None:
-        """What a node's own claims say of its success, else what its children's do."""
+        """A node's success by its own claims, else by its children's success."""
         self._work_out(node)
         return self._successes[id(node)]
 
     def composed_of_known(self, node: ResolvedNode) -> Budget:
-        """As of all budgets."""
+        """As for all budgets."""
         composed = self.composed(node)
         if node.category == "SubTree" or node.kind is None or not node.children or _is_sure(composed):
             return composed if _is_sure(composed) else _shortest(composed)
@@ -201,7 +202,7 @@ class TreeBudgets:
         return found if found.is_bounded else _shortest(composed)
 
     def success_of_known(self, node: ResolvedNode) -> Success | None:
-        """As of all budgets."""
+        """As for all budgets."""
         found = self.composed_success(node)
         if found is not None or node.category == "SubTree" or not node.children or _may_be_passed(node):
             return found
@@ -212,7 +213,7 @@ class TreeBudgets:
         return _success_of(node, [part or _SURE for part in known])
 
     def composed_success(self, node: ResolvedNode) -> Success | None:
-        """What is known of a node's success from its children's."""
+        """A node's success as far as it follows from its children's."""
         if node.category == "SubTree":
             return self._outcome_of(node).success
         budget = self.composed(node)
@@ -228,7 +229,7 @@ class TreeBudgets:
         return _success_of(node, known)
 
     def _work_out(self, top: ResolvedNode) -> None:
-        """Compose a node, and before it what it rests on."""
+        """Compose a node, after those that it depends on."""
         waiting = [top] if id(top) not in self._held else []
         while waiting:
             node = waiting[-1]
@@ -245,7 +246,7 @@ class TreeBudgets:
                 self._successes[id(node)] = self._succeeding(node)
 
     def _outcome_of(self, node: ResolvedNode) -> Outcome:
-        """What is seen of the tree that a SubTree node runs."""
+        """The outcome of the tree that a SubTree node runs."""
         name = node.node.id
         return self._outcomes[name.text] if name is not None else _UNKNOWN_TREE
 
@@ -282,12 +283,12 @@ class TreeBudgets:
 
 
 def _may_be_passed(node: ResolvedNode) -> bool:
-    """Whether the outcome of one of a node's children may be another than that of what it does."""
+    """Whether a node's children may have another outcome than the node."""
     return any(pair.key.text in _CHANGING for child in node.children for pair in child.node.attributes)
 
 
 def _success_of(node: ResolvedNode, parts: list[Success]) -> Success | None:
-    """By the union bound: what all its parts do is as unlikely to be missed as the sum of what each of them misses."""
+    """By the union bound: the probability that one of the parts misses is at most the sum of theirs."""
     first = parts[0]
     together = tuple(part for each in parts for part in each.parts)
     missed = fsum([1.0 - part.probability for part in parts])
@@ -311,7 +312,7 @@ def _success_as_part(node: ResolvedNode, found: Success | None) -> Success | Non
 
 
 def _is_sure(budget: Budget) -> bool:
-    """Whether it has a bound that is not only likely."""
+    """Whether it has a certain bound."""
     return budget.is_bounded and budget.probability == 1.0
 
 
@@ -333,12 +334,12 @@ def _as_part(node: ResolvedNode, budget: Budget) -> Budget:
 
 
 def _without_terms(budget: Budget) -> Budget:
-    """A budget as another tree sees it: where it comes from is not said."""
+    """A budget as another tree sees it: without terms."""
     return _with_ranges(budget, lambda each: Range(each.low, each.high) if each is not None and each.terms else each)
 
 
 def _with_ranges(budget: Budget, change: Callable[[Range | None], Range | None]) -> Budget:
-    """change: what is not there, is not there afterwards either."""
+    """The budget with changed ranges; absent ones stay absent."""
     success = change(budget.success)
     failure = success if budget.failure is budget.success else change(budget.failure)
     skip = change(budget.skip) if budget.skip is not None else None
@@ -346,8 +347,7 @@ def _with_ranges(budget: Budget, change: Callable[[Range | None], Range | None])
 
 
 def _with_claims(composed: Budget, claims: list[tuple[Applied, Claim]]) -> Budget:
-    """What a node is held to; of bounds that may be missed now and then the likeliest, and only where no sure one
-    says how long it may take."""
+    """What is demanded of a node; of bounds with odds the likeliest, and only if there is no certain bound."""
     sure = [claim for applied, claim in claims if applied.requirement.odds is None]
     held = _all_narrowed(composed if composed.probability == 1.0 else _opened(composed), sure)
     if held.is_bounded:
@@ -376,7 +376,7 @@ def _with_attributes(node: ResolvedNode, budget: Budget) -> Budget:
 
 
 def _opened(budget: Budget) -> Budget:
-    """A budget without what is only likely."""
+    """A budget without bounds that have odds."""
     success, failure, skip = (
         ANY if each is not None else None for each in (budget.success, budget.failure, budget.skip)
     )
@@ -390,7 +390,7 @@ def _all_narrowed(budget: Budget, claims: list[Claim]) -> Budget:
 
 
 def _narrowed(budget: Budget, claim: Claim) -> Budget:
-    """A budget, if a claim holds, too.  Where both cannot hold, the claim counts: the other is reported elsewhere."""
+    """A budget, if a claim holds too.  If both cannot hold, the claim counts: the conflict is reported elsewhere."""
     limits = VERBS[claim.verb].limits
     if claim.limit is None or not limits:
         return budget
@@ -413,7 +413,7 @@ def _within(each: Range | None, allowed: Range) -> Range | None:
 
 
 def _range(limit: Limit) -> Range:
-    """The durations that a bound allows in one situation or another."""
+    """The durations that a bound allows in any situation."""
     if limit.relation in ("<=", "<"):
         return Range(0.0, _extreme(limit.value, highest=True))
     if limit.relation in (">=", ">"):
@@ -424,7 +424,7 @@ def _range(limit: Limit) -> Range:
 
 
 def _extreme(bounded: Bounded, *, highest: bool) -> float:
-    """The highest or lowest value of a bound; of a signal it is unknown."""
+    """The highest or lowest value of a bound; that of a signal is unknown."""
     values = [case.value for case in bounded.cases] if isinstance(bounded, Table) else [bounded]
     numbers = [value.si if isinstance(value, Value) else inf if highest else 0.0 for value in values]
     return max(0.0, max(numbers)) if highest else min(numbers)

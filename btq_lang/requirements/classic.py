@@ -1,7 +1,7 @@
 """SuccessIf and FailureIf in classic descriptions, as claims: they mark a hard constraint (docs/language.md).
 
-One invariant: what does not mean something as a whole stays documentation, without a word: `checks` says so.  A claim
-made of a description has the place of the description.
+One invariant: a constraint that cannot be understood as a whole stays documentation, without a problem: `checks`
+reports it.  A claim made of a description has the place of the description.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def with_constraints(reader: Reader, requirement: Requirement, text: Word) -> Requirement:
-    """A requirement without clauses, which would say it, with what its description demands."""
+    """A requirement without clauses, with the claims of its description."""
     found = constraints(text)
     names = frozenset(reader.names("nodes")) if found else frozenset()
     for constraint in found:
@@ -59,7 +59,7 @@ def _with(reader: Reader, requirement: Requirement, constraint: Constraint, span
 
 
 def _turned(claim: Claim) -> Claim | None:
-    """The claim that holds where this one does not; None where there is no such clause."""
+    """The claim that holds where this one does not; None if there is no such clause."""
     if claim.condition is not None and claim.verb in ("keeps", "never"):
         return replace(claim, verb="never" if claim.verb == "keeps" else "keeps")
     if claim.condition is not None:

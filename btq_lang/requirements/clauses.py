@@ -1,8 +1,8 @@
-"""The clauses of a requirement, resolved: what each verb asks for, and what holds for all its claims.
+"""The clauses of a requirement, resolved: what each verb demands, and what applies to all its claims.
 
-One invariant: a claim that could not be understood as a whole is left out, and a problem says why; what is left can be
-checked, enforced and judged without looking back.  Scopes, odds and the rest belong to the requirement, so they hold
-for all of its claims, wherever they are among them.
+One invariant: a claim that could not be understood as a whole is left out, and a problem reports why; what is left can
+be checked, enforced and judged without its source.  Scopes, odds and the rest belong to the requirement, so they apply
+to all of its claims, wherever they are among them.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 
 
 def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[WrittenClause, ...]) -> Requirement:
-    """A requirement with what these clauses say; of what can be said once only, the first counts."""
+    """A requirement with these clauses resolved; of clauses that may occur once, the first counts."""
     claims: list[Claim] = []
     scopes: list[Scope] = []
     once: dict[str, object] = {}
@@ -97,7 +97,7 @@ def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[Writte
 
 
 def claim_of(reader: Reader, written: WrittenClaim) -> Claim | None:
-    """What a claim demands, where all of it is understood."""
+    """What a claim demands; None if a part of it was not understood."""
     subject: Subject | None = None
     if written.subject is not None:
         subject = _subject(reader, written.subject)
@@ -139,7 +139,7 @@ def _verb(reader: Reader, written: WrittenClaim) -> Claim | None:
 
 
 def _resource(reader: Reader, word: Word | None) -> tuple[Signal | None, Wanted | None]:
-    """The signal that is used up, and what its difference over an activation is."""
+    """The signal that is used up, and the kind of its difference over an activation."""
     if word is None:
         return None, None
     signal = reader.signal(word.text)
@@ -251,7 +251,7 @@ def _window(reader: Reader, written: WrittenWindow) -> Window | None:
 
 
 def _of_goal(claims: list[Claim], has_odds: bool) -> Wanted | None:
-    """What a goal is of: what the bounds are of, and with odds perhaps a share; None: of anything."""
+    """What a goal measures: the same as the bounds, with odds perhaps a probability; None: anything."""
     dimensions: dict[Dimension, str | None] = {PERCENT: "%"} if has_odds else {}
     for claim in claims:
         if claim.limit is None:

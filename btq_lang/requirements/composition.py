@@ -1,8 +1,8 @@
-"""How long a node takes when it is known how long its children do: a rule for each flow.
+"""How long a node takes, given how long its children take: a rule for each flow.
 
-One invariant: no run of the engine takes less or more than the ranges say, if its children keep to theirs.  Two things
-are left out: the time between two ticks, and that the variable of a switch changes while a case runs.  It knows no
-requirements: `budgets` brings them in.
+One invariant: every run of the engine is within the ranges, if the children are within theirs.  Two things are left
+out: the time between two ticks, and that the variable of a switch changes while a case runs.  Requirements are for
+`budgets`.
 """
 
 from __future__ import annotations
@@ -40,13 +40,13 @@ class Budget(Record):
     """How long a node takes.
 
     Attributes:
-        success, failure: an activation that succeeds or fails; None: none does.
+        success, failure: of an activation that succeeds or fails; None if none does.
         skip: until it is skipped.
-        waits: it may return RUNNING, so it can be interrupted.
-        probability: at least that likely all holds that the ranges rest on (by the union bound).
-        reason: why the node itself has no upper bound, in words to follow its name; empty where that is for its
-            children.
-        endless: it may run for ever, and then has no outcome at all.
+        waits: whether it may return RUNNING, so that it can be interrupted.
+        probability: at least this, that all holds on which the ranges depend (by the union bound).
+        reason: why the node itself has no upper bound, in words to follow its name; empty if its children are the
+            reason.
+        endless: whether it may run for ever, without an outcome.
     """
 
     success: Range | None
@@ -59,17 +59,17 @@ class Budget(Record):
 
     @property
     def completes(self) -> Range | None:
-        """An activation that succeeds or fails."""
+        """Of an activation that succeeds or fails."""
         return hull(self.success, self.failure)
 
     @property
     def anything(self) -> Range | None:
-        """However it ends."""
+        """Of any activation, however it ends."""
         return hull(self.success, self.failure, self.skip)
 
     @property
     def running(self) -> Range:
-        """For how long it may run when it is interrupted, or asked whether it still does."""
+        """How long it may run until it is interrupted, or while it is running."""
         longest = self.anything
         return ANY if self.endless or longest is None else replace(longest, low=0.0)
 
@@ -103,12 +103,12 @@ def compose(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
 
 
 def unknown(reason: str) -> Budget:
-    """It can do anything, and take any time."""
+    """The budget of a node that may do anything and take any time."""
     return Budget(ANY, ANY, ANY, reason=reason, endless=True)
 
 
 def port_seconds(node: ResolvedNode) -> float | None:
-    """The milliseconds that are written as its time, in seconds; None where another thing is, or nothing."""
+    """The literal milliseconds of its time, in seconds; None if that is not a literal number."""
     word, _ = _port(node, "time")
     if word is None:
         return None
@@ -120,7 +120,7 @@ def port_seconds(node: ResolvedNode) -> float | None:
 
 
 def port_count(node: ResolvedNode, role: Role) -> int | None:
-    """The whole number that is written as the value of the port, or is its default; None where another thing is."""
+    """The literal integer of the port, or its default; None if that is not an integer."""
     word, text = _port(node, role)
     if word is not None:
         text = word.text
@@ -153,7 +153,7 @@ def _fallback(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
 def _in_order(
     parts: Sequence[tuple[Range | None, Range | None, Range | None]],
 ) -> tuple[Range | None, Range | None, Range | None]:
-    """One after the other, as long as each goes on: the outcome of going on, of ending, and of skipping all."""
+    """One after the other, as long as each goes on: the ranges of going on, of ending, and of skipping all."""
     passed: Range | None = ZERO
     ended: Range | None = None
     for go, end, skip in parts:
@@ -163,7 +163,7 @@ def _in_order(
 
 
 def _with_memory(children: Sequence[Budget]) -> Budget:
-    """As a sequence, but after a failure or a halt it begins with the child that failed: any part of it may be done."""
+    """As a sequence, but after a failure or a halt it resumes at the child that failed: any part of it may be done."""
     go, end, skip = _in_order([(each.success, each.failure, each.skip) for each in children])
     last = hull(children[-1].success, children[-1].skip)
     first = min((each.failure.low for each in children if each.failure is not None), default=0.0)
@@ -176,7 +176,7 @@ def _with_memory(children: Sequence[Budget]) -> Budget:
 
 
 def _reactive(children: Sequence[Budget], found: Budget, ends: str) -> Budget:
-    """A child in front of the one that runs is asked at every tick, and may end the whole."""
+    """A child before the running one is ticked at every tick, and may end the whole."""
     waiting = [index for index, child in enumerate(children) if child.waits]
     if len(waiting) > 1:
         reason = "has several children that take time, and may restart each of them without limit"
@@ -197,7 +197,7 @@ def _reactive(children: Sequence[Budget], found: Budget, ends: str) -> Budget:
 
 
 def _parallel(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
-    """Counts how many have succeeded and how many have failed, and is done when one of both is enough."""
+    """Counts successes and failures, and is done when either is enough."""
     n = len(children)
     wanted, failures = port_count(node, "successes"), port_count(node, "failures")
     everything = [child.running for child in children]
@@ -225,11 +225,11 @@ def _parallel(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
 
 
 def _with_skips(node: ResolvedNode, children: Sequence[Budget], asks_again: bool) -> Budget | None:
-    """All at once, where some may be skipped; None: none may.  Who is skipped is asked again as long as another runs,
-    so they may as well run one after the other; two that are interrupted by a skip may keep each other going.
+    """All at once, if some may be skipped; None if none may.  A skipped child is ticked again as long as another runs,
+    so they may also run one after the other; two that a skip interrupts may keep each other running.
 
     Args:
-        asks_again: a skipped child does not count, so the others wait for it.
+        asks_again: whether a skipped child does not count, so that the others wait for it.
     """
     skips = [child.skip for child in children if child.skip is not None]
     if not skips:
@@ -326,7 +326,7 @@ def _switch(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
 
 
 def _try(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
-    """The last child cleans up after a failure; whatever it says, it was one."""
+    """The last child cleans up after a failure; whatever it returns, the result is a failure."""
     if len(children) < 2:
         return None
     *tried, catch = children
@@ -377,8 +377,8 @@ def _has_no_end(child: Budget, go: Range | None, count: int | None) -> bool:
 def _again(
     go: Range | None, end: Range | None, skip: Range | None, count: int | None
 ) -> tuple[Range | None, Range | None, Range | None, str]:
-    """Again and again while it goes on, `count` times at most: the outcome of having gone on so often, of ending
-    before, and of being skipped; a skip keeps the count, so that the next activation has fewer to go."""
+    """Repeats while the child goes on, `count` times at most: the ranges of having gone on so often, of ending before,
+    and of being skipped; a skip keeps the count, so that the next activation has fewer repetitions left."""
     if count == 0 or (count is not None and count < -1):
         return ZERO, None, ZERO, ""
     if count is None or count == -1:
@@ -445,7 +445,7 @@ def _until_failure(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
 
 
 def _once(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    """Later it is skipped, or says at once what it said before."""
+    """After the first run it is skipped, or repeats its result at once."""
     (child,) = children
     return replace(
         child,
@@ -456,7 +456,7 @@ def _once(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
 
 
 def _precondition(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    """4.6 asks at every tick, later ones when the child starts."""
+    """4.6 evaluates the script at every tick, later versions when the child starts."""
     (child,) = children
     word, default = _port(node, "otherwise")
     status = word.text if word is not None else default
@@ -507,7 +507,8 @@ def _made(children: Sequence[Budget], success: Range | None, failure: Range | No
 
 
 def _likely(probabilities: Sequence[float], count: int | None = 1) -> float:
-    """The union bound: all of them hold, each `count` times; without a count that is unknown, unless all are sure."""
+    """The union bound: all of them hold, each `count` times; without a count that is unknown, unless all are
+    certain."""
     if all(probability == 1.0 for probability in probabilities):
         return 1.0
     if count is None or count < 0:

@@ -1,7 +1,7 @@
 """SuccessIf and FailureIf in the description of a classic requirement: what follows them, and whether it is more
 than prose.
 
-One invariant: the answer depends on the text and on the names of the nodes.  What it means `requirements` says.
+One invariant: the result depends only on the text and on the names of nodes.  What it means is for `classic`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from btq_lang.syntax.tree import Claim, Path, Requirement, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
-# How the keywords are spelt, FailuerIf by the original tool; folded.
+# How the keywords are spelt, folded; FailuerIf by the original tool.
 _KEYWORDS = ("successif", "failureif", "failuerif")
 
 
@@ -27,7 +27,7 @@ class Constraint(Record):
 
     Attributes:
         keyword: the place of the keyword, counted from the start of the text.
-        violates: it says when the requirement is violated.
+        violates: whether it describes when the requirement is violated.
     """
 
     keyword: Span
@@ -52,14 +52,14 @@ def constraints(word: Word) -> list[Constraint]:
 
 def can_be_checked(text: str, node_names: Container[str]) -> bool:
     """Whether it is a script that the engine takes for a condition, or clauses of a requirement; `it takes at most 5 s`
-    is none, unless there is a node `it`."""
+    is neither, unless there is a node `it`."""
     needed = _nodes_needed(text)
     return needed is not None and all(name in node_names for name in needed)
 
 
 @lru_cache(1_000)
 def _nodes_needed(text: str) -> frozenset[str] | None:
-    """The names that must be those of nodes, so that it can be checked; None where it cannot."""
+    """The names that must be names of nodes so that it can be checked; None if it cannot."""
     if is_script(text):
         return frozenset()
     words = text.replace(".", " ").split()
@@ -81,7 +81,7 @@ def is_script(text: str) -> bool:
 
 
 def clauses_of(text: str) -> tuple[Requirement, str] | None:
-    """A requirement with these clauses, and the text that its offsets count in; None where it is anything else."""
+    """A requirement with these clauses, and the text that its offsets count in; None for anything else."""
     whole = f"QualityReq r {' '.join(text.split()).rstrip('.')}\n"
     parsed = parse(whole)
     item = parsed.entries[0].item

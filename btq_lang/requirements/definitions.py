@@ -16,7 +16,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Requirement | None, Problems]:
-    """The requirement of a name, with its parameters in it, and what is wrong with its definition; None where none is
+    """The requirement with a name, with parameters, and what is wrong with its definition; None if it is not
     defined."""
     found = inputs.definition(store, viewpoint, Kind.REQUIREMENT, name)
     if found is None:
@@ -41,7 +41,7 @@ def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Req
     )
     read = with_clauses(reader, read, written.clauses)
     if not written.clauses and written.text is not None:
-        from btq_lang.requirements.classic import with_constraints  # a requirement that has clauses needs none of it
+        from btq_lang.requirements.classic import with_constraints  # only requirements without clauses need it
 
         read = with_constraints(reader, read, written.text)
     return read, reader.problems

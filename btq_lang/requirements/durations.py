@@ -1,7 +1,7 @@
 """Durations: ranges of seconds, how they add up, and what the longest one is made of.
 
-One invariant: an operation never leaves out a duration that its operands allow.  `None` is the range of what cannot
-happen; infinity is the end of a range without a bound.
+One invariant: the result of an operation contains every duration that its operands allow.  `None` is the range of what
+cannot happen; infinity is the end of a range without a bound.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def hull(*ranges: Range | None) -> Range | None:
 
 
 def times(count: int, each: Range | None) -> Range | None:
-    """So many, one after the other."""
+    """So many of the same, one after the other."""
     if count == 0:
         return ZERO
     if each is None:
@@ -70,7 +70,7 @@ def times(count: int, each: Range | None) -> Range | None:
 
 
 def cut(each: Range | None, at: float) -> Range | None:
-    """What of it takes no longer than that."""
+    """The part that takes no longer than this."""
     if each is None or each.low > at:
         return None
     if each.high <= at:
@@ -79,12 +79,12 @@ def cut(each: Range | None, at: float) -> Range | None:
 
 
 def from_zero(each: Range | None) -> Range | None:
-    """It, and anything shorter: it can be interrupted."""
+    """The same and anything shorter: it can be interrupted."""
     return replace(each, low=0.0) if each is not None else None
 
 
 def without_end(each: Range | None) -> Range | None:
-    """It, and anything longer."""
+    """The same and anything longer."""
     return Range(each.low, inf) if each is not None else None
 
 
@@ -97,7 +97,7 @@ def total(ranges: Iterable[Range | None]) -> Range | None:
 
 
 def together(terms: Iterable[Term]) -> tuple[Term, ...]:
-    """Terms, each once: what is the same is one, more often."""
+    """Terms with equal ones merged."""
     found: dict[tuple[int, float], Term] = {}
     for term in terms:
         key = id(term.node), term.seconds

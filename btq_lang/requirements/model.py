@@ -1,7 +1,7 @@
-"""What a requirement says once its words are resolved: small frozen records, values in SI beside the text as typed.
+"""What a requirement means, with its words resolved: small frozen records, values in SI beside the text as typed.
 
-One invariant: nothing in here has to be looked up again, so an export, a monitor and a report read the same records.
-It does not know how anything was written: places lead back to that.
+One invariant: nothing in here has to be looked up again, so export, monitor and report read the same records. How
+something was written is not known here: places lead back to that.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ class Target(Record):
     """A node that a path names.
 
     Attributes:
-        through: the leading names of the path that have to be found above the node's own tree, on the way through
-            SubTree nodes; empty: every instance of the node is meant.
+        through: the leading names of the path that must be found above the node's own tree, on the way through SubTree
+            nodes; empty: every instance of the node.
     """
 
     node: ResolvedNode
@@ -40,7 +40,7 @@ class Target(Record):
 
 
 class Mission(Record):
-    """The whole run: the main tree's written root, None where it is unknown which tree runs."""
+    """The whole run: the main tree's written root, None if it is unknown which tree runs."""
 
     node: ResolvedNode | None
 
@@ -73,7 +73,7 @@ class Flag(Record):
 
 
 class Text(Record):
-    """A string that a signal of text is compared with."""
+    """A string that a text signal is compared with."""
 
     value: str
 
@@ -87,8 +87,8 @@ class Signal(Record):
 
     Attributes:
         sort: number, bool or text.
-        unit: of a number; None where it is unknown.
-        key: the blackboard entry, as written between the braces; None where none is named.
+        unit: of a number; None if unknown.
+        key: the blackboard entry, as written between the braces; None if none is named.
         fresh: after how many seconds a sample is too old.
         initially: before the first sample.
     """
@@ -114,7 +114,7 @@ class Read(Record):
 
 
 class Parameter(Record):
-    """A parameter in the definition of a requirement; in what is applied an argument is in its place."""
+    """A parameter in the definition of a requirement; what is applied has an argument in its place."""
 
     name: str
     sort: Sort
@@ -205,7 +205,7 @@ class InContext(Record):
     condition: Condition
 
     def __hash__(self) -> int:
-        """By the name: a condition looks through all that it shares again and again."""
+        """By the name: hashing the whole condition would take long."""
         return hash((InContext, self.name))
 
 
@@ -251,13 +251,13 @@ class Span(Record):
 
 
 class Total(Record):
-    """The durations of several nodes in one run, added up."""
+    """The sum of the durations of several nodes in one run."""
 
     targets: tuple[Target, ...]
 
 
 class Every(Record):
-    """Each node of an ID or kind for itself."""
+    """Each node of an ID or kind by itself."""
 
     name: str
 
@@ -269,7 +269,7 @@ class Claim(Record):
     """What is demanded.
 
     Attributes:
-        subject: the claim's own; None: whatever the requirement is attached to.
+        subject: the claim's own; None: what the requirement is attached to.
         limit: of takes, uses, tries, runs; of `within d` and `runs every d` as `<= d`.
         condition: of needs, keeps, never, leaves.
         signal: of uses.
@@ -320,14 +320,14 @@ class Window(Record):
 
 
 class Requirement(Record):
-    """A requirement with its clauses resolved; scopes, odds, confidence, window, action and goal hold for all claims.
+    """A requirement with its clauses resolved; scopes, odds, confidence, window, action and goal apply to all claims.
 
     Attributes:
         place: its name, where it is defined.
-        quality: as written, names joined by points; of a classic one the quality that encloses it.
+        quality: as written, names joined by points; the enclosing one for a classic requirement.
         title: its title, or the classic description.
-        classic: its claims were read from SuccessIf and FailureIf in its description.
-        action: None: nothing is said, so it is monitored.
+        classic: whether its claims were read from SuccessIf and FailureIf in its description.
+        action: None: not given, so it is monitored.
     """
 
     name: str
@@ -371,12 +371,12 @@ class Use(Record):
 
 
 class Applied(Record):
-    """A requirement and what it holds for.
+    """A requirement and what it applies to.
 
     Attributes:
-        requirement: with the arguments in the place of its parameters, and only the claims that hold for `subject`.
+        requirement: with arguments in place of its parameters, and only the claims that apply to `subject`.
         subject: a node, the mission, a span or a sum.
-        place: what attached it: the reference at the node, the `apply`, or the claim that names its subject.
+        place: of what attached it: the reference at the node, the `apply`, or the claim that names its subject.
         how: `subject`, `satisfies` or `apply`.
     """
 
@@ -388,12 +388,12 @@ class Applied(Record):
 
     @property
     def node(self) -> ResolvedNode | None:
-        """The node that it holds for; None for a span, a sum, and an unknown mission."""
+        """The node that it applies to; None for a span, a sum, and an unknown mission."""
         return self.subject.node if isinstance(self.subject, Target | Mission) else None
 
     @property
     def tree(self) -> str | None:
-        """The tree whose root it holds for, where the claim names that by its tree."""
+        """The tree to whose root it applies, if the claim names the root by its tree."""
         node = self.node
         if self.how != "subject" or isinstance(self.subject, Mission) or node is None or node.parent is not None:
             return None
@@ -403,8 +403,8 @@ class Applied(Record):
 
     @property
     def shown(self) -> str:
-        """Its node as a message names it: as the mission or the tree that it is the root of, where the claim does so;
-        empty where there is none."""
+        """Its node as a message names it: as the mission or as a tree if the claim does so; empty if there is no
+        node."""
         if self.node is None:
             return ""
         if isinstance(self.subject, Mission):
@@ -413,7 +413,7 @@ class Applied(Record):
 
     @property
     def nodes(self) -> tuple[ResolvedNode, ...]:
-        """The nodes that its subject names: of a span those of its events."""
+        """The nodes that its subject names; for a span those of its events."""
         if isinstance(self.subject, Total):
             return tuple(target.node for target in self.subject.targets)
         events = (self.subject.first, self.subject.last) if isinstance(self.subject, Span) else ()
@@ -422,7 +422,7 @@ class Applied(Record):
 
 
 class Trace(Record):
-    """A node that satisfies a requirement whose claims name their subjects themselves: a link, no verdict."""
+    """A node that satisfies a requirement whose claims name their own subjects: a link without a verdict."""
 
     requirement: str
     node: ResolvedNode

@@ -1,7 +1,7 @@
-"""Which written nodes a path, a kind or a tag means, in a file and what it includes.
+"""The written nodes that a path, a kind or a tag means, in a file and what it includes.
 
-One invariant: a node is found by what is written, never by what a run makes of it; a path that leads through SubTree
-nodes says so in its target.  It reports nothing: no node, or several, is for the caller to report.
+One invariant: a node is found by what is written, never by its instances in a run; the target of a path that leads
+through SubTree nodes names them.  Callers report paths with no node or several.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree, tree_named, tree_nodes
 from btq_lang.workspace.workspace import Workspace
 
-# ---- queries: each of its own, so that an answer that comes out as before ends the wave of an edit here ----
+# ---- queries, one each, so that an equal result ends the recomputation after an edit ----
 
 
 def nodes(store: Store[Workspace], viewpoint: str) -> Nodes:
@@ -25,12 +25,12 @@ def nodes(store: Store[Workspace], viewpoint: str) -> Nodes:
 
 
 def find(store: Store[Workspace], viewpoint: str, names: tuple[str, ...]) -> tuple[Target, ...]:
-    """The nodes that a path means, as `Nodes.find` does."""
+    """The nodes that a path means, as for `Nodes.find`."""
     return store.ask(nodes, viewpoint).find(names)
 
 
 def every(store: Store[Workspace], viewpoint: str, name: str) -> tuple[ResolvedNode, ...]:
-    """The nodes of an ID or kind, as `Nodes.every` says."""
+    """The nodes of an ID or kind, as for `Nodes.every`."""
     return store.ask(nodes, viewpoint).every(name)
 
 
@@ -55,12 +55,12 @@ def callers(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[Resolve
 
 
 def has_name(store: Store[Workspace], viewpoint: str, name: str) -> bool:
-    """Whether a path can have a name in it."""
+    """Whether a name can occur in a path."""
     return store.ask(nodes, viewpoint).has_name(name)
 
 
 def node_names(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
-    """Every name that a path can have in it."""
+    """Every name that can occur in a path."""
     return store.ask(nodes, viewpoint).names
 
 
@@ -75,8 +75,8 @@ def tags(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
 
 
 def knows_all_nodes(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether a node that is not in scope is nowhere: those of a library may be in the files that include it, and those
-    of a robot in XML that was not read."""
+    """Whether a node that is not in scope does not exist: those of a library may be in the files that include it, and
+    those of a robot in XML that was not read."""
     return (
         store.ask(has_nodes, viewpoint)
         and inputs.is_complete(store, viewpoint)
@@ -86,13 +86,13 @@ def knows_all_nodes(store: Store[Workspace], viewpoint: str) -> bool:
 
 
 def mission(store: Store[Workspace], viewpoint: str) -> ResolvedNode | None:
-    """The root of the main tree; None where it is unknown which tree runs."""
+    """The root of the main tree; None if it is unknown which tree runs."""
     main = inputs.main_tree(store, viewpoint)
     return store.ask(tree_nodes, viewpoint, *main).root if main is not None else None
 
 
 def root(store: Store[Workspace], viewpoint: str, tree: str) -> ResolvedNode | None:
-    """The root of the tree that a name means."""
+    """The root of the tree with a name."""
     found = store.ask(tree_named, viewpoint, tree)
     return found.root if found is not None else None
 
@@ -118,7 +118,7 @@ class Nodes:
 
     def __init__(self, trees: Sequence[ResolvedTree]) -> None:
         self.trees = tuple(trees)
-        self._counting: dict[str, ResolvedTree] = {}  # of several trees of one name the first one
+        self._counting: dict[str, ResolvedTree] = {}  # by name, the first tree of each
         for tree in trees:
             if tree.name is not None:
                 self._counting.setdefault(tree.name, tree)
@@ -135,14 +135,14 @@ class Nodes:
         return any(tree.all for tree in self.trees)
 
     def root(self, tree: str) -> ResolvedNode | None:
-        """The written root of a tree; None where the tree has none, or is unknown."""
+        """The written root of a tree; None if the tree has none, or is unknown."""
         return self._roots.get(tree)
 
     def within(self, item: Tree) -> ResolvedTree:
         """The nodes of one of the trees.
 
         Raises:
-            KeyError: it is another one.
+            KeyError: it is not one of them.
         """
         return self._of_item[id(item)]
 
@@ -151,7 +151,7 @@ class Nodes:
         return {id(tree.item): tree for tree in self.trees}
 
     def of(self, node: Node) -> ResolvedNode | None:
-        """A node of the syntax as one of these."""
+        """The resolved node of a syntax node."""
         return self._of_node.get(id(node))
 
     def callers(self, tree: str | None) -> tuple[ResolvedNode, ...]:
@@ -160,7 +160,7 @@ class Nodes:
 
     @cached_property
     def callers_by_tree(self) -> dict[str, tuple[ResolvedNode, ...]]:
-        """The same of all trees that any runs."""
+        """The same for all trees that are run."""
         found: dict[str, list[ResolvedNode]] = {}
         for tree in self.trees:
             for name, node in tree.calls:
@@ -174,8 +174,8 @@ class Nodes:
 
     def find(self, names: tuple[str, ...]) -> tuple[Target, ...]:
         """The nodes that a path names: the last name's, below nodes or trees of the other names in their order, with
-        any others between them.  A SubTree node and the root of its tree are one: the root where the path holds for
-        every instance of the tree, else the SubTree node."""
+        any others between them.  A SubTree node and the root of its tree are one: the root if the path matches every
+        instance of the tree, else the SubTree node."""
         last, above = names[-1], names[:-1]
         root = self._roots.get(last)
         matching = (self._target(node, above, False) for node in self._by_name.get(last, ()) if node is not root)
@@ -189,7 +189,7 @@ class Nodes:
         return tuple(found)
 
     def every(self, name: str) -> tuple[ResolvedNode, ...]:
-        """The nodes of an ID or kind; a tree's name, where no SubTree runs it, is its root."""
+        """The nodes of an ID or kind; a tree's name, if no SubTree runs it, means its root."""
         found = [node for node in self._by_name.get(name, ()) if name in node.kinds]
         if not found and (root := self._roots.get(name)) is not None:
             return (root,)
@@ -220,12 +220,12 @@ class Nodes:
         return tuple(node for node in nodes if id(node) in below)
 
     def has_name(self, name: str) -> bool:
-        """Whether a path can have a name in it."""
+        """Whether a name can occur in a path."""
         return name in self._by_name or name in self._roots
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Every name that a path can have in it."""
+        """Every name that can occur in a path."""
         return (*self._by_name, *self._roots)
 
     @cached_property
@@ -241,10 +241,10 @@ class Nodes:
         return {id(node.node): node for node in self.all}
 
     def _target(self, node: ResolvedNode, above: tuple[str, ...], is_tree: bool) -> Target | None:
-        """The node as a target of a path with these other names, if they are found above it.
+        """The node as target of a path, if the path's other names are found above it.
 
         Args:
-            is_tree: the path's last name was the tree's, so the tree is no step above the node.
+            is_tree: whether the path's last name was the tree's, so that the tree is not a step above the node.
         """
         left = len(above)
         at = None if is_tree else node.parent
@@ -259,8 +259,8 @@ class Nodes:
         return (Target(node, above[:left]) if missed else Target(node)) if matched else None
 
     def _chains(self, tree: str | None, above: tuple[str, ...], left: int) -> tuple[bool, bool]:
-        """Whether the names that are left are found above a tree on some way, and whether they are missing on some.
-        Each step is a SubTree node with what is above it; its tree's own name is none of its names here."""
+        """Whether the remaining names are found above a tree on some way, and whether they are missing on some. Each
+        step is a SubTree node with what is above it; the name of its tree does not count here."""
         matched = missed = False
         seen: set[tuple[str | None, int]] = set()
         waiting = [(tree, left)]

@@ -1,7 +1,7 @@
 """Reading the paths of clauses: the one node that each of them names.
 
 One invariant: a path that names no node, or several, is None and one problem, reported at the path.  In a file whose
-nodes may be elsewhere (a library, an include that was not found) a path that names none is no problem.
+nodes may be elsewhere (a library, an include that was not found) a path without a node is not a problem.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Problem(Record):
     """Something wrong with a requirement.
 
     Attributes:
-        place: that of the diagnostic, whose own places count from the same item.
+        place: of the diagnostic, whose own places count from the same item.
     """
 
     place: Place
@@ -43,8 +43,8 @@ class PathReader:
 
     Attributes:
         path, facts: the item.
-        parameters: those of the requirement that is read.
-        source: the text that is read, where it is no text of the file, and the place that all of it is shown at.
+        parameters: of the requirement that is read.
+        source: the text that is read, if it is not text of the file, and the place at which all of it is reported.
     """
 
     def __init__(self, store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> None:
@@ -58,10 +58,10 @@ class PathReader:
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """What was found wrong, each once."""
+        """The problems that were found, each once."""
         return tuple(self._problems.values())
 
-    # ---- what it asks ----
+    # ---- look-ups ----
 
     def find(self, names: tuple[str, ...]) -> tuple[Target, ...]:
         """The nodes that a path means."""
@@ -86,23 +86,23 @@ class PathReader:
         return tuple(self.store.ask(nodes.kinds if kind == "kinds" else nodes.tags, self.viewpoint))
 
     def near(self, word: str, *kinds: str) -> tuple[str, ...]:
-        """The names of these kinds that look like an unknown one; none where so many are unknown that nobody reads what
-        each of them may mean."""
+        """Similar names of these kinds for an unknown one; empty if so many are unknown that suggestions are of no
+        use."""
         if self.store.ask(_is_crowded, self.viewpoint):
             return ()
         return near(word, [name for kind in kinds for name in self.names(kind)])
 
     @property
     def mission(self) -> ResolvedNode | None:
-        """The main tree's root; None where it is unknown which tree runs."""
+        """The main tree's root; None if it is unknown which tree runs."""
         return self.store.ask(nodes.mission, self.viewpoint)
 
     @property
     def knows_all_nodes(self) -> bool:
-        """Whether a node that is not in scope is nowhere."""
+        """Whether a node that is not in scope does not exist."""
         return self.store.ask(nodes.knows_all_nodes, self.viewpoint)
 
-    # ---- what it reports ----
+    # ---- reports ----
 
     def complain(
         self,
@@ -115,7 +115,7 @@ class PathReader:
         related: tuple[Related, ...] = (),
         severity: Severity | None = None,
     ) -> None:
-        """Add a problem, unless it is known."""
+        """Add a problem, once."""
         found = Diagnostic(rule, span, message, related, notes, fixes, severity=severity)
         self._problems.setdefault((rule, span, message), Problem(Place(span, self.path, self.facts.item), found))
 
@@ -124,7 +124,7 @@ class PathReader:
         return Place(span if self.source is None else self.source[1], self.path, self.facts.item)
 
     def text(self, start: int, end: int) -> str:
-        """What is written there, blanks folded."""
+        """The text of a span, blanks folded."""
         text = inputs.text(self.store, self.path, self.facts) if self.source is None else self.source[0]
         return " ".join(text[start:end].split())
 
@@ -150,7 +150,7 @@ class PathReader:
         return None
 
     def none_of(self, name: Word) -> None:
-        """Report `every X` where nothing is an X."""
+        """Report `every X` without an X."""
         if not self.knows_all_nodes:
             return
         notes: tuple[str, ...] = ()
@@ -159,7 +159,7 @@ class PathReader:
         self._no_match(name, f"no node matches `every {name.raw}`", "kinds", notes)
 
     def no_tag(self, tag: Word) -> None:
-        """Report `tagged x` where nothing has that tag."""
+        """Report `tagged x` without a node that has that tag."""
         if self.knows_all_nodes:
             self._no_match(tag, f"no node has the tag `{tag.text}`", "tags")
 
@@ -190,7 +190,7 @@ class PathReader:
         return f"unknown node `{shown}`" if len(names) == 1 else f"no node matches `{shown}`"
 
     def _meant(self, path: Path) -> list[tuple[Word, str]]:
-        """Words of a path that names no node, each with a near name that makes it match one."""
+        """Words of a path that names no node, each with a similar name that would make it match one."""
         found = []
         for index, word in enumerate(path.names):
             if self.store.ask(nodes.has_name, self.viewpoint, word.text):
@@ -217,7 +217,7 @@ class PathReader:
 
 
 def _is_crowded(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether clauses use so many unknown names, and there are so many known ones, that to compare all of them would
+    """Whether clauses use so many unknown names, and there are so many known ones, that comparing all of them would
     take seconds."""
     known = {*inputs.names(store, viewpoint, Kind.SIGNAL), *inputs.names(store, viewpoint, Kind.CONTEXT)}
     known |= {*store.ask(nodes.node_names, viewpoint), *store.ask(nodes.tags, viewpoint)}
@@ -231,5 +231,5 @@ def _written(name: str) -> str:
 _DECLARED: Final = {"signals": Kind.SIGNAL, "contexts": Kind.CONTEXT}
 _ONE_DEMAND: Final = "a clause states one demand; write `succeeds within 30 s`, or `succeeds` on a line of its own"
 _SHOWN: Final = 5  # places and fixes of one diagnostic
-_LOOKED_AT: Final = 50  # nodes that a path may mean, for paths that mean one of them alone
+_LOOKED_AT: Final = 50  # nodes that a path may mean, for paths that are unambiguous
 _MOST_COMPARED: Final = 200_000  # pairs of names: some tenths of a second

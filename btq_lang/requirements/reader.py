@@ -1,7 +1,7 @@
-"""Reading the values and conditions of clauses: what each word means, in which unit, and what does not compare.
+"""Reading the values and conditions of clauses: what each word means, its unit, and what cannot be compared.
 
-One invariant: what cannot be understood is None and one problem, reported at its place, so that nothing is ever
-compared in two units.  It does not know verbs: `clauses` says what each of them asks for.
+One invariant: what cannot be understood is None and one problem, reported at its place, so values are never compared in
+different units.  Verbs are for `clauses`.
 """
 
 from __future__ import annotations
@@ -85,11 +85,11 @@ if TYPE_CHECKING:
 
 Problems: TypeAlias = tuple[Problem, ...]
 
-# ---- what names mean: each with the problems of its definition ----
+# ---- what names mean, each with the problems of its definition ----
 
 
 def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Signal | None, Problems]:
-    """The signal of a name; None where none is declared."""
+    """The signal with a name; None if it is not declared."""
     found = inputs.definition(store, viewpoint, Kind.SIGNAL, name)
     if found is None:
         return None, ()
@@ -113,14 +113,14 @@ def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Signal |
         source or None,
         behaviour,  # type: ignore[arg-type]  # one of the parser's three
         fresh.si if fresh is not None else None,
-        initially,  # type: ignore[arg-type]  # an Amount is no table
+        initially,  # type: ignore[arg-type]  # an Amount is not a table
         place,
     )
     return read, reader.problems
 
 
 def context(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Condition | None, Problems]:
-    """The condition of a context; None where it cannot be understood."""
+    """The condition of a context; None if it cannot be understood."""
     found = inputs.definition(store, viewpoint, Kind.CONTEXT, name)
     if found is None:
         return None, ()
@@ -133,7 +133,7 @@ def context(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Conditi
         reader.complain("nested-too-deep", span, f"more than {_DEEPEST} levels of contexts in contexts")
     else:
         written = _written_context(found[1], name)
-        for other in _contexts_in(store, viewpoint, written):  # before its condition is read, in deep calls of Python
+        for other in _contexts_in(store, viewpoint, written):  # before its condition is read, deep in Python's stack
             store.ask(context, viewpoint, other)
         return reader.condition(written.condition), reader.problems
     return None, reader.problems
@@ -144,7 +144,7 @@ _IN_CIRCLE: Final = 0
 
 @on_circle(_IN_CIRCLE)
 def _depth(store: Store[Workspace], viewpoint: str, name: str) -> int:
-    """How many levels of contexts a context is made of, with itself."""
+    """How deeply contexts are nested in a context, itself included."""
     found = inputs.definition(store, viewpoint, Kind.CONTEXT, name)
     if found is None:
         return 1
@@ -167,7 +167,7 @@ def _contexts_in(store: Store[Workspace], viewpoint: str, written: Context) -> I
 
 
 class Reader(PathReader):
-    """Reads values and conditions, too."""
+    """Reads values and conditions too."""
 
     def __init__(
         self,
@@ -178,27 +178,27 @@ class Reader(PathReader):
         parameters: dict[str, Parameter] | None = None,
         known: Collection[str] | None = None,
     ) -> None:
-        """known: the signals that may be named, and no context; None: any, and contexts, too."""
+        """known: the only signals that may be named, without contexts; None: all signals and contexts."""
         super().__init__(store, viewpoint, path, facts)
         self.parameters = parameters or {}
         self._known: Final = known
 
-    # ---- what it asks ----
+    # ---- look-ups ----
 
     def signal(self, name: str) -> Signal | None:
-        """The signal of a name."""
+        """The signal with a name."""
         if self._known is not None and name not in self._known:
             return None
         return self.store.ask(signal, self.viewpoint, name)[0]
 
     def is_context(self, name: str) -> bool:
-        """Whether there is a context of a name, understood or not."""
+        """Whether a context with this name exists, understood or not."""
         if self._known is not None:
             return False
         return inputs.definition(self.store, self.viewpoint, Kind.CONTEXT, name) is not None
 
     def names(self, kind: str) -> tuple[str, ...]:
-        """As of a path reader."""
+        """As for a path reader."""
         if self._known is not None and kind in ("signals", "contexts"):
             return tuple(self._known) if kind == "signals" else ()
         return super().names(kind)
@@ -206,7 +206,7 @@ class Reader(PathReader):
     # ---- values ----
 
     def bounded(self, written: WrittenBounded | None, wanted: Wanted | None) -> Bounded | None:
-        """A value, or a table of them, of what is wanted; None: of anything."""
+        """A value, or a table of values, of the wanted kind; None: any."""
         if written is None:
             return None
         if isinstance(written, Amount):
@@ -226,7 +226,7 @@ class Reader(PathReader):
         return Table((*cases, Case(otherwise, None)))
 
     def argument(self, parameter: Parameter, written: WrittenBounded) -> Bounded | None:
-        """A value for a parameter, or a first one for a signal."""
+        """The argument for a parameter, or the first value of a signal."""
         if parameter.sort == "number":
             unit = parameter.unit
             if unit is None:
@@ -278,7 +278,7 @@ class Reader(PathReader):
 
         Args:
             beside: what it is compared with.
-            unit: what it is wanted in, where it is alone.
+            unit: wanted, if it is not compared with anything.
         """
         name = word.text
         if word.kind == STRING:
@@ -296,11 +296,11 @@ class Reader(PathReader):
         return None
 
     def unknown(self, word: Word, kinds: tuple[str, ...], unit: str = "m") -> None:
-        """A name that nothing declares.
+        """Report a name that is not declared.
 
         Args:
-            kinds: of what the names may have been meant.
-            unit: what a signal of that name would be declared in.
+            kinds: that the name may have been meant to have.
+            unit: with which a signal of that name would be declared.
         """
         if not inputs.is_complete(self.store, self.viewpoint):
             return
@@ -329,7 +329,7 @@ class Reader(PathReader):
         return name in self.parameters or self.signal(name) is not None or self.is_context(name)
 
     def _fits(self, term: Term, wanted: Wanted) -> bool:
-        """Whether a value is of what is wanted; else it is reported."""
+        """Whether a value is of the wanted kind; else that is reported."""
         if term.sort != "number":
             self._unexpected(wanted.what, term)
             return False
@@ -377,7 +377,7 @@ class Reader(PathReader):
     # ---- conditions ----
 
     def condition(self, written: WrittenCondition | None) -> Condition | None:
-        """A condition, where all of it is understood."""
+        """A condition; None if a part of it was not understood."""
         if isinstance(written, Operand):
             return self._lone(written.word)
         if isinstance(written, NodeRuns):
@@ -412,7 +412,7 @@ class Reader(PathReader):
         return All(found) if written.operator == "and" else Any(found)
 
     def _lone(self, word: Word) -> Condition | None:
-        """A context, a bool signal or parameter, `true` or `false`, or else a node that runs."""
+        """A context, a bool signal or parameter, `true` or `false`, or else a running node."""
         name = word.text
         if word.kind in (NUMBER, QUANTITY):
             term = self._number(word, False)
@@ -449,7 +449,7 @@ class Reader(PathReader):
         self._unexpected("a condition", term)
 
     def _as_path(self, written: Binary) -> Path | None:
-        """`A/B`, which is read as a division, where no name in it is a signal."""
+        """`A/B`, which is parsed as a division, if no name in it is a signal."""
         words: list[Word] = []
         at: WrittenCondition = written
         while isinstance(at, Binary) and at.operator == "/" and isinstance(at.right, Operand):
@@ -464,7 +464,7 @@ class Reader(PathReader):
 
     def _compare(self, written: Comparison) -> Condition | None:
         terms: list[Term | None] = [None] * len(written.operands)
-        # A name that nothing declares may be declared in the unit of what it is compared with, so names come last.
+        # An undeclared name may get the unit of what it is compared with, so names come last.
         for at, operand in sorted(enumerate(written.operands), key=lambda each: self._is_unknown(each[1])):
             if self._is_unknown(operand) and isinstance(operand, Operand):
                 terms[at] = self._named(operand.word, next(filter(None, terms), None))
@@ -473,7 +473,7 @@ class Reader(PathReader):
         found = [term for term in terms if term is not None]
         if len(found) < len(terms):
             return None
-        # Pairs beside each other, so that one number without a unit is reported once.
+        # Adjacent pairs, so that one number without a unit is reported once.
         ok = True
         for operator, left, right in zip(written.operators, found, found[1:], strict=False):
             ok = self._comparable(left, right, operator) and ok
@@ -517,7 +517,7 @@ class Reader(PathReader):
         return False
 
     def _mismatch(self, left: Term, right: Term, what: str) -> None:
-        """Complain that two values measure different things; `what` cannot be done with them."""
+        """Report that two values measure different things; `what` cannot be done with them."""
         shown = [f"`{self._at(term.span)}` ({in_words(term)})" for term in (left, right)]
         preposition = {"compare": "with", "add": "and", "subtract": "and"}[what]
         message = f"cannot {what} {f' {preposition} '.join(shown)}"
@@ -620,4 +620,4 @@ class Reader(PathReader):
         return Term(value, "number", dimension, unit, span)
 
 
-_DEEPEST: Final = 50  # contexts in contexts: a condition is a tree, and every reader walks it
+_DEEPEST: Final = 50  # nested contexts: a condition is a tree that is walked recursively

@@ -9,8 +9,8 @@ from btq_lang.util.record import fields_of
 
 
 def signals_in(part: object) -> Iterator[Signal]:
-    """The signals in a condition, a bound or any other part of the model, or in a tuple of such; a context is looked
-    into once."""
+    """The signals in a condition, a bound or any other part of the model, or in a tuple of such; each context is
+    searched once."""
     waiting = [part]
     contexts: set[int] = set()
     while waiting:

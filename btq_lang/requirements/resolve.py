@@ -24,7 +24,7 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
     """The requirements of a file and what it includes, resolved.
 
     Raises:
-        KeyError: there is no such file.
+        KeyError: the file does not exist.
     """
     if path not in workspace.files:
         raise KeyError(path)

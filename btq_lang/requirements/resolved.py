@@ -1,4 +1,4 @@
-"""What a file's requirements come to, once their words are resolved."""
+"""The resolved requirements of a file."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ class Requirements:
     """All requirements that a file sees.
 
     Attributes:
-        store, viewpoint: where more can be asked about them, as their budgets.
+        store, viewpoint: for further queries, for instance of budgets.
         signals: by name.
-        contexts: by name; None: it could not be understood.
-        all: every requirement by name, in the order of their definitions, parameters in it.
-        applied: what holds for what, with arguments.
-        traces: `satisfies` at a node of a requirement whose claims name their subjects themselves.
+        contexts: by name; None if not understood.
+        all: every requirement by name, in the order of their definitions, with parameters.
+        applied: what applies to what, with arguments.
+        traces: `satisfies` at nodes, for requirements whose claims name their own subjects.
         attached: names of requirements that a node or an `apply` refers to.
-        problems: everything that was not understood.
+        problems: all that was not understood.
         nodes: the written nodes.
-        mission: the main tree's root; None where it is unknown which tree runs.
+        mission: the main tree's root; None if it is unknown which tree runs.
     """
 
     def __init__(
@@ -56,14 +56,14 @@ class Requirements:
         self.mission = mission
 
     def of(self, node: ResolvedNode) -> tuple[Applied, ...]:
-        """What holds for a node."""
+        """What applies to a node."""
         return tuple(each for each in self.applied if each.node is node)
 
     def about_no_node(self) -> tuple[tuple[Requirement, Claim], ...]:
-        """The claims that hold for nothing, of requirements that hold for something by their other claims; a
-        requirement that holds for nothing at all is not used, which is another matter."""
+        """The claims that apply to nothing, of requirements whose other claims apply to something; a requirement that
+        applies to nothing at all is unused, which is reported separately."""
         used = {each.requirement.name for each in self.applied}
-        # Claims of one text have one subject, or none.
+        # Claims with equal text have the same subject, or none.
         held = {(each.requirement.name, claim.text) for each in self.applied for claim in each.requirement.claims}
         return tuple(
             (requirement, claim)

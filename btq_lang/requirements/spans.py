@@ -1,8 +1,8 @@
-"""The node whose time a span is: from the start of the first child of a Sequence to the success of its last one is the
-time of that Sequence.
+"""The node whose duration a span measures: from the start of the first child of a Sequence to the success of its last
+one is the duration of that Sequence.
 
-One invariant: whenever the node starts, the span's first event happens in the same tick, and where the node succeeds,
-so does its last one.
+One invariant: whenever the node starts, the span's first event happens in the same tick, and if the node succeeds, so
+does its last one.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 
 
 def node_of(span: Span, budgets: Budgets) -> ResolvedNode | None:
-    """The innermost node whose time a span is; None: there is no such node."""
+    """The innermost node whose duration a span measures, if there is one."""
     first, last = _node(span.first, ("starts",)), _node(span.last, ("succeeds", "finishes"))
     if first is None or last is None:
         return None
@@ -35,7 +35,7 @@ def _node(event: Event, happenings: tuple[str, ...]) -> ResolvedNode | None:
 
 
 def _chain(node: ResolvedNode, *, at_end: bool) -> list[ResolvedNode]:
-    """A node and the Sequences above it that begin with it, or end with it."""
+    """A node and the Sequences above it that begin, or end, with it."""
     chain = [node]
     while (parent := node.parent) is not None and _takes_no_ticks_of_its_own(parent):
         if node.index != (len(parent.node.children) - 1 if at_end else 0):

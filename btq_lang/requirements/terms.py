@@ -1,6 +1,6 @@
 """Values in expressions, with what must be known to compare them: sorts, dimensions, levels of temperature.
 
-It does not know names: `reader` looks them up.
+Names are looked up by `reader`.
 """
 
 from __future__ import annotations
@@ -31,18 +31,18 @@ from btq_lang.util.text import Span
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Sort
 
-    # Of a temperature: 25 degC is a level, a difference of two levels is a difference, and K may be either.
+    # For temperatures: 25 degC is a level, a difference of two levels is a difference, and K may be either.
     Level: TypeAlias = Literal["level", "difference", "either"]
 
 
 class Wanted(Record):
-    """What a verb asks for in a place.
+    """What a verb expects at a place.
 
     Attributes:
         what: in words, to follow "expected ".
         dimensions: any of these.
-        unit: what a number without a unit may have meant; None: it needs no unit.
-        level: of temperatures, whether a difference is asked for.
+        unit: that a number without one may have meant; None if it needs no unit.
+        level: for temperatures, whether a difference is expected.
     """
 
     what: str
@@ -55,10 +55,10 @@ class Term(Record):
     """A value in an expression, with what must be known to compare it.
 
     Attributes:
-        dimension: of a number; None where it is unknown.
-        unit: how a number beside it would be written.
+        dimension: of a number; None if unknown.
+        unit: in which a number compared with it would be written.
         span: its place, counted from the entry.
-        word: where it is a literal.
+        word: if it is a literal.
     """
 
     value: Number
@@ -71,7 +71,7 @@ class Term(Record):
 
     @property
     def is_bare(self) -> bool:
-        """A number without a unit."""
+        """Whether it is a number without a unit."""
         return self.word is not None and self.word.kind == NUMBER
 
 
@@ -110,7 +110,7 @@ def term_of(value: Read | Parameter, word: Word) -> Term:
 
 
 def unit_beside(term: Term | None) -> str:
-    """What a signal would be declared in that is compared with this."""
+    """The unit with which a signal that is compared with this would be declared."""
     if term is None or (term.sort == "number" and term.unit is None):
         return "m" if term is None or not term.is_bare else "1"
     return term.unit or term.sort
@@ -121,7 +121,7 @@ def unit_symbol(unit: Unit) -> str | None:
 
 
 def sum_level(operator: str, left: Level, right: Level) -> Level | None:
-    """What a sum or a difference of temperatures is; None: there is no such thing."""
+    """The level of a sum or difference of temperatures; None if it is meaningless."""
     if left != "level" and right != "level":
         return "difference" if "difference" in (left, right) else "either"
     if operator == "-":
@@ -130,7 +130,7 @@ def sum_level(operator: str, left: Level, right: Level) -> Level | None:
 
 
 def is_count_of(term: Term, other: Term) -> bool:
-    """`count(…)` is a plain number and a count, as one likes."""
+    """Whether it is `count(…)`, which is both a plain number and a count."""
     is_count = isinstance(term.value, Aggregate) and term.value.function == "count"
     return is_count and other.dimension in (NO_DIMENSION, COUNT)
 
@@ -142,7 +142,7 @@ def in_words(term: Term) -> str:
 
 
 def sort_of(written: Word | None) -> tuple[Sort, Unit | None]:
-    """What the word after the `:` of a signal or a parameter says."""
+    """The meaning of the word after the `:` of a signal or a parameter."""
     if written is not None and written.text in ("bool", "text"):
         return ("bool" if written.text == "bool" else "text"), None
     return "number", parse_unit(written.text) if written is not None else None
