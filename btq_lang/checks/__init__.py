@@ -1,12 +1,11 @@
 """The checks: what is wrong with a file beyond its syntax.
 
-One invariant: a check is a function of the view of an item and its entry, and yields diagnostics whose spans count
-from that entry; it never raises, whatever the file.  A module holds the rules of one subject, and `CHECKS` below says
-which function looks at which items.  What a check asks, it asks its view, and so the query store
-(workspace/queries.py), which keeps the answers from one edit to the next.  Not known here: what an edit changed, and
-how findings are printed.
+One invariant: a check is a function of the view of an item and its entry, and yields diagnostics whose spans count from
+that entry; it never raises, whatever the file.  A module holds the rules of one subject, and `CHECKS` below maps types
+of items to functions.  A check gets all it needs from its view, and so from the query store (workspace/queries.py),
+which caches results from one edit to the next.  Not known here: what an edit changed, and how findings are printed.
 
-    view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree sorted by what checks look for
+    view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
     kinds.py, names.py, ports.py, children.py, trees.py, includes.py   what the engine would refuse
     literals.py, constants.py, strings.py, scripts.py, counts.py, empty.py, outputs.py   values
@@ -82,7 +81,7 @@ if TYPE_CHECKING:
 
 Check: TypeAlias = "Callable[[View, Entry], Iterator[Diagnostic]]"
 
-# The checks of each kind of item: most items are small, and most checks have nothing to say of most of them.
+# The checks of each type of item: most items are small, and most checks do not concern most of them.
 CHECKS: dict[type, tuple[Check, ...]] = {
     Include: (
         includes.missing_include,
@@ -214,7 +213,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
 }
 
 
-# After these mistakes nobody knows which node is whose child, so there is nothing to say of their number.
+# After these mistakes it is unknown which node is whose child, so their number is not checked.
 _STRUCTURE_IS_LOST = frozenset(
     ("inconsistent-indentation", "nested-too-deep", "string-over-items", "unclosed-string", "unclosed-bracket")
 )
@@ -228,7 +227,7 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
         unreachable.unreachable_child,
     )
 )
-# Of models, of which a file has many, these look at nothing but the ports, and the others at those of models of trees.
+# Of models, of which a file has many, these need only the ports, and the others only the ports of trees' models.
 _OF_PORTS: frozenset[Check] = frozenset(
     (ports.duplicate_port, ports.misspelt_type, literals.invalid_literal, literals.quantity_on_unitless_port)
 )
@@ -250,32 +249,32 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
         path: one of the workspace's files.
 
     Returns:
-        Diagnostics as the project asks for them (severities, selection, suppressions); their spans count from the
+        Diagnostics as the project configures them (severities, selection, suppressions); their spans count from the
         start of the file, and so do all their places.
 
     Raises:
-        KeyError: there is no such file.
+        KeyError: the file does not exist.
     """
     (found,) = check_each(workspace, (path,))
     return found
 
 
 def check_each(workspace: Workspace, paths: Iterable[str]) -> Iterator[tuple[Diagnostic, ...]]:
-    """The same of many files, which share what they ask of each other."""
+    """The same for many files, which share cached results."""
     store = Store(workspace)
     for path in paths:
         yield findings(store, path).diagnostics
         store.sweep()
-    store.sweep(always=True)  # answers and what they rest on hold each other, and so the workspace
+    store.sweep(always=True)  # cached results refer to each other, and so to the workspace
 
 
 def findings(store: Store[Workspace], path: str) -> Findings:
-    """The same of a file of the store's workspace, with what each item is reported for."""
+    """The same for a file of the store's workspace, with the diagnostics of each item."""
     return findings_of(store.state, path, store.ask(reported_in_file, path, False))
 
 
 def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -> Findings:
-    """What is reported of a file's items, without what its comments silence, and of XML on the XML itself."""
+    """The diagnostics of a file's items, without those that comments silence; those of XML are placed in the XML."""
     found = Findings([(each, each.starts(workspace)) for each in reported])
     file = workspace.files[path]
     if not file.has_directives and not workspace.origins:
@@ -294,26 +293,26 @@ def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -
 
 
 def keep(workspace: Workspace, path: str) -> None:
-    """Keep what is found in a file from one edit to the next."""
+    """Keep the results of a file from one edit to the next."""
     workspace.store.pin(reported_in_file, path, False)
 
 
 def forget(workspace: Workspace, path: str) -> None:
-    """Nobody asks for a file any more."""
+    """Stop keeping the results of a file."""
     workspace.store.unpin(reported_in_file, path, False)
     workspace.store.sweep(always=True)
 
 
 def let_go(workspace: Workspace) -> None:
-    """Nobody waits: let go of what edits have replaced."""
+    """Release what edits have replaced; called when nothing waits for the result."""
     workspace.store.sweep()
 
 
 def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) -> tuple[Reported, ...]:
-    """What is reported of each item of a file of which anything is.
+    """The diagnostics of each item of a file that has any.
 
     Args:
-        is_alone: nothing of what is wrong in the files that it includes.
+        is_alone: leave out what is wrong in the files that it includes.
     """
     items = lookups.items(store, viewpoint)
     found = [store.ask(_reported, viewpoint, facts, is_alone and type(facts.item) is Include) for facts in items]
@@ -336,8 +335,8 @@ def _reported(store: Store[Workspace], viewpoint: str, facts: Facts, is_alone: b
 
 
 def _errors_in(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Place, str], ...]:
-    """What keeps a file from being read, without what a check of its own would find; of XML, which no build writes and
-    which is seldom checked itself, all that is wrong with it."""
+    """The errors that keep a file from being read, without what a check of its own would report; for XML, which no
+    build writes and which is seldom checked itself, all errors."""
     view = View(store, viewpoint)
     if not view.is_xml:
         return view.look_up(lookups.syntax_errors)
@@ -351,7 +350,7 @@ def _errors_in(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Place, st
 
 
 def checks_of(entry: Entry) -> tuple[Check, ...]:
-    """The checks that may have something to say of an entry."""
+    """The checks that may concern an entry."""
     item = entry.item
     checks = CHECKS.get(type(item), ())
     if type(item) is Model and not item.body:
@@ -364,7 +363,7 @@ def checks_of(entry: Entry) -> tuple[Check, ...]:
 
 
 def _on_sound_lines(found: Iterable[Diagnostic], entry: Entry, text: str) -> Iterator[Diagnostic]:
-    """What is not on a line with a syntax error: what a line means is not known before it can be read."""
+    """The diagnostics that are not on a line with a syntax error, whose meaning is unknown."""
     broken = {_line(text, each) for each in entry.diagnostics if each.effective_severity is Severity.ERROR}
     return (each for each in found if _line(text, each) not in broken)
 

@@ -1,4 +1,4 @@
-"""What is attached to a node with the other word: a requirement with `satisfices`, a quality with `satisfies`."""
+"""What is attached with the wrong word: a requirement with `satisfices`, or a quality with `satisfies`."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ _WORDS = ("satisfices", "satisfies")
 
 
 def other_word(view: View, entry: Entry, use: Use, rule: str, *, requirement: bool, safe: bool = True) -> Diagnostic:
-    """The name of a requirement stands where that of a quality does, or the other way round.
+    """The name of a requirement is in the place of a quality's, or the other way round.
 
     Args:
         requirement: whether it is one.
-        safe: whether nothing else is to say of the name behind the other word.
+        safe: whether the name would be right after the other word.
     """
     is_, is_not = ("requirement", "quality") if requirement else ("quality", "requirement")
     word, other = _WORDS if requirement else _WORDS[::-1]
@@ -28,7 +28,7 @@ def other_word(view: View, entry: Entry, use: Use, rule: str, *, requirement: bo
 
 
 def _alone(view: View, entry: Entry, use: Use, word: str) -> Span | None:
-    """The word of the clause that holds a name and nothing else."""
+    """The word of the clause that contains only this name."""
     clauses = use.node.clauses if use.node is not None else entry.item.clauses if isinstance(entry.item, Tree) else ()
     for clause in clauses:
         if isinstance(clause, Satisfices | Satisfies) and clause.start < use.span.start and clause.end == use.span.end:

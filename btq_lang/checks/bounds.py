@@ -1,4 +1,5 @@
-"""Bounds that nothing can keep or break, whatever the robot does, and the use of what nothing uses up."""
+"""Bounds that can never be kept or never be broken, whatever the robot does, and `uses` of signals without
+consumption."""
 
 from __future__ import annotations
 
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A part of an attempt, a time below 0, and the attempts of a mission, which starts once."""
+    """A fractional number of attempts, a negative time, and attempts of a mission, which starts once."""
     limits: dict[int, bool] = {}  # by the `id` of the requirement, which may have thousands of claims
     for requirement, claim in _claims(view, entry):
         bound, verb = claim.bound, claim.verb.raw
@@ -60,7 +61,7 @@ def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def uses_of_gauge(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """`uses … of` a signal that is neither a counter nor a level: nobody says what its use is."""
+    """`uses … of` a signal that is neither a counter nor a level, so that its use is undefined."""
     for _, claim in _claims(view, entry):
         declaration = view.declaration(Kind.SIGNAL, claim.resource.text) if claim.resource is not None else None
         signal = declaration.symbol.target if declaration is not None else None
@@ -93,7 +94,7 @@ def _claims(view: View, entry: Entry) -> Iterator[tuple[Requirement, Claim]]:
 
 
 def _value(amount: Amount) -> tuple[float, str]:
-    """What it says, and whether that is a count or a time; else it is told as something else, or a parameter's."""
+    """A value, if it is a count or a time; others are reported elsewhere or are a parameter's."""
     word = amount.word
     number, what = 0.0, ""
     if word.kind == NUMBER:
@@ -135,7 +136,7 @@ def _shown(amount: Amount) -> str:
 
 
 def _has_limits(requirement: Requirement) -> bool:
-    """Whether the engine is to hold nodes to its times, so that these are told as limit-too-small."""
+    """Whether the engine should enforce its times, which are then reported as limit-too-small."""
     clauses = requirement.clauses
     actions = [clause.action.raw for clause in clauses if isinstance(clause, OnViolation) and clause.action is not None]
     has_odds = any(isinstance(clause, Odds) for clause in clauses)

@@ -1,4 +1,4 @@
-"""Budgets that do not add up: what is demanded of the children does not fit into what is demanded of their parent."""
+"""Budgets that do not add up: the demands on the children do not fit into the demand on their parent."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
-    """What the children may take is more than their parent may: in the worst case, or always."""
+    """The children may take more than their parent may: in the worst case, or always."""
     for applied, claim, node, place in demanded.claims:
         most = highest(claim) if VERBS[claim.verb].limits else None
         if most is None or not (node.children or node.category == "SubTree"):
@@ -62,7 +62,7 @@ def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
 
 
 def _held_against(claim: Claim, budget: Budget) -> Range | None:
-    """What of a budget a claim is about."""
+    """The part of a budget that a claim is about."""
     return budget.success if VERBS[claim.verb].limits == "success" else budget.completes
 
 

@@ -15,25 +15,25 @@ if TYPE_CHECKING:
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
 
-# The trees that a tree runs, and those that it means to: where `SubTree` is missing.
+# The trees that a tree runs, and those that it probably means to run, if `SubTree` is missing.
 Runs: TypeAlias = "tuple[tuple[str, ...], tuple[str, ...]]"
 
 
 def calls(store: Store[Workspace], viewpoint: str) -> Calls:
-    """Which tree runs which, of all trees in scope; those of the file come first, for a circle is reported at its first
-    tree, and included XML may not know that it is in one."""
+    """Which tree runs which, for all trees in scope; those of the file come first, for a circle is reported at its
+    first tree, and included XML may not know that it is in one."""
     view = View(store, viewpoint)
     names = dict.fromkeys((*view.look_up(lookups.own_trees), *view.names(Kind.TREE)))
     return Calls({name: view.ask(_runs, name) for name in names})
 
 
 def callers(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...]:
-    """The other trees that run a tree, or mean to."""
+    """The other trees that run a tree, or probably mean to."""
     return store.ask(calls, viewpoint).callers.get(tree, ())
 
 
 def is_missed(store: Store[Workspace], viewpoint: str, tree: str) -> bool:
-    """Whether the mission does not run a tree, neither directly nor through others, if that is known for sure."""
+    """Whether the mission certainly does not run a tree, neither directly nor through others."""
     return tree in store.ask(_missed, viewpoint)
 
 
@@ -44,12 +44,12 @@ def circle(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...
 
 
 def has_gaps(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether a SubTree names a tree that nobody knows, so that nobody knows what is reached."""
+    """Whether a SubTree names an unknown tree, so that it is not known which trees are reached."""
     return not View(store, viewpoint).is_complete or store.ask(calls, viewpoint).has_gaps
 
 
 def _circles(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ...]]:
-    """All of them: hardly any mission has one, so that after an edit no tree looks for its own again."""
+    """All circles: hardly any mission has one, so that after an edit no tree looks for its own again."""
     return store.ask(calls, viewpoint).circles
 
 
@@ -66,7 +66,7 @@ class Calls:
     """The trees of a scope, by name, with the trees that each of them runs as SubTree.
 
     Attributes:
-        has_gaps: a SubTree names a tree that nobody knows, so that nobody knows what is reached.
+        has_gaps: whether a SubTree names an unknown tree, so that it is not known which trees are reached.
     """
 
     def __init__(self, runs: Mapping[str, Runs]) -> None:
@@ -75,7 +75,7 @@ class Calls:
         self.has_gaps = any(name not in runs for names in self._called.values() for name in names)
 
     def __eq__(self, other: object) -> bool:
-        """Whether both say the same of every tree, in the same order."""
+        """Whether both are equal for every tree, in the same order."""
         return isinstance(other, Calls) and (
             (self._called, self._meant, [*self._called]) == (other._called, other._meant, [*other._called])
         )
@@ -83,7 +83,7 @@ class Calls:
     __hash__ = None  # type: ignore[assignment]  # nobody looks for one
 
     def called_by(self, name: str) -> tuple[str, ...]:
-        """The trees that a tree runs, in the order of their SubTrees; none for an unknown tree."""
+        """The trees that a tree runs, in the order of their SubTrees; empty for an unknown tree."""
         return self._called.get(name, ())
 
     @property
@@ -93,13 +93,13 @@ class Calls:
 
     @cached_property
     def callers(self) -> dict[str, tuple[str, ...]]:
-        """The other trees that run a tree, or mean to."""
+        """The other trees that run a tree, or probably mean to."""
         meant = _turned(self._meant)
         found = {name: (*callers, *meant.pop(name, ())) for name, callers in self._callers.items()}
         return found | {name: tuple(callers) for name, callers in meant.items()}
 
     def reached_from(self, name: str) -> frozenset[str]:
-        """A tree and all that it runs, directly or not, and those that it means to run: where `SubTree` is missing."""
+        """A tree and all that it runs, directly or not, including those that it probably means to run."""
         if name not in self._reached:
             seen: set[str] = set()
             waiting = [name]
@@ -114,7 +114,7 @@ class Calls:
 
     @cached_property
     def circles(self) -> dict[str, tuple[str, ...]]:
-        """The shortest way from a tree back to itself, of the first tree of each knot."""
+        """The shortest way from a tree back to itself, for the first tree of each knot."""
         return {name: self._circle(name, knot) for name, knot in self.knots.items()}
 
     def _circle(self, name: str, knot: frozenset[str]) -> tuple[str, ...]:
@@ -142,7 +142,7 @@ class Calls:
 
     @cached_property
     def callees_first(self) -> tuple[str, ...]:
-        """The trees, each after those that it runs, but for circles."""
+        """The trees, each after those that it runs, except in circles."""
         called = self._called
         finished: dict[str, None] = {}
         begun: set[str] = set()
@@ -161,7 +161,7 @@ class Calls:
 
     @cached_property
     def knots(self) -> dict[str, frozenset[str]]:
-        """The strongly connected components that hold a circle, each under the first of its trees (Kosaraju)."""
+        """The strongly connected components that contain a circle, each under the first of its trees (Kosaraju)."""
         finished = self.callees_first
         place_of = {name: number for number, name in enumerate(finished)}
         if all(place_of.get(called, -1) < place_of[name] for name in finished for called in self._called[name]):
@@ -207,7 +207,7 @@ def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
 
 
 def _meant(use: Use) -> str:
-    """What a node's kind may name where it should be a tree: `PickPlace`, `Subtree PickPlace`."""
+    """The tree that a node's kind may mean: `PickPlace`, `Subtree PickPlace`."""
     node = use.node
     if node is not None and node.label is not None and use.name.casefold() == "subtree":
         return node.label.text

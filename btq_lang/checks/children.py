@@ -1,4 +1,4 @@
-"""How many children a node has, and what their number must fit."""
+"""The number of children of a node, and what it must fit."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         declared = declared_category(seen)
         if seen.kind is None and seen.node.category is not None and declared not in (None, seen.node.category.raw):
-            continue  # which of the two is wrong is told first
+            continue  # the wrong one of the two is reported first
         if any(misspelt_clause(child) for child in seen.node.nodes):
-            continue  # of a child that is meant for a clause, that is told
+            continue  # a child that is meant as a clause is reported
         if count == 0 and entry.diagnostics:
             after = nodes[index + 1].node.start if index + 1 < len(nodes) else len(view.text)
             if view.is_torn(seen.node.start, after - 1):
-                continue  # its child may be what could not be read
+                continue  # its child may be on a line that could not be read
         notes: tuple[str, ...] = ()
         if seen.kind is not None and seen.kind.late_count and count:
             notes = ("the engine loads this and throws when the node is ticked",)
@@ -75,7 +75,7 @@ def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
         wanted = [f"case_{case}" for case in range(1, number + 1)]
         given = {pair.key.text: pair.key for pair in node.attributes}
         extra = [key for name, key in given.items() if is_case(seen, name) and name not in wanted]
-        # Without a variable no case counts, and that is told: the children that can never run.
+        # Without a variable no case counts, which is reported: the children that can never run.
         missing = [name for name in wanted if name not in given] if "variable" in given else []
         if extra:
             message = f"{seen.shown_kind} has no case `{extra[0].text}`"
@@ -94,7 +94,7 @@ def parallel_threshold(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in view.seen.of_flow("parallel", "parallel-all"):
         count = len(seen.node.children)
         if seen.kind is None or count == 0:
-            continue  # without a child, that is what is told
+            continue  # the missing child is reported instead
         for port in seen.kind.ports:
             value = seen.node.attribute(port.name) if port.role in ("successes", "failures") else None
             threshold = _integer(value)
@@ -110,7 +110,7 @@ def parallel_threshold(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _is_by_children(seen: ResolvedNode) -> bool:
-    """Whether its kind is the one that fits the number of its children, as of a `Switch`."""
+    """Whether its kind was chosen by the number of its children, as for a `Switch`."""
     kind = seen.node.kind
     return kind is not None and is_by_children(kind.raw)
 
@@ -120,7 +120,7 @@ def _integer(word: Word | None) -> int | None:
 
 
 def _called(seen: ResolvedNode) -> str:
-    """A node with its category, where the number of its children follows from nothing else."""
+    """A node with its category, if the number of its children follows only from that."""
     is_known = seen.kind is not None or seen.is_placeholder or seen.is_subtree
     return seen.shown_kind if is_known else f"the {seen.category} {seen.shown_kind}"
 

@@ -1,4 +1,4 @@
-"""Clauses of one requirement: said twice, about nothing, or without what they should name."""
+"""Clauses of one requirement that are repeated, about nothing, or incomplete."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _ONCE: dict[type, str] = {
 
 
 def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A second clause of a kind of which the first counts; one that says the same can go."""
+    """A second clause of a kind of which the first counts; an equal one can be removed."""
     for symbol in view.facts.summary.symbols:
         requirement = symbol.target
         if symbol.kind is not Kind.REQUIREMENT or not isinstance(requirement, Requirement):
@@ -45,7 +45,7 @@ def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
         first: dict[type, Clause] = {}
         for clause in requirement.clauses:
             if type(clause) in _ONCE and (counts := first.setdefault(type(clause), clause)) is not clause:
-                # What one of several equal definitions leaves out contradicts the others.
+                # If one of several equal definitions lacked it, it would contradict the others.
                 is_alone = not view.is_repeated(symbol.kind, symbol.name)
                 yield _duplicate(view, entry, counts, clause, is_alone)
 
@@ -59,7 +59,7 @@ def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if any(isinstance(clause, Odds) for clause in requirement.clauses):
             continue
         if view.is_torn(requirement.start, requirement.end):
-            continue  # the odds may be what could not be read
+            continue  # the odds may be on a line that could not be read
         for clause in requirement.clauses:
             if isinstance(clause, Confidence) or (isinstance(clause, Window) and clause.experiments is not None):
                 said = "a confidence" if isinstance(clause, Confidence) else "the window"
@@ -72,13 +72,13 @@ def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def unused_parameter(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A parameter that no clause of its requirement names, so that its value changes nothing."""
+    """A parameter that no clause of its requirement uses, so that its value has no effect."""
     for symbol in view.facts.summary.symbols:
         requirement = symbol.target
         if not isinstance(requirement, Requirement) or not requirement.parameters:
             continue
         if view.is_torn(requirement.start, requirement.end):
-            continue  # what it is for may be what could not be read
+            continue  # its use may be on a line that could not be read
         named = {word.text for word in walk(requirement.clauses) if isinstance(word, Word)}
         for parameter in requirement.parameters:
             if parameter.name.text not in named:
@@ -103,7 +103,7 @@ def _duplicate(view: View, entry: Entry, counts: Clause, clause: Clause, is_alon
 
 
 def with_blanks(text: str, clause: Clause | NodeClause) -> Span:
-    """A clause with the blanks that would be left over, and with its line where nothing else stands there."""
+    """A clause with the blanks that would remain, and with its line if nothing else is on it."""
     start, end = clause.start, clause.end
     while start and text[start - 1] in " \t":
         start -= 1

@@ -47,12 +47,12 @@ def _operands(view: View, entry: Entry) -> Iterator[Operand]:
         return
     text = view.text
     for root in roots:
-        # Else a requirement is words: its name, its quality, its text.
+        # Other parts of a requirement are words: its name, its quality, its text.
         parts: tuple[object, ...] = root.arguments if isinstance(root, ReqRef) else ()
         clauses_of: tuple[Clause | Context, ...] = (root,) if isinstance(root, Context) else ()
         if isinstance(root, Requirement):
             parts, clauses_of = root.parameters, root.clauses
-        # Nearly all clauses are without a `-`, and need not be looked at word by word.
+        # Nearly all clauses are without a `-`, and need not be searched word by word.
         minus = [each for each in clauses_of if "-" in text[each.start : each.end]]
         for part in walk((*parts, *minus)):
             if isinstance(part, Operand):

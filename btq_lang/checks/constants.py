@@ -1,4 +1,4 @@
-"""Numbers that a SubTree gives to ports of text."""
+"""Numbers that a SubTree passes to text ports."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def number_for_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A number that a SubTree gives to a port, or that is a port's default, where a node below takes a text."""
+    """A number that a SubTree passes to a port, or that is a port's default, where a node below expects a text."""
     if not TYPED_CONSTANTS.holds(view.project.target):
         return
     for seen in view.seen.subtrees:
@@ -32,12 +32,12 @@ def number_for_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for tree, port in _ports_of_trees(entry):
         met = _text_below(view, tree, port.name, port.default)
         if met is not None and port.default is not None:
-            # Only where a SubTree gives the port nothing else.
+            # Only if a SubTree passes nothing else to the port.
             yield _told(port.default, met, Severity.WARNING)
 
 
 def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -> tuple[Place, str, str] | None:
-    """The port of texts that a number meets: its place, its name, its node."""
+    """The text port that receives a number: its place, its name, its node."""
     if value is None or port is None or value.kind == QUANTITY or not is_number(value.text):
         return None
     if not is_port_name(port.text):

@@ -1,4 +1,4 @@
-"""Counts and times with which a node does nothing.
+"""Counts and times that make a node ineffective.
 
 Source: the tick functions of RepeatNode, RetryNode and TimeoutNode in 4.6.2, 4.8.4 and 4.10.0.
 """

@@ -1,4 +1,4 @@
-"""What the rules about demands share: which claims hold for which nodes, where to report them, and in which words."""
+"""Shared by the rules about demands: which claims apply to which nodes, where to report them, and in which words."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ Guard: TypeAlias = tuple[tuple[Signal, ...], Place]
 
 
 class Demanded:
-    """What is demanded of the nodes of a tree.
+    """The demands on the nodes of a tree.
 
     Attributes:
-        view: whose file the findings are about.
+        view: of the file that the findings are about.
         tree: the tree.
-        budgets: how long nodes take if what is demanded of all nodes holds.
-        claims: all that hold for nodes of the tree and can be reported in this file: what is applied, the claim, the
-            node (of a span the one that takes as long), and where to report it.
-        hard: all that are to be enforced, for whichever node of the tree; the place is None where nothing in this file
-            is about it; and why the engine does not hold it, if it does not.
+        budgets: how long nodes take if all nodes meet their requirements.
+        claims: all that apply to nodes of the tree and can be reported in this file: what is applied, the claim, the
+            node (for a span, the one with the same duration), and where to report it.
+        hard: all that are to be enforced, for any node of the tree, with their place, None if nothing in this file is
+            about it, and why the engine does not enforce it, if so.
     """
 
     def __init__(self, view: View, path: str, facts: Facts) -> None:
@@ -67,14 +67,14 @@ def _hard_claims(
 
 
 def judge_of(view: View) -> Judge:
-    """Who judges what is written if all files are written as one."""
+    """The judge of enforceability, as if all files were written into one."""
     from btq_lang.btcpp.judging import Judge  # few missions have a claim that is to be enforced
 
     return Judge(_Looks(view), files=None, is_shared=view.is_included)
 
 
 class _Looks:
-    """As of a judge."""
+    """The view of nodes that a judge needs."""
 
     def __init__(self, view: View) -> None:
         self._view: Final = view
@@ -114,9 +114,9 @@ def _claims(
 
 
 def _node(applied: Applied, claim: Claim, budgets: Budgets) -> ResolvedNode | None:
-    """The node that a claim is about; of a span the one that takes as long."""
+    """The node that a claim is about; for a span, the one with the same duration."""
     if isinstance(applied.subject, Span) and VERBS[claim.verb].limits == "completion":
-        from btq_lang.requirements.spans import node_of  # few claims are about a way between two nodes
+        from btq_lang.requirements.spans import node_of  # few claims are about a span
 
         return node_of(applied.subject, budgets)
     return applied.node
@@ -130,12 +130,12 @@ def reported_at(view: View, applied: Applied, claim: Claim) -> Place | None:
 
 
 def is_enforced(applied: Applied) -> bool:
-    """Whether the robot is to do something about it, and not only to report it."""
+    """Whether the requirement wants it enforced, and not only monitored."""
     return applied.requirement.action in ("fail", "halt") and applied.requirement.odds is None
 
 
 def highest(claim: Claim) -> tuple[float, str] | None:
-    """The longest that a claim allows in any situation, in SI and as typed; None: it sets no upper limit."""
+    """The longest that a claim allows in any situation, in SI and as typed; None if it has no upper limit."""
     limit = claim.limit
     if limit is None or limit.relation in (">=", ">"):
         return None
@@ -144,7 +144,7 @@ def highest(claim: Claim) -> tuple[float, str] | None:
 
 
 def lowest(claim: Claim) -> tuple[float, str] | None:
-    """The least that a claim asks for in any situation, in SI and as typed; None: it sets no lower limit."""
+    """The least that a claim demands in any situation, in SI and as typed; None if it has no lower limit."""
     limit = claim.limit
     if limit is None or limit.relation in ("<=", "<"):
         return None
@@ -152,14 +152,14 @@ def lowest(claim: Claim) -> tuple[float, str] | None:
 
 
 def values(bounded: Bounded) -> list[tuple[float, str]]:
-    """The values of a bound, in SI and as typed; none where one of them is a signal's."""
+    """The values of a bound, in SI and as typed; empty if one of them is a signal's."""
     simple = [case.value for case in bounded.cases] if isinstance(bounded, Table) else [bounded]
     found = [(value.si, value.text) for value in simple if isinstance(value, Value)]
     return found if len(found) == len(simple) else []
 
 
 def seconds(value: float) -> str:
-    """A duration as people say it: `250 ms`, `45 s`, `2.5 min`."""
+    """A duration in a readable unit: `250 ms`, `45 s`, `2.5 min`."""
     if value == inf:
         return "forever"
     if 0.0 < value < 1.0:
@@ -171,7 +171,7 @@ def seconds(value: float) -> str:
 
 
 def summed(terms: tuple[Term, ...]) -> str:
-    """What a duration is the sum of: `A` 20 s + 3 × `B` 5 s."""
+    """The terms of a duration: `A` 20 s + 3 × `B` 5 s."""
     parts = (
         f"{f'{term.times} × ' if term.times > 1 else ''}{term.node.shown} {seconds(term.seconds)}" for term in terms
     )

@@ -1,7 +1,7 @@
-"""What is wrong with what requirements demand, seen from the nodes that they hold for.
+"""What is wrong with what requirements demand of the nodes that they apply to.
 
-One invariant: a finding is in the file that is checked: at the claim, or where the claim is in another file, at the
-reference that attaches it.  The rules are in modules by their subject; this one only brings them together.
+One invariant: a finding is in the file that is checked: at the claim, or if that is in another file, at the reference
+that attaches it.  The rules are in modules by subject; this one combines them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ByItem: TypeAlias = "dict[int, list[Diagnostic]]"
 
 
 def demands(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """All that these rules find in an entry."""
+    """All findings of these rules in an entry."""
     if view.ask(is_measured):
         yield from view.ask(_in_item, view.facts)
 
@@ -36,14 +36,14 @@ def _in_item(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[
 
 
 def _by_item(store: Store[Workspace], viewpoint: str) -> ByItem:
-    """What the rules find in the file, by the item that it is in."""
+    """The findings in the file, by item."""
     from btq_lang.workspace import inputs  # few files need it
 
     found: list[Found] = []
     for tree in inputs.trees(store, viewpoint):
         found += store.ask(_of_tree, viewpoint, *tree)[0]
     found += (*store.ask(_of_requirements, viewpoint), *store.ask(_of_signals, viewpoint))
-    # Each once, for a claim may hold for nodes of many trees.  They are compared, for to hash one is to hash the whole
+    # Each once, for a claim may apply to nodes of many trees.  They are compared, for hashing one would hash the whole
     # items that its places are in.
     known: dict[tuple[int, str, Span, str], list[Diagnostic]] = {}
     for place, diagnostic in found:
@@ -59,7 +59,7 @@ def _by_item(store: Store[Workspace], viewpoint: str) -> ByItem:
 def _of_tree(
     store: Store[Workspace], viewpoint: str, path: str, facts: Facts
 ) -> tuple[tuple[Found, ...], tuple[Guard, ...]]:
-    """What the rules find of the nodes of a tree, and the claims about them for which the engine reads signals."""
+    """The findings about the nodes of a tree, and the claims about them for which the engine reads signals."""
     from btq_lang.checks import budgets, limits, odds, renewals, signals, swallowing, unenforced  # as above
     from btq_lang.checks.demanded import Demanded
 
@@ -90,7 +90,7 @@ def _of_requirements(store: Store[Workspace], viewpoint: str) -> tuple[Found, ..
 
 
 def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Found, ...]:
-    """What is wrong with a requirement, whatever it holds for."""
+    """What is wrong with a requirement, whatever it applies to."""
     from btq_lang.checks import limits, odds, unenforced  # as above
     from btq_lang.requirements.definitions import requirement
 
@@ -115,5 +115,5 @@ def _of_signals(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
 
 
 def _here(viewpoint: str, found: Iterable[Found]) -> tuple[Found, ...]:
-    """What is in the file that is checked."""
+    """The findings in the file that is checked."""
     return tuple([(place, diagnostic) for place, diagnostic in found if place.path == viewpoint])

@@ -1,4 +1,4 @@
-"""Empty texts where a name is demanded, or where somebody looks for one to read."""
+"""Empty texts where a name is required, or where a reader expects a text."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _Found: TypeAlias = "Iterator[tuple[str, Word | None]]"
 
 
 def empty_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A name that is empty: nothing can refer to it; or a text for people that is."""
+    """An empty name, to which nothing can refer; or an empty text for readers."""
     if view.is_xml or not any(sign in view.text for sign in _EMPTY):
         return
     for what, word in _names(entry.item):
@@ -84,7 +84,7 @@ def _of_clauses(clauses: tuple[NodeClause, ...]) -> _Found:
 def _of_requirement(requirement: Requirement) -> _Found:
     yield "the requirement's ID", requirement.name
     yield from _of_quality(requirement.quality)
-    if requirement.clauses:  # else it says nothing, which is told
+    if requirement.clauses:  # else it has no content, which is reported
         yield _TITLE, requirement.text
     yield from ((_REASON, clause.text) for clause in requirement.clauses if isinstance(clause, Because))
 

@@ -1,7 +1,7 @@
 """What the nodes of trees do with blackboard entries, and which names in which trees are one entry.
 
-One invariant: what is not known counts as everything: a port without a model may read and write.  It does not know what
-the robot's program does with entries, nor whether a name is right.
+One invariant: unknown ports count as everything: a port without a model may read and write.  What the robot's program
+does with entries, and whether a name is right, is not known here.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ class Mention(Record):
     """A place where a tree names an entry.
 
     Attributes:
-        name: as the tree calls it, with the `@` of the root blackboard.
+        name: in the tree, with the `@` of the root blackboard.
         span: the name itself.
-        reads, writes: what may happen to it there; of a SubTree neither, for that is what happens in its tree.
-        creates: it need not exist before.
-        in_script: it is in a script.
+        reads, writes: what may happen to it there; for a SubTree neither, for that happens in its tree.
+        creates: whether it need not exist before.
+        in_script: whether it is in a script.
     """
 
     name: str
@@ -80,10 +80,10 @@ class Handling(Record):
     """What a tree does with entries, by their names in it.
 
     Attributes:
-        ports: those of its own ports.
-        touches: what is done, once for each mention.
-        gives: the trees it runs, with their ports and the entries that it gives to these.
-        shares: the trees that it gives all entries under their own names, but for some.
+        ports: names of its own ports.
+        touches: one for each mention.
+        gives: the trees it runs, with their ports and the entries that it passes to these.
+        shares: the trees to which it passes all entries under their own names, with exceptions.
     """
 
     ports: tuple[str, ...]
@@ -120,7 +120,7 @@ class Blackboards:
             self._add(tree, handling, trees)
 
     def of(self, tree: str, name: str) -> list[Touch]:
-        """All that is done with an entry, wherever it is handed to."""
+        """All uses of an entry, wherever it is passed."""
         if self._merged is None:
             merged: dict[Name, list[Touch]] = {}
             for key, uses in self._uses.items():
@@ -142,7 +142,7 @@ class Blackboards:
         return self._first(self.place(tree, name)) == self._first(self.place(tree, other))
 
     def place(self, tree: str, name: str) -> Name:
-        """Where an entry is: in the tree's own blackboard or in that of the root."""
+        """The blackboard of an entry: the tree's own or that of the root."""
         if name[:1] == "@":
             return "", name[1:]
         return ("", name) if self.is_root(tree) else (tree, name)
@@ -216,7 +216,7 @@ def _signal_entries(store: Store[Workspace], viewpoint: str) -> frozenset[Name]:
 
 
 def _use(view: View, seen: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
-    """Whether a port reads, writes and makes the entry that it is given."""
+    """Whether a port reads, writes and creates the entry that it is given."""
     key = pair.key.text
     if seen.is_subtree:
         unknown = seen.node.id is None or not view.defines(Kind.TREE, seen.node.id.text)

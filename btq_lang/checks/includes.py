@@ -66,10 +66,10 @@ def cyclic_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def include_with_errors(view: View, entry: Entry, errors_in: ErrorsIn) -> Iterator[Diagnostic]:
-    """An included file that cannot be read or loaded as it stands, or one that includes such a file.
+    """An included file that cannot be read or loaded as it is, or one that includes such a file.
 
     Args:
-        errors_in: the query for what keeps a file from being read.
+        errors_in: the query for the errors that keep a file from being read.
     """
     include = entry.item
     target = view.look_up(lookups.included, view.facts)
@@ -83,7 +83,7 @@ def include_with_errors(view: View, entry: Entry, errors_in: ErrorsIn) -> Iterat
         shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
         which = f"`{shown}`" if path == target else f"`{shown}`, which that file includes,"
         notes: tuple[str, ...] = ("`btq build` refuses every file that includes it",)
-        if len(errors) > 1 and not is_btq(path):  # a folder's XML is checked only where it is named
+        if len(errors) > 1 and not is_btq(path):  # XML in a folder is checked only if it is named
             notes += (f"run `btq check {shown}` to see all of them",)
         yield Diagnostic(
             "include-with-errors",
@@ -96,7 +96,7 @@ def include_with_errors(view: View, entry: Entry, errors_in: ErrorsIn) -> Iterat
 
 
 def is_reported_beside(diagnostic: Diagnostic, checked: Container[str]) -> bool:
-    """Whether a diagnostic says of an included file no more than what is reported of it, as it is checked, too."""
+    """Whether a diagnostic about an included file only repeats what is reported of that file, which is checked too."""
     return diagnostic.rule == "include-with-errors" and diagnostic.related[0].place.path in checked
 
 
@@ -105,17 +105,17 @@ def _closure(view: View, path: str) -> tuple[str, ...]:
 
 
 def include_fix(view: View, path: str) -> Fix:
-    """Include another file, after the includes that are there."""
+    """The fix that includes another file, after the existing includes."""
     at, line = include_line(view.look_up(lookups.head), view.path, path)
     shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
     return Fix(f"Include `{shown}`", (Change(Place(Span(at, at), view.path), line),))
 
 
 def include_line(head: tuple[int, str], path: str, other: str) -> tuple[int, str]:
-    """The line that includes another file in the one at `path`, and the offset where it belongs.
+    """The line that includes another file in the one at `path`, and the offset to insert it.
 
     Args:
-        head: as `lookups.head` says it.
+        head: of `lookups.head`.
     """
     at, margin = head
     return at, f"{margin}include {quote(posixpath.relpath(other, posixpath.dirname(path) or '.'))}\n"

@@ -1,4 +1,4 @@
-"""What kind of node a word stands for: unknown, not the engine's, too new, or used as something it is not."""
+"""The kind of a node: unknown, not the engine's, too new, or used as something it is not."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
-# How many children the nodes of a category have; None: any number.
+# The number of children of the nodes of a category; None: any number.
 CHILDREN: dict[str, tuple[int, int | None]] = {
     "Action": (0, 0),
     "Condition": (0, 0),
@@ -41,8 +41,8 @@ CHILDREN: dict[str, tuple[int, int | None]] = {
 
 
 def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A kind that nobody knows: where a palette of models is in scope, or where a known name is so near that this must
-    be a slip.  Without a palette any other name is a custom node that the robot's program registers."""
+    """An unknown kind: if a palette of models is in scope, or if a known name is so similar that this must be a
+    misspelling.  Otherwise, any name without a palette is a custom node that the robot's program registers."""
     for seen in view.seen.strangers:
         name = seen.id
         word = seen.node.category
@@ -55,7 +55,7 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         elif view.defines(Kind.TREE, name.text):
             yield _tree_as_node(view, seen, name)
         elif name.text in KNOWN_WORDS or _quoted_alias(seen, name) is not None:
-            continue  # no node of the engine, which is told
+            continue  # not a node of the engine, which is reported
         elif (category := _category_meant(view, seen)) is not None:
             fix = replace_fix(f"Replace `{name.text}` with `{category}`", name.span, category)
             message = f"btq reads `{name.text}` as a node here; did you mean `{category}`?"
@@ -65,7 +65,7 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A word of the published language, or of an older engine, that no engine of today registers."""
+    """A word of the published language, or of an older engine, that no current engine registers."""
     for seen in view.nodes:
         name = seen.id
         if name is None or seen.is_defined or seen.is_subtree:
@@ -86,7 +86,7 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A built-in that a version which the project is for does not have."""
+    """A built-in that is missing in a version which the project targets."""
     project = view.project
     for tagged in view.seen.by_tag.values():
         missing = [] if tagged[0].kind is None else _missing(tagged[0].kind.tag, project.engines)
@@ -103,13 +103,14 @@ def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             )
 
 
-@lru_cache(1_000)  # every tree of every file asks
+@lru_cache(1_000)  # every tree of every file calls it
 def _missing(tag: str, engines: tuple[str, ...]) -> list[str]:
     return [version for version in engines if not available(BUILTINS[tag], version)]
 
 
 def no_models(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A mission of many nodes with ports and not one model: an include may be forgotten, and nothing says so."""
+    """A mission of many nodes with ports and not one model: an include may be missing, which nothing else would
+    report."""
     if view.is_xml or not view.is_first_tree or view.has_names(Kind.MODEL):
         return
     given = view.ask(_given_ports) if view.is_complete and view.is_read else ()
@@ -122,7 +123,7 @@ def no_models(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _given_ports(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
-    """The custom nodes of the file that are given ports."""
+    """The custom nodes of the file that have ports."""
     view = View(store, viewpoint)
     found = (view.ask(_given_ports_in, tree) for tree in view.look_up(lookups.trees))
     return tuple(dict.fromkeys(name for names in found for name in names))
@@ -157,7 +158,7 @@ def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """`keeps` in the block of a node is a node called `keeps`."""
+    """`keeps` in the block of a node is a node of that name."""
     nodes = view.seen
     for seen in nodes.given:
         for pair in seen.node.attributes:
@@ -166,13 +167,13 @@ def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 note = f"write `{pair.key.raw}` without `=`: `{pair.key.raw} {pair.value.raw}`"
                 fix = replace_fix("Remove `=`", Span(pair.key.end, pair.value.start), " ")
                 yield Diagnostic("clause-as-node", pair.key.span, message, notes=(note,), fixes=(fix,))
-    for seen in nodes.strangers:  # no built-in is called so
+    for seen in nodes.strangers:  # no built-in has such a name
         name = seen.node.kind
         meant = misspelt_clause(seen.node)
         if name is None or not (meant or _is_clause(seen)):
             continue
         if view.is_torn(name.start, name.start):
-            continue  # the parser has said so already
+            continue  # the parser has reported it already
         if meant:
             message = f"btq reads `{name.text}` as a node here; did you mean `{meant}`?"
             fix = replace_fix(f"Replace `{name.text}` with `{meant}`", name.span, meant)
@@ -206,7 +207,7 @@ def duplicate_definition(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def declared_category(seen: ResolvedNode) -> str | None:
-    """What the engine or a model says of a node's category, whatever is written at the node."""
+    """A node's category according to the engine or a model, whatever is written at the node."""
     if seen.is_subtree:
         return None
     if seen.kind is not None:
@@ -215,12 +216,12 @@ def declared_category(seen: ResolvedNode) -> str | None:
 
 
 def model_related(view: View, seen: ResolvedNode, message: str) -> tuple[Related, ...]:
-    """The place of a node's model, where it has one."""
+    """The place of a node's model, if it has one."""
     return view.declared_at(Kind.MODEL, seen.id.text, message) if seen.is_defined and seen.id is not None else ()
 
 
 def likely_category(seen: ResolvedNode) -> str:
-    """The category of a custom node, as said or else as the number of its children suggests."""
+    """The category of a custom node, as written or else as its number of children suggests."""
     if seen.stated_category is not None:
         return seen.stated_category
     return ("Action", "Decorator", "Control")[min(len(seen.node.children), 2)]
@@ -238,14 +239,14 @@ def include_place(entry: Entry) -> Span:
 
 
 def written(name: str) -> str:
-    """A name as it is written in a file: in quotes where it must be."""
+    """A name as it is written in a file: in quotes if needed."""
     return name if is_name(name) else quote(name)
 
 
 def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
-    """The node of today in the place of an older engine's."""
+    """The fix that replaces an older engine's node by its successor."""
     if known.replacement is not None:
-        # Without quotes the old word is read as the new one already, so nothing but this diagnostic changes.
+        # Without quotes the old word is read as the new one already, so only this diagnostic changes.
         title = f"Replace it with `{known.replacement}`"
         return (replace_fix(title, name.span, known.replacement, safe=not name.quoted),)
     if known.category == "SubTree" and seen.node.category is None:
@@ -254,7 +255,7 @@ def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ..
 
 
 def _way_in(view: View, known: KnownWord) -> tuple[str, ...]:
-    """What makes a file for version 4 of XML for version 3, where that is what a word comes from."""
+    """How to turn XML for version 3 into a file for version 4, if the word comes from such."""
     origin = view.look_up(lookups.origin)
     if origin is None or known.word not in _TRANSLATED or _SAYS_VERSION_4.search(origin.text):
         return ()
@@ -262,7 +263,7 @@ def _way_in(view: View, known: KnownWord) -> tuple[str, ...]:
 
 
 def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:
-    """The built-in that a word would mean without its quotes: `"Retry"` is no tag of the engine."""
+    """The built-in that a word would mean without its quotes: `"Retry"` is not a tag of the engine."""
     return lookup(name.text) if name.quoted and seen.kind is None else None
 
 
@@ -271,13 +272,13 @@ def _unknown(view: View, entry: Entry, seen: ResolvedNode, name: Word) -> Iterat
     likely = view.near(name.text, Kind.MODEL)
     if not has_palette:
         if seen.node.category is not None:
-            return  # written as a declaration: `Action Foo` says that there is such a node
+            return  # written as a declaration: `Action Foo` declares such a node
         likely = tuple(meant for meant in likely if _is_slip(name.text, meant))
         is_odd = view.is_complete and view.look_up(lookups.most_have_models)
         if not (likely or is_odd):
             return
     if not likely and not view.is_first_use(seen.node, name.text):
-        return  # what is missing is one model, however many nodes would need it
+        return  # one model is missing, however many nodes would need it
     fixes = tuple(replace_fix(f"Replace `{name.text}` with `{meant}`", name.span, written(meant)) for meant in likely)
     notes: tuple[str, ...] = ()
     if not likely:
@@ -294,7 +295,7 @@ def _unknown(view: View, entry: Entry, seen: ResolvedNode, name: Word) -> Iterat
 
 
 def _declared(view: View, entry: Entry, seen: ResolvedNode, model: str, ports: tuple[LikelyPort, ...]) -> Fix:
-    """The model of a node with the ports that its uses show, put in before an item."""
+    """The fix that declares a node's model, with the ports that its uses show, before an item."""
     margin = view.text[: entry.item.start]
     below = view.text[: seen.node.start + 1].splitlines()[1:]
     inside = next((line[: len(line) - len(line.lstrip())] for line in below if line.strip()), "")
@@ -308,7 +309,7 @@ def _declared(view: View, entry: Entry, seen: ResolvedNode, model: str, ports: t
 
 
 def _category_meant(view: View, seen: ResolvedNode) -> str | None:
-    """`action Lower`, `Acton Lower`: a word for the node's category, not written as one."""
+    """`action Lower`, `Acton Lower`: the category that a word means, not written as one."""
     kind = seen.node.kind
     if kind is None or kind.quoted or seen.node.category is not None or seen.node.label is None:
         return None
@@ -321,8 +322,8 @@ def _category_meant(view: View, seen: ResolvedNode) -> str | None:
 
 
 def _is_slip(word: str, meant: str) -> bool:
-    """Whether nobody could mean a node of its own: `LoopPoint` is as good a name as LoopInt, `Pack` as Pick, and
-    `Switch7` as Switch6."""
+    """Whether it must be a misspelling: `LoopPoint` is as good a name as LoopInt, `Pack` as Pick, and `Switch7` as
+    Switch6."""
     is_builtin = lookup(meant) is not None
     word, meant = word.casefold(), meant.casefold()
     if _without_digits(word) == _without_digits(meant):
@@ -351,7 +352,7 @@ def _tree_as_node(view: View, seen: ResolvedNode, name: Word) -> Diagnostic:
 
 
 def _is_refused(view: View, seen: ResolvedNode, name: Word) -> bool:
-    """Whether the name itself is the mistake, which is told."""
+    """Whether the name itself is the mistake, which is reported."""
     target = view.project.target
     return seen.node.category is None and model_name_problem(name.text, target) is not None
 
@@ -369,7 +370,7 @@ _DEFINED_ONCE = (Kind.MODEL, Kind.SIGNAL, Kind.CONTEXT, Kind.QUALITY)
 
 
 def _second(symbol: Symbol, span: Span, related: tuple[Related, ...], what: str) -> Diagnostic:
-    # The engine never reads the model of a node, so nothing but a tool's view of it is at stake.
+    # The engine never reads the model of a node, so only tools are affected.
     severity = Severity.WARNING if symbol.kind is Kind.MODEL else None
     message = f"{what} the {symbol.kind.value} `{symbol.name}`"
     return Diagnostic("duplicate-definition", span, message, related=related, severity=severity)
@@ -388,9 +389,9 @@ def _interface(symbol: Symbol) -> object:
     return model.category.raw, shape(tuple(ports))
 
 
-# So many nodes with ports nobody writes without a file that declares them, once models are known of.
+# A file with so many nodes with ports should declare them.
 _MANY: Final = 5
 
-# Words of version 3 that an import says in another way.
+# Words of version 3 that an import translates.
 _TRANSLATED: Final = frozenset(("SequenceStar", "RetryUntilSuccesful", "SubTreePlus"))
 _SAYS_VERSION_4: Final = re.compile(r"""BTCPP_format\s*=\s*["']\s*4""")

@@ -1,4 +1,4 @@
-"""Bounds that nothing can break, that nothing can keep, or that the engine cannot watch."""
+"""Bounds that can never be broken, can never be kept, or that the engine cannot monitor."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def limit_too_small(demanded: Demanded) -> Iterator[Found]:
-    """A limit that the engine does not take for one: it counts whole milliseconds, and 0 is no limit to it."""
+    """A limit that has no effect in the engine: it counts whole milliseconds, and 0 means no limit."""
     for applied, claim, _, place in demanded.claims:
         most = highest(claim) if VERBS[claim.verb].limits and is_enforced(applied) else None
         if most is None or most[0] >= 0.001:
@@ -42,7 +42,7 @@ def limit_too_small(demanded: Demanded) -> Iterator[Found]:
 
 
 def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
-    """A limit on a node that completes within one tick: nobody looks at the clock while it runs."""
+    """A limit on a node that completes within one tick: the time is not checked while it runs."""
     for applied, claim, node, place in demanded.claims:
         if not VERBS[claim.verb].limits or not is_enforced(applied) or highest(claim) is None:
             continue
@@ -65,7 +65,7 @@ def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
 
 def dead_bound(demanded: Demanded) -> Iterator[Found]:
     """A bound beyond what a Timeout around the node allows: it is never reached.  A Timeout that never succeeds is
-    reported for that."""
+    reported instead."""
     for _, claim, node, place in demanded.claims:
         most = highest(claim) if VERBS[claim.verb].limits else None
         timeout = next(_timeouts(node), None) if most is not None else None
@@ -81,11 +81,11 @@ def dead_bound(demanded: Demanded) -> Iterator[Found]:
 
 
 def outbid_bound(demanded: Demanded) -> Iterator[Found]:
-    """A bound that says nothing, for the same requirement has a tighter one of the same kind for the same node."""
+    """A bound without effect, for the same requirement has a tighter one of the same kind for the same node."""
     kinds: dict[tuple[object, ...], list[tuple[Claim, _Limit, Place]]] = {}
     for applied, claim, node, place in demanded.claims:
         if claim.limit is not None and Table in (type(claim.limit.value), type(claim.limit.upper)):
-            continue  # each of its values is for a situation of its own
+            continue  # each of its values is for another situation
         is_counted = VERBS[claim.verb].operand == "count"
         for limit in [((claim.per,), lowest(claim), highest(claim))] if is_counted else _limits(claim):
             kinds.setdefault((id(node), applied.requirement.name, claim.verb, limit[0]), []).append(
@@ -98,10 +98,10 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
             pick = max if word == "least" else min
             tight = pick(bounds, key=lambda each: each[0], default=None)
             for bound in bounds:
-                # Two that are equal and not written alike may differ: `at most 30 s`, `less than 30 s`.
+                # Two equal ones that are written differently may differ: `at most 30 s`, `less than 30 s`.
                 if tight is None or (bound[0] == tight[0] and bound[2].text != tight[2].text):
                     continue
-                if bound[2].place == tight[2].place:  # the same claim, which may reach the node by several ways
+                if bound[2].place == tight[2].place:  # the same claim, which may apply to the node in several ways
                     continue
                 message = f"the same requirement already demands at {word} `{tight[1]}`, so `{bound[1]}` has no effect"
                 at = tight[3]
@@ -112,7 +112,7 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
 
 
 def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
-    """A goal that is worse than what the requirement allows: who misses the bound would reach it."""
+    """A goal that is worse than what the requirement allows: a run that violates the bound would reach it."""
     goal = requirement.goal
     if not isinstance(goal, Value) or requirement.place.path != view.path:
         return
@@ -136,7 +136,7 @@ def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
 
 
 def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
-    """`tries at most` against the number of attempts that Retry and Repeat make."""
+    """`tries at most` and the number of attempts of Retry and Repeat do not match."""
     for _, claim, node, place in demanded.claims:
         most = highest(claim) if VERBS[claim.verb].operand == "count" else None
         if most is None or most[0] == inf or not isinstance(claim.per, Target):
@@ -188,11 +188,11 @@ _Limit = tuple[tuple[object, ...], tuple[float, str] | None, tuple[float, str] |
 def _limits(claim: Claim) -> Iterator[_Limit]:
     """What a claim bounds, with its lower and its upper limit."""
     if VERBS[claim.verb].limits:
-        # Of a table every value would have to contradict: the most lenient one is held against the other bound.
+        # Every value of a table would have to contradict: the most lenient one is compared with the other bound.
         yield ("duration",), lowest(claim), highest(claim)
     elif claim.signal is not None:
         yield (claim.verb, claim.signal.name), lowest(claim), highest(claim)
-    elif claim.verb != "never" and isinstance(claim.condition, Compare):  # that says what must not hold
+    elif claim.verb != "never" and isinstance(claim.condition, Compare):  # the condition is what must not hold
         yield from _compared(claim.verb, claim.condition)
 
 
@@ -225,7 +225,7 @@ def _timeouts(node: ResolvedNode) -> Iterator[tuple[ResolvedNode, float]]:
 
 
 def _loops(node: ResolvedNode, top: ResolvedNode) -> list[tuple[ResolvedNode, int]]:
-    """The loops between a node and one above it in the same tree, with their counts; none where one is not known."""
+    """The loops between a node and one above it in the same tree, with their counts; empty if one is unknown."""
     found: list[tuple[ResolvedNode, int]] = []
     at: ResolvedNode | None = node.parent if node is not top else None
     while at is not None:
@@ -241,7 +241,7 @@ def _loops(node: ResolvedNode, top: ResolvedNode) -> list[tuple[ResolvedNode, in
 
 
 def _goal_clause(view: View, name: str) -> Goal | None:
-    """The clause of a requirement that says its goal."""
+    """The clause with a requirement's goal."""
     found = inputs.definition(view.store, view.viewpoint, Kind.REQUIREMENT, name)
     written = inputs.symbol(found[1], Kind.REQUIREMENT, name).target if found is not None else None
     clauses = written.clauses if isinstance(written, WrittenRequirement) else ()
@@ -249,7 +249,7 @@ def _goal_clause(view: View, name: str) -> Goal | None:
 
 
 def _dimension(claim: Claim) -> Dimension | None:
-    """What the values of a claim's limit are of; None: that is not certain."""
+    """The dimension of a claim's limit; None if uncertain."""
     value = claim.limit.value if claim.limit is not None else None
     value = value.cases[0].value if isinstance(value, Table) else value
     return value.unit.dimension if isinstance(value, Value) else None

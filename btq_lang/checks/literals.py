@@ -1,4 +1,4 @@
-"""Values that the engine refuses, reads as something else, or that have a unit where none is known."""
+"""Values that the engine refuses, reads as something else, or that have a unit that is not known."""
 
 from __future__ import annotations
 
@@ -29,12 +29,13 @@ _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")
 
 
 class _Target(Record):
-    """What a value goes to.
+    """What a value is assigned to.
 
     Attributes:
-        unit: of a number in the port, where one is known.
-        converts: the engine reads a literal as the type; for a tree's port it keeps the text or number it finds.
-        is_output: no literal is right there, which is told.
+        unit: of a number in the port, if known.
+        converts: whether the engine reads a literal as the type; for a tree's port it keeps the text or number it
+            finds.
+        is_output: whether it is an output, for which every literal is wrong, which is reported.
     """
 
     port: str
@@ -45,7 +46,7 @@ class _Target(Record):
 
 
 def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A literal that the port's type refuses, or whose tail the engine drops."""
+    """A literal that the port's type refuses, or whose end the engine drops."""
     version = view.project.target
     for target, value in _values(view, entry):
         if target.is_output:
@@ -85,7 +86,7 @@ def quantity_on_unitless_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for target, value in _values(view, entry, QUANTITY):
         quantity = parse_quantity(value.raw)
         if quantity is None or target.is_output:
-            continue  # an unknown unit, or a value for an output: both are told
+            continue  # an unknown unit, or a value for an output: both are reported
         unit = quantity[1]
         wanted = parse_unit(target.unit) if target.unit is not None else None
         if wanted is None:
@@ -106,11 +107,11 @@ def quantity_on_unitless_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _converted(target: _Target, value: Word, version: str) -> Iterator[Diagnostic]:
-    """A quantity that is no number of the port's type in the port's unit."""
+    """A quantity that is not a number of the port's type in the port's unit."""
     quantity = parse_quantity(value.raw)
     wanted = parse_unit(target.unit) if target.unit is not None else None
     if quantity is None or wanted is None or quantity[1].dimension != wanted.dimension:
-        return  # told by others
+        return  # reported by others
     number = convert(quantity[0], quantity[1], wanted)
     notes = (f"`{target.port}` has the type {target.type} and the unit {target.unit}",)
     if not isfinite(number):
@@ -127,7 +128,7 @@ def _converted(target: _Target, value: Word, version: str) -> Iterator[Diagnosti
 
 
 def _values(view: View, entry: Entry, kind: int | None = None) -> Iterator[tuple[_Target, Word]]:
-    """Each literal (of one kind) that goes to a port, with what it goes to, where a type or a unit is in question."""
+    """Each literal (of one kind) that is assigned to a port with a type or a unit, with that target."""
     for port in _declared_ports(entry):
         value = port.default
         if value is None or value.kind == BRACED or kind not in (None, value.kind) or not value.text:
@@ -166,7 +167,7 @@ def _target(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> _Target 
     if declared is not None:
         is_output = declared.direction.raw == "output"
         return _declared(declared, not seen.is_subtree, is_output)
-    # A node that nobody has described takes any literal, but there is no unit that a quantity could be converted to.
+    # A node without a model takes any literal, but there is no unit that a quantity could be converted to.
     return _Target(key, "") if value.kind == QUANTITY and is_port_name(key) else None
 
 
@@ -184,7 +185,7 @@ def _declared(port: Port, converts: bool, is_output: bool = False) -> _Target | 
 
 
 def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:
-    """The same with what the engine is strict about mended: `success`, `+5`, ` 5`."""
+    """Fixes that satisfy the engine's strictness: `success`, `+5`, ` 5`."""
     text = value.text
     for other in (text.strip(), text.strip().removeprefix("+"), text.upper(), text.lower()):
         if other and check_literal(target.type, other, version) is None:
@@ -193,7 +194,7 @@ def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:
 
 
 def _as_quantity(value: Word, target: _Target, reads: str | None) -> tuple[Fix, ...]:
-    """`"30 sec"` on a port in ms was meant as 30 s; `"5 apples"` as nothing we know but the number."""
+    """`"30 sec"` on a port in ms was meant as 30 s; of `"5 apples"` only the number is understood."""
     fixes = []
     quantity = parse_quantity(value.text.strip())
     wanted = parse_unit(target.unit) if target.unit else None

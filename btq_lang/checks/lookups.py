@@ -1,6 +1,5 @@
-"""What only checks look up in the files: more inputs of the query store, as in workspace/inputs.py and by the same
-invariant.
-"""
+"""What only checks look up in the files: more inputs of the query store, as in workspace/inputs.py and with the same
+invariant."""
 
 from __future__ import annotations
 
@@ -32,8 +31,8 @@ class Meaning(Record):
     """All that others see of what a name means.
 
     Attributes:
-        owner: the item that defines it; of trees and models nobody sees more than what follows.
-        target: what it means; None for a tree.
+        owner: the item that defines it; for trees and models, others see no more than what follows.
+        target: its meaning; None for a tree.
         ports: of a tree or a model.
     """
 
@@ -51,16 +50,16 @@ class Declaration(Record):
 
     @property
     def place(self) -> Place:
-        """That of the name."""
+        """The place of the name."""
         return Place(self.symbol.span, self.path, self.owner.item)
 
 
-# ---- a name: what these say depends on nothing but the items that define it ----
+# ---- a name: these depend only on the items that define it ----
 
 
 @of_name
 def is_defined(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
-    """Whether a name means something."""
+    """Whether a name is defined."""
     return workspace.scope(viewpoint).defines(kind, name)
 
 
@@ -87,7 +86,7 @@ def declaration(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 
 @of_name
 def is_torn(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
-    """Whether something could not be read in the tree or model that a name means, which may be a port."""
+    """Whether something could not be read in the tree or model of a name, which may be a port."""
     found = workspace.scope(viewpoint).find(kind, name)
     if found is None or not found.entry.diagnostics:
         return False
@@ -110,7 +109,7 @@ def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 
 @of_viewpoint
 def has_palette(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the models in scope are meant to be all there are."""
+    """Whether the models in scope are meant to be complete."""
     for each in workspace.scope(viewpoint).paths:
         for entry in workspace.files[each].parsed.entries:
             if isinstance(entry.item, Models) and any(_is_of_node(model) for model in entry.item.models):
@@ -123,7 +122,7 @@ def has_palette(workspace: Workspace, viewpoint: str) -> bool:
 @of_viewpoint
 def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declaration, Declaration], ...]:
     """The names that an included file and one included before it both define: the include, the definition that counts
-    and the other one.  Neither file can see the other, so no check of theirs reports it."""
+    and the other one.  The two files cannot see each other, so no check of theirs reports it."""
     file = workspace.files[viewpoint]
     found: list[tuple[Facts, Declaration, Declaration]] = []
     before: set[str] = set()
@@ -142,7 +141,8 @@ def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declarat
 
 @of_viewpoint
 def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tuple[Place, str, str] | None:
-    """The first port of texts that a port of a tree meets in that tree or below: its place, its name, its node."""
+    """The first text port to which a port of a tree is assigned in that tree or below: its place, its name, its
+    node."""
     for met in meetings(workspace.scope(viewpoint), workspace.project.target, tree, port):
         if is_text(met.type):
             place = Place(met.pair.key.span, met.tree.path, met.tree.entry.item)
@@ -152,7 +152,7 @@ def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tu
 
 @of_viewpoint
 def uses_of_tree(workspace: Workspace, viewpoint: str, name: str) -> tuple[Place, ...]:
-    """Where the tree that a name means is referred to, in whatever file."""
+    """Where the tree of a name is referred to, in whatever file."""
     found = workspace.scope(viewpoint).find(Kind.TREE, name)
     uses = workspace.references(found) if found is not None else ()
     return tuple([Place(each.use.span, each.path, each.entry.item) for each in uses])
@@ -188,17 +188,17 @@ def trees(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
 
 @of_viewpoint
 def is_tree_of_mission(workspace: Workspace, viewpoint: str, name: str) -> bool:
-    """Whether a file that is linked with this one by includes, in whatever direction, has a tree of the name."""
+    """Whether a file that is linked with this one by includes, in either direction, has a tree of the name."""
     return any((Kind.TREE, name) in workspace.files[each].defined_names for each in workspace.linked(viewpoint))
 
 
 @of_viewpoint
 def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str]:
-    """The names that a tree of the mission cannot have in XML, as its other trees and its nodes have them: by what is
-    written, what has it.
+    """The names that a tree of the mission cannot have in XML, because other trees or nodes have them, with what has
+    each.
 
     Args:
-        but: the tree that a name is wanted for.
+        but: the tree that needs a name.
     """
     target = workspace.project.target
     taken = dict.fromkeys(BUILTINS, "a built-in node")
@@ -215,7 +215,7 @@ def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str
 
 @of_viewpoint
 def is_node_name(workspace: Workspace, viewpoint: str, name: str) -> bool:
-    """Whether a path can name a node so."""
+    """Whether a path can name a node by this name."""
     return any(name in workspace.files[each].node_names for each in workspace.scope(viewpoint).paths)
 
 
@@ -252,7 +252,7 @@ def has_apply(workspace: Workspace, viewpoint: str) -> bool:
 
 @of_viewpoint
 def has_root_of_tree(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the file says which tree is the main one, even if there is none of that name."""
+    """Whether the file names the main tree, even if that does not exist."""
     facts = workspace.files[viewpoint].facts.values()
     return any(Kind.TREE in each.used for each in facts if isinstance(each.item, Root))
 
@@ -272,7 +272,7 @@ def has_pointers(workspace: Workspace, viewpoint: str) -> bool:
 
 @of_viewpoint
 def main_tree(workspace: Workspace, viewpoint: str) -> tuple[str, bool] | None:
-    """The name of the tree that runs when the engine loads the file, and whether only this file's own can be it."""
+    """The name of the tree that runs when the engine loads the file, and whether it must be this file's own."""
     main = workspace.main_tree(viewpoint)
     if main is None:
         return None
@@ -301,7 +301,7 @@ def names_unknown_requirements(workspace: Workspace, viewpoint: str) -> bool:
 
 @of_viewpoint
 def custom_node(workspace: Workspace, viewpoint: str, name: str) -> tuple[str, tuple[LikelyPort, ...]]:
-    """What the uses of a custom node suggest that it is: its category and its ports."""
+    """The category and the ports that the uses of a custom node suggest."""
     from btq_lang.workspace.custom_nodes import custom_node as found_in_uses  # few files have an unknown node
 
     found = found_in_uses(workspace, viewpoint, name)
@@ -310,7 +310,7 @@ def custom_node(workspace: Workspace, viewpoint: str, name: str) -> tuple[str, t
 
 @of_viewpoint
 def most_have_models(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether of the custom nodes that a file knows or uses few have no model: a third at most."""
+    """Whether few of the custom nodes that a file knows or uses have no model: a third at most."""
     known = workspace.scope(viewpoint).names(Kind.MODEL)
     unknown = workspace.files[viewpoint].used(Kind.MODEL).difference(known)
     return len(known) >= 2 and 2 * sum(lookup(name) is None for name in unknown) <= len(known)
@@ -318,7 +318,7 @@ def most_have_models(workspace: Workspace, viewpoint: str) -> bool:
 
 @of_viewpoint
 def is_crowded(workspace: Workspace, viewpoint: str, kind: Kind) -> bool:
-    """Whether so many of the names of a kind are unknown that nobody reads what each of them may mean."""
+    """Whether so many of the names of a kind are unknown that suggestions are of no use."""
     known = workspace.scope(viewpoint).names(kind)
     unknown = workspace.files[viewpoint].used(kind).difference(known)
     if kind is Kind.MODEL:
@@ -344,7 +344,7 @@ def is_read(workspace: Workspace, viewpoint: str) -> bool:
 
 @of_viewpoint
 def has_torn_tree(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the name of one of the file's trees may be what could not be read."""
+    """Whether the name of one of the file's trees may be on a line that could not be read."""
     return bool(workspace.files[viewpoint].problems) and any(
         problem.span.start <= entry.item.end
         for entry in workspace.files[viewpoint].parsed.entries
@@ -361,13 +361,13 @@ def origin(workspace: Workspace, viewpoint: str) -> Origin | None:
 
 @of_viewpoint
 def is_xml(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the file is XML that the engine loads as it is: no build comes between."""
+    """Whether the file is XML that the engine loads as it is, without a build."""
     return workspace.files[viewpoint].origin is not None
 
 
 @of_viewpoint
 def syntax_errors(workspace: Workspace, viewpoint: str) -> tuple[tuple[Place, str], ...]:
-    """What keeps the file from being read."""
+    """The errors that keep the file from being read."""
     return tuple(
         [
             (Place(problem.span, viewpoint, entry.item), problem.message)
@@ -380,8 +380,8 @@ def syntax_errors(workspace: Workspace, viewpoint: str) -> tuple[tuple[Place, st
 
 @of_viewpoint
 def head(workspace: Workspace, viewpoint: str) -> tuple[int, str]:
-    """Where a line may be inserted that belongs to the head of the file, after its includes, and what it is indented
-    with: an offset in the file."""
+    """Where a line may be inserted into the head of the file, after its includes, and its indentation: an offset in the
+    file."""
     text = workspace.files[viewpoint].text
     includes = [entry for entry in workspace.files[viewpoint].parsed.entries if isinstance(entry.item, Include)]
     if includes:
@@ -397,7 +397,7 @@ def head(workspace: Workspace, viewpoint: str) -> tuple[int, str]:
 
 @of_viewpoint
 def included(workspace: Workspace, viewpoint: str, include: Facts) -> str | None:
-    """The file that an include brings, if it is there."""
+    """The file that an include refers to, if it is there."""
     return workspace.included_by(viewpoint, include.item) if isinstance(include.item, Include) else None
 
 

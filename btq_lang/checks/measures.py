@@ -1,4 +1,4 @@
-"""What is wrong with the measurable part of requirements: what could not be resolved, and what is about nothing."""
+"""What is wrong with the measurable part of requirements: what could not be resolved, and claims about nothing."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 
 def is_measured(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether any requirement in scope has a clause, or anything is declared for one: else nothing is resolved."""
+    """Whether any requirement in scope has a clause, or anything is declared for one: else nothing needs to be
+    resolved."""
     view = View(store, viewpoint)
     if view.has_names(Kind.SIGNAL) or view.has_names(Kind.CONTEXT):
         return True
@@ -37,7 +38,7 @@ def _has_clauses(store: Store[Workspace], viewpoint: str, name: str) -> bool:
 
 
 def unresolved(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """What is wrong with the requirements of an entry, once resolved: units, signals, paths, arguments."""
+    """What is wrong with the requirements of an entry when they are resolved: units, signals, paths, arguments."""
     if not view.ask(is_measured):
         return
     from btq_lang.requirements.resolve import problems_in  # a file without clauses needs none of it
@@ -47,12 +48,12 @@ def unresolved(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def requirement_without_subject(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A claim about nothing, in a requirement that has other claims with subjects of their own; without any the whole
-    requirement is unused, and reported for that.  And what only a node can do, of a time between events or of a sum."""
+    requirement is unused, and reported as that.  Also what only applies to nodes, demanded of a span or a sum."""
     if not isinstance(entry.item, Requirement) or not view.ask(is_measured):
         return
     names = [symbol.name for symbol in view.facts.summary.symbols]
     found = [each for name in names if view.defines_here(Kind.REQUIREMENT, name) for each in _found_in(view, name)]
-    if found and view.is_read and not view.is_included:  # looked at last: both differ with a letter elsewhere
+    if found and view.is_read and not view.is_included:  # last, for both often change with an edit elsewhere
         yield from found
 
 

@@ -1,8 +1,8 @@
-"""Blackboard entries whose name is a slip.
+"""Blackboard entries whose name is misspelt.
 
-Every name is an entry to the engine, and the robot's program may write and read any, so an unused name alone says
-nothing.  Here a name stands in one place only, what happens there leads nowhere, and another name in the same tree
-differs from it as only slips do.
+Every name is an entry to the engine, and the robot's program may read and write any, so an unused name alone proves
+nothing.  Here a name occurs in one place only, its use there has no effect, and another name in the same tree differs
+from it as only misspellings do.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
 
 def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """An entry that is named once, and read though nothing writes it, or written though nothing reads it, where
-    another entry has nearly the same name."""
+    """An entry that is named once, and read though nothing writes it, or written though nothing reads it, if another
+    entry has nearly the same name."""
     tree = entry.item
     mentions = view.ask(mentions_in, view.path, view.facts)
     if not isinstance(tree, Tree) or tree.name is None or not mentions:
         return
     if any(isinstance(child, Verbatim) for node in view.nodes for child in node.node.children):
-        return  # XML that nobody reads here may name any entry
+        return  # unchecked XML may name any entry
     yield from _misspelt_booleans(mentions, view, tree.name.text)
     counts: dict[str, int] = {}
     for mention in mentions:
@@ -56,7 +56,7 @@ def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> Iterator[Diagnostic]:
-    """`True` in a script, which is the name of an entry there."""
+    """`True` in a script, where it is the name of an entry."""
     for mention in mentions:
         meant = mention.name.lower()
         if not mention.in_script or mention.name == meant or meant not in ("true", "false"):
@@ -68,7 +68,7 @@ def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> It
 
 
 def _stand_together(mentions: Iterable[Mention], mention: Mention, other: str) -> bool:
-    """Whether one node is given both entries at its ports, or makes both: who writes so means two."""
+    """Whether one node has both entries at its ports, or creates both: then two are meant."""
     other = other.removeprefix("@")
     return any(
         each.node is mention.node
@@ -84,15 +84,15 @@ def _root_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
 
 
 def _is_created(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
-    """Whether anything makes an entry."""
+    """Whether anything creates an entry."""
     return any(each.creates for each in store.ask(blackboards, viewpoint).of(tree, name))
 
 
 def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, meant: str, is_mentioned: bool) -> bool:
-    """Whether what happens to one entry leads nowhere, and to the other one where it would.
+    """Whether the use of one entry has no effect, and would have one for the other entry.
 
     Args:
-        is_mentioned: the tree names the other one not only as a port.
+        is_mentioned: whether the tree names the other one other than as a port.
     """
     boards = store.ask(blackboards, viewpoint)
     if boards.is_given(tree, name) or boards.is_one(tree, name, meant):
@@ -113,7 +113,7 @@ def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, mea
 
 
 def _told(mentions: Iterable[Mention], mention: Mention, meant: str, is_single: bool) -> Diagnostic:
-    """is_single: the other name stands in one place, too, so that it may be the slip."""
+    """is_single: whether the other name also occurs once, so that it may be the misspelt one."""
     name = mention.name
     other = next((each for each in mentions if each.name == meant), None)
     message = f"`{name}` appears only here; did you mean `{meant}`?"
@@ -129,8 +129,8 @@ def _told(mentions: Iterable[Mention], mention: Mention, meant: str, is_single: 
 
 
 class _Alike:
-    """Names that differ as only slips do, found without comparing each with each: two names with one edit between
-    them are one, or one of each, after one letter is left out."""
+    """Names that differ as only misspellings do, found without comparing all pairs: two names with one edit between
+    them become equal, or equal to the other, when one letter is left out."""
 
     def __init__(self, names: Iterable[str]) -> None:
         self._by_piece: dict[str, list[str]] = {}
@@ -139,7 +139,7 @@ class _Alike:
                 self._by_piece.setdefault(piece, []).append(name)
 
     def to(self, name: str) -> list[str]:
-        """The names that may be meant by another one, the nearest first."""
+        """The names that may be meant by another one, the most similar first."""
         found = {other for piece in _pieces(name) for other in self._by_piece.get(piece, ()) if other != name}
         likely = [other for other in found if _is_slip(name, other)]
         return sorted(likely, key=lambda other: (distance(name, other), other))
@@ -147,12 +147,12 @@ class _Alike:
 
 @lru_cache(1_000)  # the same names are in tree after tree
 def _is_slip(word: str, meant: str) -> bool:
-    """Whether a name is so near another one that nobody would call two things so: `traget`, `batteryLevel`, `imgg`.
+    """Whether two names are too similar to be meant for two things: `traget`, `batteryLevel`, `imgg`.
 
-    Numbered names, plurals and letters of the alphabet are two things: `goal1` and `goal2`, `goals`, `goal_x`.
+    Numbered names, plurals and single letters are two things: `goal1` and `goal2`, `goals`, `goal_x`.
     """
     if any((word[:1] == sign) != (meant[:1] == sign) for sign in "@_"):
-        return False  # of the root, or private: that is no slip
+        return False  # of the root, or private: not a misspelling
     word, meant = word.removeprefix("@"), meant.removeprefix("@")
     folded, other = _folded(word), _folded(meant)
     if folded == other or _is_skeleton(folded, other):

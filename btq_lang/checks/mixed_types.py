@@ -1,8 +1,8 @@
-"""Blackboard entries that two ports give two types.
+"""Blackboard entries to which two ports give different types.
 
-Source: createNodeFromXML in src/xml_parsing.cpp of 4.6.2, 4.8.4 and 4.10.0: the first port that is given an entry makes
-it, with the port's type; a port of another type that is given it later ends the making of the tree, unless the first
-type was that of texts or of anything.
+Source: createNodeFromXML in src/xml_parsing.cpp of 4.6.2, 4.8.4 and 4.10.0: the first port to which an entry is
+assigned creates it, with the port's type; a later port of another type makes loading fail, unless the first type
+accepts texts or anything.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ class _Port(Record):
 
 
 class _Meeting(Record):
-    """An entry of a tree given to a port.
+    """An entry of a tree assigned to a port.
 
     Attributes:
-        type: of the port; nothing where nobody knows it, or where it takes anything.
+        type: of the port; empty if unknown or if it takes anything.
         node: the number of the node in the tree itself: the port's, or the SubTree below which the port is.
-        given: the number of that node's attribute; None where the SubTree gets it without one.
+        given: the number of that node's attribute; None if the SubTree gets it without one.
         port: the port itself.
     """
 
@@ -53,12 +53,12 @@ class _Meeting(Record):
     port: _Port
 
 
-# The ports that each entry of a tree is given, in the engine's order, the first of each type.
+# The ports to which each entry of a tree is assigned, in the engine's order, the first of each type.
 _Types: TypeAlias = "dict[str, list[_Meeting]]"
 
 
 def entry_with_two_types(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """An entry that ports of two types are given: the engine makes no tree of it."""
+    """An entry that is assigned to ports of two types: the engine refuses to load the tree."""
     tree = entry.item
     if not isinstance(tree, Tree) or tree.name is None or not view.look_up(lookups.has_pointers):
         return
@@ -82,13 +82,13 @@ def _found_in(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[Diagn
 
 @on_circle({})
 def _types_below(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
-    """The types that a tree hands on to those that run it; none, if it runs itself."""
+    """The types that a tree passes on to those that run it; empty if it runs itself."""
     return _types(store, viewpoint, tree)
 
 
 def _types(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
-    """The types that the entries of a tree meet in it and below it.  `_types_below` does not ask for it: it would be
-    part of each circle."""
+    """The types as which the entries of a tree are used in it and below.  `_types_below` does not ask for it, or it
+    would be part of each circle."""
     view = View(store, viewpoint)
     found: _Types = {}
     for number, seen in enumerate(_nodes(view, tree)):
@@ -105,7 +105,7 @@ def _types(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
 
 
 def _handed_on(view: View, seen: ResolvedNode) -> Iterator[tuple[str, int | None, _Meeting]]:
-    """What the entries meet that a SubTree gives to its tree, by the names that they have here."""
+    """The uses of entries that a SubTree passes to its tree, by the names that they have here."""
     if seen.id is None or not seen.id.text:
         return
     given = {pair.key.text: at for at, pair in reversed([*enumerate(seen.node.attributes)]) if pair.value is not None}
@@ -123,7 +123,7 @@ def _handed_on(view: View, seen: ResolvedNode) -> Iterator[tuple[str, int | None
 
 
 def _is_first(view: View, tree: str, key: str) -> bool:
-    """Whether in some way into a tree the first of its ports makes the entry, or meets a type that is one."""
+    """Whether on some way into a tree the first of its ports creates the entry, or is of a type that does."""
     seen = {(tree, key)}
     waiting = [(tree, key)]
     while waiting:
@@ -143,7 +143,7 @@ def _is_first(view: View, tree: str, key: str) -> bool:
 
 
 def _given(view: View, caller: str, tree: str, key: str) -> Iterator[str | None]:
-    """What the SubTree nodes of one tree call an entry of another one; None: nothing, it is that tree's own; an empty
+    """The names of an entry of another tree in the SubTree nodes of one tree; None: it is that tree's own; an empty
     text: a value."""
     for seen in _nodes(view, caller):
         if not seen.is_subtree or seen.node.id is None or seen.node.id.text != tree:
@@ -162,7 +162,7 @@ def _nodes(view: View, tree: str) -> tuple[ResolvedNode, ...]:
 
 def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Iterator[Diagnostic]:
     first = meetings[0]
-    # The ports of one node are met in no promised order.
+    # The order of ports at one node is unspecified.
     if not all(_is_strong(each.type) for each in meetings if each.node == first.node):
         return
     nodes = _nodes(view, tree)
@@ -209,7 +209,7 @@ def _related(view: View, port: _Port, message: str) -> Related:
 
 
 def _severity(first: str, later: str) -> Severity | None:
-    """How sure it is that two types are two: a type of somebody's program may be another word for one."""
+    """How certain it is that two types differ: a type of the user's program may be an alias for the other."""
     if is_known_type(first) and is_known_type(later):
         return Severity.ERROR
     if "<" in first + later or first.rpartition("::")[2].casefold() == later.rpartition("::")[2].casefold():

@@ -57,9 +57,9 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         text = name.text
         if seen.id is not None and text == seen.id.text and not seen.is_subtree:
-            continue  # the engine tells such nodes apart by their number
+            continue  # the engine distinguishes such nodes by number
         if seen.is_placeholder and legal_name(text) == text:
-            continue  # the name becomes the ID, and no instance name is left
+            continue  # the name becomes the ID, and no instance name remains
         other = first.setdefault((seen.is_subtree, text), name)
         if other is name:
             continue
@@ -76,7 +76,7 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def _of_id(view: View, seen: ResolvedNode, name: Word, reason: str) -> Iterator[Diagnostic]:
     if seen.is_subtree and name.text and not view.is_complete and not view.defines(Kind.TREE, name.text):
-        yield _tree_name(view, name, reason, ())  # else it is told where the tree is, or that there is none
+        yield _tree_name(view, name, reason, ())  # else it is reported at the tree, or as a missing tree
     elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
         refused = _refused("node ID", name, reason, _explicit(seen, name))
         yield replace(refused, notes=_NO_NAMESPACES) if _is_prefixed(name.text) else refused
@@ -98,7 +98,7 @@ def _of_instance(view: View, entry: Entry, seen: ResolvedNode, label: Word, vers
 
 
 def _nameless(view: View, entry: Entry, tree: Tree) -> Iterator[Diagnostic]:
-    """A tree without an ID: the engine takes it where nothing stands beside it."""
+    """A tree without an ID: the engine accepts it only if it is alone."""
     if view.look_up(lookups.has_neighbours) and not any(
         problem.span.start <= tree.end for problem in entry.diagnostics
     ):
@@ -108,7 +108,7 @@ def _nameless(view: View, entry: Entry, tree: Tree) -> Iterator[Diagnostic]:
 
 
 def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> Diagnostic:
-    """Only a warning where a build writes the tree and all that refer to it under a legal name, which must be free."""
+    """Only a warning if a build writes the tree and all references to it under a legal name, which must be free."""
     if view.is_xml:
         return _refused("tree ID", name, reason)
     legal = legal_name(name.text)
@@ -132,7 +132,7 @@ def _refused(what: str, name: Word, reason: str, fixes: tuple[Fix, ...] = ()) ->
 
 
 def _renamed(view: View, entry: Entry, name: Word) -> tuple[Fix, ...]:
-    """A legal name for a tree, wherever it is named."""
+    """The fix that gives a tree a legal name, wherever it is named."""
     declaration = view.declaration(Kind.TREE, name.text)
     if declaration is None or declaration.owner is not view.facts:
         return ()
@@ -146,7 +146,7 @@ def _renamed(view: View, entry: Entry, name: Word) -> tuple[Fix, ...]:
 
 
 def _explicit(seen: ResolvedNode, name: Word) -> tuple[Fix, ...]:
-    """`Action "my node"`: the ID of the explicit form is not looked at."""
+    """`Action "my node"`: the ID of the explicit form is not checked."""
     if name.text in ("", "Root", "root"):
         return ()
     category = likely_category(seen)

@@ -1,4 +1,4 @@
-"""Odds that nothing below a node ensures, and odds that no window is long enough to show."""
+"""Odds that the nodes below do not ensure, and odds that no window is long enough to show."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
-    """A node that is to do in time, or to succeed, more often than what is demanded of its children ensures.
+    """A node that must be in time, or succeed, more often than the demands on its children ensure.
 
-    A limit without odds is another matter: a step that is late now and then leaves the whole with time to spare.
+    Limits without odds do not matter here: if a step is late now and then, the whole may still be in time.
     """
     for applied, claim, node, place in demanded.claims:
         odds = applied.requirement.odds
@@ -42,7 +42,7 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
 
 
 def window_too_small(requirement: Requirement) -> Iterator[Found]:
-    """A window in which even a run without any failure shows too little.
+    """A window that is too small even without any failure.
 
     Of n experiments that all succeed, the probability is at least (1 - c)^(1/n) with confidence c (Clopper, Pearson,
     "The use of confidence or fiducial limits", Biometrika 26, 1934; one-sided).
@@ -65,8 +65,8 @@ def window_too_small(requirement: Requirement) -> Iterator[Found]:
 def _ensured(
     budgets: Budgets, claim: Claim, node: ResolvedNode
 ) -> tuple[float, list[tuple[ResolvedNode, float]], str] | None:
-    """How likely what is demanded below a node makes a claim true, what each child may miss, and what that leaves out;
-    None: it is unknown, or it takes too long anyway."""
+    """The probability that the demands below a node make a claim true, what each child may miss, and what that leaves
+    out; None if it is unknown, or the duration is too long anyway."""
     most = highest(claim)
     limit = most[0] if most is not None else inf
     limits = VERBS[claim.verb].limits
@@ -87,7 +87,7 @@ def _ensured(
 
 
 def _called(applied: Applied, node: ResolvedNode) -> str:
-    """As people call it: the mission, or a tree where its root has no name of its own."""
+    """The name to show: the mission, or a tree if its root has no name of its own."""
     if isinstance(applied.subject, Mission):
         return "`mission`"
     is_unnamed_root = node.parent is None and node.node.name is None and node.tree is not None

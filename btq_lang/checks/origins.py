@@ -1,7 +1,7 @@
 """Diagnostics of files that are written in XML, shown on the XML.
 
-One invariant: what leaves here counts from the start of the file on the disk, whatever language that is written in, and
-no fix changes a file that is not written in this language.
+One invariant: results count from the start of the file on the disk, whatever its language, and no fix changes a file in
+another language.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def shown_on_origins(workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """The diagnostics of a file, with those of its XML as such, if it is XML."""
+    """The diagnostics of a file, with those of its own XML, if it is XML."""
     foreign = workspace.origins
     origin = foreign.get(path)
 
@@ -43,5 +43,5 @@ def shown_on_origins(workspace: Workspace, path: str, found: Iterable[Diagnostic
 # What can only be wrong with the spelling of a .btq file.
 _OF_SPELLING = frozenset(("string-over-items", "unknown-escape"))
 
-# What tells of diagnostics that have left here already.
+# Rules that report diagnostics of included files, which are shown on origins already.
 _OF_SHOWN = frozenset(("include-with-errors",))

@@ -1,4 +1,4 @@
-"""Values where a node puts something out."""
+"""Values for outputs of nodes."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A value for an output, which needs an entry to write to: the node's own writing fails when it is ticked.  A value
-    that is none of the output's type is refused before.
+    that the output's type does not accept is refused before.
 
-    Some programs take such a value for the name of an entry, by means of their own, so where a file does so as a rule,
-    that is told once, and as a hint.
+    Some programs take such a value for the name of an entry, so if a file does so as a rule, that is reported once, as
+    a hint.
     """
     for seen, pair, type_ in outputs(view, entry):
         value = pair.value
@@ -57,8 +57,8 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def outputs(view: View, entry: Entry) -> Iterator[tuple[ResolvedNode, Pair, str]]:
-    """What the nodes of a tree are given for their outputs, and the types of those; none is said for a tree's, which
-    keep whatever they are given."""
+    """The values for the outputs of a tree's nodes, and the outputs' types; empty for a tree's, which keep whatever
+    they are given."""
     return _outputs_in(view, view.seen.given)
 
 
@@ -74,14 +74,14 @@ def _outputs_in(view: View, nodes: Iterable[ResolvedNode]) -> Iterator[tuple[Res
 
 
 def _is_custom(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether the file gives values to outputs as a rule."""
+    """Whether the file assigns values to outputs as a rule."""
     counts = [store.ask(_counts, viewpoint, tree) for tree in lookups.trees(store, viewpoint)]
     given, values = sum(each[0] for each in counts), sum(each[1] for each in counts)
     return values > 2 and (values > given / 2 or values > 9)
 
 
 def _is_first_value(view: View, entry: Entry, pair: Pair) -> bool:
-    """Whether no output of the file before this one is given a value."""
+    """Whether no output of the file before this one has a value."""
     values = (each for _, each, _ in outputs(view, entry) if each.value is not None and _is_literal(each.value))
     return view.ask(_first_with_value) is view.facts and next(values, None) is pair
 
@@ -92,7 +92,7 @@ def _first_with_value(store: Store[Workspace], viewpoint: str) -> Facts | None:
 
 
 def _counts(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[int, int]:
-    """How many outputs a tree gives something to, and how many of them a value."""
+    """The number of a tree's assigned outputs, and of those with a value."""
     view = View(store, viewpoint)
     nodes = view.seen_in(viewpoint, tree).given
     given = [pair.value for _, pair, _ in _outputs_in(view, nodes) if pair.value is not None]
@@ -100,12 +100,12 @@ def _counts(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[int, 
 
 
 def _is_literal(value: Word) -> bool:
-    """Whether a value is neither an entry nor nothing, as tools write it for a port that is not used; `=` is `{=}`."""
+    """Whether a value is neither an entry nor empty, as tools write it for an unused port; `=` is `{=}`."""
     return value.text not in ("", "=") and not is_pointer(value.text)
 
 
 def _types(view: View, seen: ResolvedNode) -> dict[str, str]:
-    """The outputs that a node has, and their types."""
+    """The outputs of a node, and their types."""
     if seen.kind is not None:
         return _outputs_of(seen.kind.tag)
     if seen.is_subtree:

@@ -1,4 +1,4 @@
-"""Classic placeholders: script nodes without code, which stand for skills (docs/language.md)."""
+"""Classic placeholders: script nodes without code, which represent skills (docs/language.md)."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
 
 _BLANKS = " \t"
 _WHITE = " \t\r\n"
-# Words that mean something else where a node's kind, or its label, may stand.
+# Words that mean something else in the place of a node's kind or label.
 _NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERB_WORDS | {"xml"}
 
 
 def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A placeholder, with the same in the short form."""
+    """A placeholder, with its short form."""
     for seen in view.seen.placeholders:
         if seen.name is None or seen.node.kind is None:
             continue
         name = _id_of(seen.name.text)
         if _taken(view, name) is not None:
-            continue  # told as a clash
+            continue  # reported as a clash
         what = "the condition" if seen.category == "Condition" else "the action"
         fix = _short_form(view, entry, seen, name)
         yield Diagnostic(
@@ -92,7 +92,7 @@ def _first_place(store: Store[Workspace], viewpoint: str, legal: str) -> Place |
 
 
 def _names_in(_: Store[Workspace], tree: Facts) -> dict[str, str]:
-    """The IDs that the placeholders of a tree become, each with the name that the first of them has."""
+    """The IDs that the placeholders of a tree become, each with the first name that becomes it."""
     return {_id_of(name.text): name.text for name in reversed([*_placeholders(tree)])}
 
 
@@ -104,7 +104,7 @@ def _placeholders(tree: Facts) -> Iterator[Word]:
 
 @lru_cache(10_000)
 def _id_of(name: str) -> str:
-    """The ID that a placeholder's name becomes; a mission names the same skills again and again."""
+    """The ID that a placeholder's name becomes; cached, for a mission repeats the names of skills."""
     return legal_name(name)
 
 
@@ -116,9 +116,9 @@ def _taken(view: View, name: str) -> str | None:
 
 
 def _short_form(view: View, entry: Entry, seen: ResolvedNode, name: str) -> Fix | None:
-    """`MoveBase (…)`, `Condition BatteryLow "BatteryLow?"`; None where what stands around the name is unusual.
+    """`MoveBase (…)`, `Condition BatteryLow "BatteryLow?"`; None if what is around the name is unusual.
 
-    It is safe where no models are in scope: with models the node would be held against them.
+    It is safe if no models are in scope: with models the node would be checked against them.
     """
     node = seen.node
     if entry.diagnostics or node.children or node.kind is None or node.name is None:
@@ -150,7 +150,7 @@ def _looks_like_builtin(name: str) -> bool:
 
 
 def _replace_head(text: str, node: Node, head: str) -> tuple[Change, ...] | None:
-    """Put `head` in the place of the kind and the name."""
+    """The changes that put `head` in place of the kind and the name."""
     assert node.kind is not None, "a placeholder has a kind"
     names = [pair for pair in node.attributes if pair.key.text == "name"]
     if node.label is not None:
@@ -163,7 +163,8 @@ def _replace_head(text: str, node: Node, head: str) -> tuple[Change, ...] | None
 
 
 def _without_name(text: str, kind: Word, name: Pair, head: str) -> tuple[Change, ...] | None:
-    """Replace the kind and take the name out of the brackets, where it is the first thing; empty ones go, too."""
+    """The changes that replace the kind and remove the name from the brackets, where it comes first; empty brackets go
+    too."""
     start, end = name.span.start, name.span.end
     if text[kind.end : start].strip(_WHITE) != "(":
         return None

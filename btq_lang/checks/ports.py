@@ -30,7 +30,7 @@ _OWN = frozenset(("ID", "name"))
 
 
 def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A port that the built-in, the model or the tree behind a SubTree does not have."""
+    """A port that the built-in, the model or the tree of a SubTree does not have."""
     for seen in view.seen.given:
         yield from _forbidden_id(seen)
         ports = _ports(view, seen)
@@ -40,7 +40,7 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         names = ", ".join(f"`{port.name}`" for port in known)
         required = {port.name for port in ports.required}
         for key, likely in meant.items():
-            # The engine takes any port of a SubTree, and a model without ports is often one that nobody finished.
+            # The engine takes any port of a SubTree, and a model without ports is often an unfinished one.
             harmless = (seen.is_subtree and not required.intersection(likely)) or not (known or seen.kind)
             fixes = tuple(
                 replace_fix(f"Replace `{key.text}` with `{port}`", key.span, written(port)) for port in likely
@@ -55,24 +55,24 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 severity=Severity.WARNING if harmless else None,
             )
             if not known and seen.kind is None:
-                break  # what is missing is the model's ports, all of them
+                break  # all of the model's ports are missing
 
 
 def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A port without a value: one the engine asks for, or an input without default of a model."""
+    """A port without a value: one the engine requires, or an input without default of a model."""
     for seen in view.nodes:
         ports = _ports(view, seen)
         if ports is None or not ports.required:
             continue
         given = {pair.key.text for pair in seen.node.attributes}
-        if seen.is_subtree:  # the engine gives a tree only what it takes for ports
+        if seen.is_subtree:  # the engine passes to a tree only what it takes for ports
             given = set(filter(is_port_name, given))
         missing = [port for port in ports.required if port.name not in given]
         if not missing or (seen.is_subtree and _remaps_all(seen)) or is_torn(view, entry, seen):
-            continue  # a value may be what could not be read
+            continue  # a value may be on a line that could not be read
         if _may_have_more(view, seen):
             continue  # and so may a default
-        slips = {likely[0] for likely in _meant(seen, ports).values() if likely}  # told as unknown, with a fix
+        slips = {likely[0] for likely in _meant(seen, ports).values() if likely}  # reported as unknown, with a fix
         missing = [port for port in missing if port.name not in slips]
         if not missing:
             continue
@@ -92,13 +92,13 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 ),
             ),
             fixes=_passing_on(view, entry, seen, missing),
-            # Whether the robot's program asks for an input is known to nobody but the program.
+            # Only the robot's program knows whether it requires an input.
             severity=None if seen.kind or seen.is_subtree else Severity.WARNING,
         )
 
 
 def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """`_skipif`: neither a port nor anything the engine reads, and it says nothing about it."""
+    """`_skipif`: neither a port nor anything the engine reads, which it does not report."""
     if isinstance(entry.item, Tree):
         for pair in entry.item.attributes:
             kind = RESERVED_ATTRIBUTES.get(pair.key.text)
@@ -165,7 +165,7 @@ def duplicate_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def misspelt_type(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """`strng`: no type of C++ and probably no type of the robot's program; its values are then held against nothing."""
+    """`strng`: not a type of C++ and probably not one of the robot's program; its values then are not checked."""
     item = entry.item
     for owner in item.models if isinstance(item, Models) else (item,):
         for port in owner.ports if isinstance(owner, Tree | Model) else ():
@@ -181,12 +181,12 @@ def misspelt_type(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def is_case(seen: ResolvedNode, key: str) -> bool:
-    """Whether an attribute is a case of a Switch; which ones there are depends on the number of its children."""
+    """Whether an attribute is a case of a Switch; which ones exist depends on the number of its children."""
     return seen.flow == "switch" and key.startswith("case_") and key[5:].isdecimal()
 
 
 class KnownPort(Record):
-    """A port that a node has, whoever says so."""
+    """A port of a node, whatever declares it."""
 
     name: str
     required: bool
@@ -194,7 +194,7 @@ class KnownPort(Record):
 
 
 class KnownPorts:
-    """The ports that a node has, its names and those that need a value."""
+    """The ports of a node: their names and those that need a value."""
 
     __slots__ = ("all", "names", "required")
 
@@ -205,11 +205,11 @@ class KnownPorts:
 
 
 def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
-    """The ports a node has; None where nobody knows."""
+    """The ports of a node; None if unknown."""
     if seen.is_placeholder:
         return None
     if seen.is_subtree:
-        # The engine reads `default = ""` as none, and asks for outputs, too.
+        # The engine reads `default = ""` as none, and requires outputs too.
         declared = subtree_ports(view, seen)
         ports = tuple(_declared_port(port, not (port.default and port.default.text)) for port in declared)
         return KnownPorts(ports) if ports else None
@@ -219,7 +219,7 @@ def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
 
 
 def _may_have_more(view: View, seen: ResolvedNode) -> bool:
-    """Whether a port may be declared where something could not be read."""
+    """Whether a port may be declared on a line that could not be read."""
     name = seen.id
     if name is None or not (seen.is_subtree or seen.is_defined):
         return False
@@ -250,7 +250,7 @@ def _declared_port(port: Port, required: bool) -> KnownPort:
 
 
 def _meant(seen: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:
-    """The keys that are no port, each with the ports that may be meant: none that has a value."""
+    """The keys that are not ports, each with the ports that may be meant and have no value."""
     names = ports.names
     given = [pair.key.text for pair in seen.node.attributes]
     if names.issuperset(given):
@@ -273,7 +273,7 @@ def _meant(seen: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]
 
 
 def _forbidden_id(seen: ResolvedNode) -> Iterator[Diagnostic]:
-    """`-> (ID = x)`: the engine takes an ID in the explicit form only."""
+    """`-> (ID = x)`: the engine accepts an ID in the explicit form only."""
     node = seen.node
     if node.kind is None or node.category is not None or (not node.kind.quoted and node.kind.raw in KNOWN_WORDS):
         return
@@ -286,7 +286,7 @@ def _forbidden_id(seen: ResolvedNode) -> Iterator[Diagnostic]:
 
 
 def _remaps_all(seen: ResolvedNode) -> bool:
-    """Whether a SubTree gets every entry under its own name, or its writer thinks so: that is told."""
+    """Whether a SubTree gets every entry under its own name, or is meant to, which is reported."""
     values = [seen.node.attribute(key) for key in ("_autoremap", *_OF_TODAY)]
     return any(value is not None and not _is_off(value) for value in values)
 
@@ -302,7 +302,7 @@ def _declared(view: View, seen: ResolvedNode) -> tuple[Related, ...]:
 
 
 def _passing_on(view: View, entry: Entry, seen: ResolvedNode, missing: list[KnownPort]) -> tuple[Fix, ...]:
-    """Give a custom node or a SubTree the blackboard entries that are called as its ports."""
+    """The fix that passes to a custom node or a SubTree the blackboard entries named as its ports."""
     if seen.kind is not None:
         return ()
     node = seen.node
@@ -317,7 +317,7 @@ def _passing_on(view: View, entry: Entry, seen: ResolvedNode, missing: list[Know
 
 
 def _attribute_lists(view: View, entry: Entry) -> Iterator[tuple[tuple[Pair, ...], dict[str, Word | None]]]:
-    """Every list of attributes in an item, with what stands before the brackets and says an attribute, too."""
+    """Every list of attributes in an item, with the attributes that are written before the brackets."""
     item = entry.item
     if isinstance(item, Tree):
         yield item.attributes, {"ID": item.name}
@@ -363,9 +363,9 @@ _TYPES = (
     "uint64_t",
 )
 
-# At a node with hundreds of ports and as many mistakes nobody reads what each may mean.
+# For a node with hundreds of ports and as many mistakes suggestions are of no use.
 _MOST_COMPARED = 2_000
 
-# Version 3's attributes of a SubTree, and what does today what they did.
+# Version 3's attributes of a SubTree, and their successors.
 _OF_TODAY = {"__shared_blackboard": "_autoremap", "__autoremap": "_autoremap"}
 _KEPT = frozenset(RESERVED_ATTRIBUTES) - frozenset(_OF_TODAY)

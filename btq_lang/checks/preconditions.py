@@ -1,5 +1,5 @@
-"""Preconditions that do not do what they say: `_failureIf`, `_successIf` and `_while` on nodes that run over several
-ticks, and what skips the condition of a choice."""
+"""Preconditions that do not do what they seem to: `_failureIf`, `_successIf` and `_while` on nodes that run over
+several ticks, and what skips the condition of a choice."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ _PASS_SKIPPED_ON = frozenset(
 
 
 def one_shot_monitor(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """`_failureIf`, which is asked once, on a node that runs; `_successIf` is a hint, for "do it unless it is done" is
-    what most people use it for."""
+    """`_failureIf`, which is evaluated once, on a node that runs; `_successIf` is a hint, for it mostly means "do it
+    unless it is done"."""
     for seen in view.seen.marked:
         for pair in seen.node.attributes:
             key = pair.key.text
@@ -51,7 +51,7 @@ def one_shot_monitor(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`_while` on a step of a Sequence: when it becomes false the step is halted, and the next one begins.
 
-    Where another step has a `_while` or a `_skipIf` too, the steps are the branches of a choice, and that is meant.
+    If another step has a `_while` or a `_skipIf` too, the steps are the branches of a choice, and that is intended.
     """
     for seen in view.seen.marked:
         pair = next((pair for pair in seen.node.attributes if pair.key.text == "_while"), None)
@@ -76,7 +76,7 @@ def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def skipped_condition(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """`_skipIf` or `_while` on the condition of an IfThenElse or a WhileDoElse, which take no SKIPPED from it."""
+    """`_skipIf` or `_while` on the condition of an IfThenElse or a WhileDoElse, which do not accept SKIPPED from it."""
     for seen in view.seen.marked:
         pair = next((pair for pair in seen.node.attributes if pair.key.text in ("_skipIf", "_while")), None)
         if pair is None:

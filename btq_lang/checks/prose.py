@@ -1,4 +1,4 @@
-"""SuccessIf and FailureIf in a requirement's description: what follows them is for people, or for tools."""
+"""SuccessIf and FailureIf in a requirement's description: whether prose follows them, or a constraint."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A keyword with prose after it, in a requirement that has no clause yet: reported once, where it is defined."""
+    """A keyword followed by prose, in a requirement that has no clause yet: reported once, where it is defined."""
     for symbol in view.facts.summary.symbols:
         requirement = symbol.target
         if not isinstance(requirement, Requirement) or requirement.text is None or requirement.clauses:
@@ -44,7 +44,7 @@ def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _not_checked(view: View, entry: Entry, requirement: Requirement, name: str) -> list[Constraint]:
-    """What follows keywords and is neither a script nor clauses that mean something."""
+    """The constraints that are neither a script nor meaningful clauses."""
     found = view.constraints(requirement)
     is_checked = any(checkable for _, checkable in found) and view.ask(is_measured)
     if is_checked and view.defines_here(Kind.REQUIREMENT, name) and view.ask(_claims_nothing, name):
@@ -61,7 +61,7 @@ def _claims_nothing(store: Store[Workspace], viewpoint: str, name: str) -> bool:
 
 
 def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | None:
-    """The clause that says the same as prose; a condition of a requirement needs but its verb."""
+    """The clause that means the same as prose; a condition only needs its verb."""
     from btq_lang.checks.wording import as_clause  # few requirements are prose
     from btq_lang.requirements.constraints import clauses_of
 
@@ -94,7 +94,7 @@ def _notes(clauses: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _fixes(view: View, entry: Entry, text: Word, name: str, clauses: tuple[str, ...]) -> tuple[Fix, ...]:
-    """Add the clauses; not where the text is repeated in other places, which would then say something else."""
+    """The fixes that add the clauses; none if the text is repeated in other places, which would then differ."""
     if not clauses or entry.diagnostics or view.is_repeated(Kind.REQUIREMENT, name):
         return ()
     added = " ".join(clauses)

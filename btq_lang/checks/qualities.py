@@ -1,4 +1,4 @@
-"""Quality names: unknown, of another edition, or with several meanings.  Nothing is refused: a model is open."""
+"""Quality names: unknown, of another edition, or with several meanings.  None is an error: a model is open."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A name that neither the standard nor the file's own qualities have, and an edition that there is not."""
+    """A name that is neither the standard's nor declared in a file, and an unknown edition."""
     if isinstance(entry.item, Qualities) and entry.item.edition is not None:
         edition = entry.item.edition
         if edition.text not in EDITIONS:
@@ -31,7 +31,7 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if match.kind != "unknown":
             continue
         if (meaning := view.find(Kind.REQUIREMENT, use.name)) is not None:
-            from btq_lang.checks.attached import other_word  # few take one word for the other
+            from btq_lang.checks.attached import other_word  # few confuse the two words
 
             takes_arguments = isinstance(meaning.target, Requirement) and bool(meaning.target.parameters)
             yield other_word(view, entry, use, "unknown-quality", requirement=True, safe=not takes_arguments)
@@ -39,7 +39,7 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
         own = tuple(written(name) for name in view.near(use.name, Kind.QUALITY))
         meant = tuple(dict.fromkeys((*own, *match.near)))[:3]
         if not meant and not view.is_complete:
-            continue  # it may be declared in what could not be read
+            continue  # it may be declared on a line that could not be read
         yield Diagnostic(
             "unknown-quality",
             use.span,
@@ -52,7 +52,7 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def old_quality_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """An alias, or a name of the edition that was not chosen."""
+    """An alias, or a name of another edition."""
     for use, match in _matches(view, entry):
         if match.kind not in ("alias", "other-edition"):
             continue
@@ -64,7 +64,7 @@ def old_quality_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 message = f"`{use.name}` is called `{new}` in {view.edition}"
         else:
             message = f"{view.edition} does not define `{use.name}`"
-        # "`x` is another word for y" says nothing new behind such a message.
+        # "`x` is another word for y" adds nothing to such a message.
         notes = (match.explanation,) if match.explanation and not (is_alias and match.safe) else ()
         yield Diagnostic(
             "old-quality-name",
@@ -104,14 +104,14 @@ def ambiguous_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _matches(view: View, entry: Entry) -> Iterator[tuple[Use, QualityMatch]]:
-    """Each quality named in an entry, but those that the files in scope declare themselves."""
+    """Each quality named in an entry, except those that the files in scope declare themselves."""
     for use in view.uses(Kind.QUALITY):
         if use.name and (match := view.quality(use.name)) is not None:
             yield use, match
 
 
 def _whole(view: View, entry: Entry, use: Use) -> Span:
-    """The span to replace: of `performance <time-behavior>` with the `>`, which is no part of the name."""
+    """The span to replace: for `performance <time-behavior>` with the `>`, which is not a part of the name."""
     text = view.text
     end = use.span.end
     if "<" in text[use.span.start : end]:

@@ -1,4 +1,4 @@
-"""Children that run over several ticks: what a reactive node does to them, and what a node with a memory does not.
+"""Children that run over several ticks under reactive nodes, and conditions that nodes with memory do not recheck.
 
 A Sequence or Fallback goes on with the child that is running; a reactive one begins with its first child at every tick
 and halts what it does not reach.
@@ -26,8 +26,8 @@ _APART = "put it in a Sequence of its own"
 
 
 def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A child of a reactive node that runs behind another one that runs: a warning where the other one certainly takes
-    more than a tick, a hint where it does if a custom action does."""
+    """A running child of a reactive node after another one that runs: a warning if the other one certainly takes more
+    than a tick, a hint if it does only if a custom action does."""
     for seen in view.seen.of_flow("sequence", "fallback"):
         if seen.kind is None or not seen.kind.reactive:
             continue
@@ -49,8 +49,8 @@ def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """An explicit form just below a ReactiveSequence: of a `.btq` file a build writes the compact one, where the name
-    makes a tag.
+    """An explicit form just below a ReactiveSequence: for a `.btq` file a build writes the compact one, if the name can
+    be a tag.
 
     Source: BehaviorTree.CPP 4.7 to 4.10, xml_parsing.cpp, where the tags of these children are looked up as nodes.
     """
@@ -75,14 +75,14 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic("explicit-in-reactive", category.span, message, notes=(note,))
         elif name is None or can_be_tag or seen.kind is not None or seen.is_placeholder:
             continue
-        elif category is not None or not is_forbidden:  # else forbidden-name tells it
+        elif category is not None or not is_forbidden:  # else forbidden-name reports it
             message = f"the engine refuses `{name.text}` directly below a {parent.kind.tag}"
             note = f"the name is not a valid XML tag, and the engine accepts no other form here: {_APART}"
             yield Diagnostic("explicit-in-reactive", name.span, message, notes=(note,))
 
 
 def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A Fallback at the top of a mission that chooses by a condition and then stays with its choice."""
+    """A Fallback at the top of a mission that chooses by a condition and then keeps its choice."""
     choices = [seen for seen in view.seen.of_flow("fallback") if not _begins_again(seen)]
     if not choices or not view.is_main:
         return
@@ -99,7 +99,7 @@ def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _second_async_sequence(seen: ResolvedNode, version: str) -> Diagnostic | None:
-    """The engine looks for this kind alone, and for children alone."""
+    """The engine checks only this kind, and only its children."""
     if seen.kind is None or not seen.kind.inspects_children or not ONE_ASYNC_SEQUENCE.holds(version):
         return None
     found = [child for child in seen.children if child.kind is not None and _is_async_sequence(child.kind)]
@@ -138,8 +138,8 @@ def _never_gets_further(seen: ResolvedNode, first: Node, child: Node, surely: bo
 
 
 def _is_at_the_top(seen: ResolvedNode) -> bool:
-    """Whether nothing but decorators and reactive nodes stands above: elsewhere a choice is part of a longer plan, and
-    meant to be made once."""
+    """Whether only decorators and reactive nodes are above: elsewhere a choice is part of a longer plan, and meant to
+    be made once."""
     return all(above.stated_category == "Decorator" or _begins_again(above) for above in seen.ancestors())
 
 
@@ -149,8 +149,8 @@ def _begins_again(seen: ResolvedNode) -> bool:
 
 
 def _guard(nodes: dict[int, ResolvedNode], branch: ResolvedNode) -> ResolvedNode | None:
-    """The condition in front of a branch `-> [condition, …]`; a condition alone is no branch: what follows it in the
-    Fallback brings about what it asks for. One in `R->` watches over what runs beside it: it is asked all the while."""
+    """The condition that begins a branch `-> [condition, …]`; a condition alone is not a branch: what follows it in the
+    Fallback achieves it. One in `R->` guards what runs beside it: it is evaluated all the while."""
     if not _is_resuming_sequence(branch) or len(branch.node.children) < 2:
         return None
     seen: ResolvedNode | None = branch
@@ -166,8 +166,8 @@ def _is_resuming_sequence(seen: ResolvedNode) -> bool:
 
 
 def _can_be_asked_again(view: View, entry: Entry, nodes: dict[int, ResolvedNode], seen: ResolvedNode) -> bool:
-    """Whether `R?` would start again only what its condition asks for: any other child that takes time and fails would
-    start again at the next tick, and halt what was to follow it."""
+    """Whether `R?` would restart only what its condition is for: any other child that takes time and fails would
+    restart at the next tick, and halt what was to follow it."""
     return all(
         _guard(nodes, nodes[id(child)]) is not None or not result(view, child).ever & RUNNING
         for child in seen.node.nodes[:-1]
@@ -193,7 +193,7 @@ def _not_asked_again(seen: ResolvedNode, guard: ResolvedNode, branch: Node, *, f
 
 
 def _reactive(kind: Word) -> str:
-    """The reactive Fallback, written as the one that it replaces."""
+    """The reactive Fallback, spelt like the one that it replaces."""
     fallback = next(each for each in BUILTINS.values() if each.flow == "fallback" and each.reactive)
     if kind.quoted:
         return quote(fallback.tag)

@@ -1,7 +1,7 @@
-"""Guards on values that nothing writes while the guarded node runs: they are as good as checked once.
+"""Guards on values that nothing writes while the guarded node runs: they are effectively checked once.
 
-One invariant: whatever may run beside a node is taken to do so, and whatever may write an entry to write it, so what is
-found is found for every run of the mission.  It does not know what the robot's program writes.
+One invariant: all that may run beside a node is assumed to run, and all that may write an entry to write it, so a
+finding is true for every run of the mission.  What the robot's program writes is not known here.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
-# While a child of these runs no other one does, and what ran before has come to its end, unless they are reactive.
+# While a child of these runs no other one does, and earlier ones have ended, unless they are reactive.
 _ONE_AT_A_TIME = frozenset(("sequence", "fallback", "choice", "switch"))
 
 
 def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
-    """A guard all of whose signals have writers in the mission, none of which is ticked while the node runs."""
+    """A guard whose signals all have writers in the mission, none of which is ticked while the node runs."""
     for applied, claim, node, place, why in demanded.hard:
         signals = _watched(applied.requirement, claim) if why is None else ()
         keys = dict.fromkeys([(signal.key or "").removeprefix("@") for signal in signals])
@@ -64,7 +64,7 @@ def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
 
 
 def _watched(requirement: Requirement, claim: Claim) -> Iterable[Signal]:
-    """The signals that are read again after the node has started; none where it is unknown which."""
+    """The signals that are read again after the node has started; empty if unknown."""
     if requirement.classic:
         return ()
     judged = VERBS[claim.verb].judged
@@ -75,7 +75,7 @@ def _watched(requirement: Requirement, claim: Claim) -> Iterable[Signal]:
 
 
 def _is_fixed(demanded: Demanded, node: ResolvedNode, key: str) -> bool:
-    """Whether an entry that nodes write stays as it is while a node of the tree runs."""
+    """Whether an entry that nodes write does not change while a node of the tree runs."""
     view, tree = demanded.view, demanded.tree
     if not view.ask(_writers, key):
         return False
@@ -89,7 +89,7 @@ def _is_renewed_beside(writing: frozenset[int], carrying: frozenset[int], node: 
     """Whether an entry may be written while a node runs, by one above it in the tree, or below one of these.
 
     Args:
-        writing, carrying: as `_renewing` says of the tree.
+        writing, carrying: the result of `_renewing` for the tree.
     """
     below, at = node, node.parent
     while at is not None:
@@ -127,7 +127,7 @@ def _renewing(
 
 
 def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[ResolvedNode, ...]:
-    """The nodes that may write an entry of this name; none where others may, too, or no node surely does."""
+    """The nodes that may write an entry of this name; empty if others may too, or if no node certainly does."""
     view = View(store, viewpoint)
     if view.ask(nodes.mission) is None or not view.is_complete or not view.is_read:
         return ()
@@ -140,7 +140,7 @@ def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[Resolve
     writers = [node for each in writing for node, name in each.writes if name.removeprefix("@") == key]
     reached = view.ask(_reached)
     if not all(writer.tree in reached for writer in writers):
-        return ()  # perhaps another mission, that runs beside this one
+        return ()  # perhaps another mission that runs beside this one
     sure = [write for each in writing for write in each.sure]
     if not any(name.removeprefix("@") == key for _, name in sure) or isolated(view, sure, key) is not None:
         return ()
@@ -148,7 +148,7 @@ def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[Resolve
 
 
 def _keys_of_defaults(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
-    """The entries, without their `@`, that ports of trees and models in scope have by default."""
+    """The entries, without their `@`, that are defaults of ports of trees and models in scope."""
     view = View(store, viewpoint)
     found: set[str] = set()
     for name in (*view.names(Kind.TREE), *view.names(Kind.MODEL)):
@@ -160,7 +160,7 @@ def _keys_of_defaults(store: Store[Workspace], viewpoint: str) -> frozenset[str]
 
 
 def _carrying(store: Store[Workspace], viewpoint: str, key: str) -> frozenset[str]:
-    """The trees that write an entry themselves or by those that they run."""
+    """The trees that write an entry, themselves or through those that they run."""
     waiting = [writer.tree for writer in store.ask(_writers, viewpoint, key)]
     carrying = {*waiting}
     while waiting:

@@ -31,9 +31,9 @@ class _Named(Record):
     """A name in a list.
 
     Attributes:
-        says: equal to that of another name which says the same.
-        clause: what can be mended there; None where that is for the reader to decide.
-        beside: where all names of the clause stand, and which of them this one is.
+        says: equal for names that mean the same.
+        clause: that can be fixed; None if the user must decide.
+        beside: the places of all names of the clause, and the index of this one.
     """
 
     says: object
@@ -57,7 +57,7 @@ def named_twice(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _names_several(clauses: tuple[NodeClause, ...]) -> bool:
-    """Whether there is more than one name, which is seldom so."""
+    """Whether there is more than one name, which is rare."""
     if len(clauses) != 1:
         return len(clauses) > 1
     clause = clauses[0]
@@ -93,7 +93,7 @@ def _of_clause(view: View, clause: NodeClause) -> Iterator[_Named]:
             name = ".".join(word.text for word in quality.path.names)
             match = view.quality(name)
             same = match.quality.id if match is not None and match.quality is not None else name
-            # A quality that encloses requirements may stand here for their sake.
+            # A quality that encloses requirements may be here for their sake.
             says: object = ("quality", same, bool(quality.requirements) and quality.path.span)
             words.append((says, None if quality.requirements else quality.path.names[-1], quality.path.span))
             words += [_of_requirement(use) for use in quality.requirements if use.name is not None]
@@ -103,7 +103,7 @@ def _of_clause(view: View, clause: NodeClause) -> Iterator[_Named]:
 
 
 def _of_requirement(use: ReqRef | Requirement) -> tuple[object, Word | None, Span]:
-    """What has no arguments can go; what is defined in place, or has some, is for the reader to decide."""
+    """A name without arguments can be removed; if it is defined in place, or has some, the user must decide."""
     assert use.name is not None, "the caller has looked"
     arguments = use.arguments if isinstance(use, ReqRef) else ()
     is_plain = isinstance(use, ReqRef) and not arguments
@@ -111,7 +111,7 @@ def _of_requirement(use: ReqRef | Requirement) -> tuple[object, Word | None, Spa
 
 
 def _removal(clause: NodeClause, places: tuple[Span, ...], index: int, text: str) -> Fix:
-    """Without one of its names a clause keeps the others; without its only one it goes."""
+    """The fix that removes one of a clause's names, or the clause if it is the only one."""
     span = places[index]
     if len(places) == 1:
         gone = with_blanks(text, clause)

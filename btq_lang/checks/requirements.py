@@ -1,4 +1,4 @@
-"""Requirements that are unknown, contradict themselves, are never used, or say nothing."""
+"""Requirements that are unknown, contradictory, unused, or empty."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
         quality = view.quality(use.name)
         if not elsewhere and (quality is None or quality.kind != "unknown"):
             is_exact = quality is None or quality.kind == "exact"
-            from btq_lang.checks.attached import other_word  # few take one word for the other
+            from btq_lang.checks.attached import other_word  # few confuse the two words
 
             yield other_word(view, entry, use, "unknown-requirement", requirement=False, safe=is_exact)
             continue
@@ -74,7 +74,7 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if view.is_used(Kind.REQUIREMENT, requirement.name.text) or view.is_meant_as_requirement(requirement.name.text):
         return
     if not view.is_read or view.names_unknown_requirements:
-        return  # its user may be what could not be read, or misspells it
+        return  # its user may be on a line that could not be read, or misspell it
     yield Diagnostic(
         "unused-requirement",
         requirement.name.span,
@@ -85,7 +85,7 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def requirement_without_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A requirement with neither a text nor a clause, or with nothing that its `on violation` could be about."""
+    """A requirement with neither a text nor a clause, or with nothing that its `on violation` could apply to."""
     for symbol in view.facts.summary.symbols:
         requirement = symbol.target
         if not isinstance(requirement, Requirement):
@@ -94,7 +94,7 @@ def requirement_without_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if action is None and not _is_empty(requirement):
             continue
         if view.is_torn(requirement.start, requirement.end):
-            continue  # what it says may be what could not be read
+            continue  # its contents may be on a line that could not be read
         message = f"the requirement `{symbol.name}` demands nothing"
         if action is not None:
             message += f" that can be violated, so `on violation {action}` has no effect"
@@ -113,7 +113,7 @@ def _other_way(entry: Entry, symbol: Symbol) -> str:
 
 
 def _differ(symbol: Symbol, first: Symbol) -> bool:
-    """Whether two definitions contradict each other; one that says nothing is told for that."""
+    """Whether two definitions contradict each other; an empty one is reported as such."""
     mine, other = symbol.target, first.target
     return (
         isinstance(mine, Requirement)
@@ -124,7 +124,7 @@ def _differ(symbol: Symbol, first: Symbol) -> bool:
 
 
 def _idle_action(view: View, requirement: Requirement) -> str | None:
-    """What would be done on a violation of a requirement that claims nothing, by a clause or in its description."""
+    """The action on violation of a requirement that claims nothing, neither by a clause nor in its description."""
     if any(isinstance(clause, Claim) for clause in requirement.clauses) or view.constraints(requirement):
         return None
     actions = (clause.action for clause in requirement.clauses if isinstance(clause, OnViolation))

@@ -1,8 +1,8 @@
-"""What the nodes of a file can return, as far as their kinds, attributes and children tell.
+"""The possible results of a file's nodes, as far as their kinds, attributes and children determine them.
 
-One invariant: never less than a node can return, so what is missing here is impossible; a leaf that nobody knows can
-return anything.  Only in `first` one thing is assumed: a custom action takes longer than one tick.  Not known here:
-the blackboard, and so whether a condition is ever true.
+One invariant: every status that a node can return is included, so a missing one is impossible; an unknown leaf can
+return anything.  Only `first` has an assumption: a custom action takes longer than one tick.  Not known here: the
+blackboard, and so whether a condition is ever true.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 
 
 class Results(Record):
-    """What a node can return: sets of statuses.
+    """The possible results of a node: sets of statuses.
 
     Attributes:
-        first: at the tick that starts it (a SequenceWithMemory that was halted does not start, it goes on), if actions
+        first: at the tick that starts it (a SequenceWithMemory that was halted resumes instead of starting), if actions
             in a Timeout take longer than one tick.
         usual: the same, if custom actions take longer than one tick.
         ever: at any tick.
@@ -44,18 +44,18 @@ UNKNOWN: Final = Results(ANYTHING, ANYTHING, ANYTHING)
 
 
 def result(view: View, node: object) -> Results:
-    """What a node of a tree can return; for verbatim XML that is anything."""
+    """The possible results of a node of a tree; for verbatim XML all."""
     return results(view).get(id(node), UNKNOWN)
 
 
 def results(view: View) -> Mapping[int, Results]:
-    """What the nodes of a tree can return, by their `id`; what is not in it is verbatim XML."""
+    """The possible results of the nodes of a tree, by their `id`; verbatim XML is left out."""
     return view.ask(_of_nodes, view.path, view.facts)
 
 
 @on_circle(UNKNOWN)
 def _of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> Results:
-    """What the tree of a name can return; one that runs itself, anything."""
+    """The possible results of a tree by its name; all, if it runs itself."""
     found = inputs.definition(store, viewpoint, Kind.TREE, tree)
     item = found[1].item if found is not None else None
     if found is None or not isinstance(item, Tree):
@@ -65,7 +65,8 @@ def _of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> Results:
 
 
 def _of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> dict[int, Results]:
-    """What the nodes of a tree can return.  `_of_tree` does not ask for it: it would be part of each circle."""
+    """The possible results of the nodes of a tree.  `_of_tree` does not ask for it, or it would be part of each
+    circle."""
     view = View(store, viewpoint)
     found: dict[int, Results] = {}
     for seen in reversed(view.seen_in(path, facts).all):  # children before their parents
@@ -89,13 +90,13 @@ def _of_node(view: View, seen: ResolvedNode, known: dict[int, Results]) -> Resul
 
 
 def _of_builtin(kind: NodeKind, node: Node, children: tuple[Results, ...]) -> Results:
-    """Most nodes have no attributes and one of few kinds of children, so the same is not asked again."""
+    """Cached, for most nodes have no attributes and few kinds of children."""
     key: tuple[str | int, ...] = kind.tag, *[child.first | child.usual << 4 | child.ever << 8 for child in children]
     found = _without_ports.get(key) if not node.attributes else None
     if found is not None:
         return found
     if kind.flow == "timeout" and len(children) == 1 and children[0].usual == RUNNING:
-        first = RUNNING  # who limits the time of an action knows that it takes some
+        first = RUNNING  # an action with a limited time takes time
     else:
         first = of_builtin(kind, node, [child.first for child in children], starting=True)
     found = Results(

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """What is wrong with a script, in any version that the project is for: script-error, empty-script,
+    """What is wrong with a script, in any version that the project targets: script-error, empty-script,
     script-version."""
     project = view.project
     for seen in view.seen.given:
@@ -44,7 +44,7 @@ def is_script(seen: ResolvedNode, pair: Pair) -> bool:
 
 
 def _expects_value(seen: ResolvedNode, pair: Pair) -> bool | None:
-    """Whether a script in this attribute has to give a value, as a condition has; None: it holds no script."""
+    """Whether a script in this attribute must have a value, like a condition; None if it is not a script."""
     key = pair.key.text
     attribute = RESERVED_ATTRIBUTES.get(key)
     if attribute is not None:
@@ -52,7 +52,7 @@ def _expects_value(seen: ResolvedNode, pair: Pair) -> bool | None:
     port = seen.kind.port(key) if seen.kind is not None else None
     if port is None or port.content != "script" or (pair.value is not None and is_pointer(pair.value.text)):
         return None
-    return seen.flow != "succeeds"  # else the node succeeds whatever the script gives
+    return seen.flow != "succeeds"  # else the node succeeds whatever the value
 
 
 def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic, ...]:
@@ -63,7 +63,8 @@ def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic,
 
 
 def _empty(seen: ResolvedNode, key: str, value: Word, found: Diagnostic) -> Diagnostic:
-    """The whole value is the place; the engine runs a Script without any character, and refuses all others."""
+    """The whole value is the place; the engine runs a Script without any character, and refuses all other empty
+    ones."""
     is_port = seen.kind is not None and seen.kind.port(key) is not None
     if is_port and seen.flow == "succeeds" and value.text == "":
         return replace(found, span=value.span, message="empty script", severity=Severity.WARNING)

@@ -27,7 +27,7 @@ _READING = words(operands=("condition", "use"))
 
 
 def of_signals(view: View, guards: Sequence[Guard]) -> Iterator[Found]:
-    """What these rules find.
+    """The findings of these rules.
 
     Args:
         guards: all claims for which the engine reads signals.
@@ -48,7 +48,7 @@ def guards(demanded: Demanded) -> Iterator[Guard]:
         if claim.verb not in _READING or not is_enforced(applied):
             continue
         parts = (claim.condition, claim.signal, *(scope.condition for scope in applied.requirement.scopes))
-        key = tuple(map(id, parts))  # one claim may hold for many nodes
+        key = tuple(map(id, parts))  # one claim may apply to many nodes
         if key not in known:
             from btq_lang.requirements.reading import signals_in  # few missions have a claim that is enforced
 
@@ -57,13 +57,13 @@ def guards(demanded: Demanded) -> Iterator[Guard]:
 
 
 def _never_written(view: View, here: list[Signal], guards: Sequence[Guard]) -> Iterator[Found]:
-    """A signal whose blackboard entry no port and no script of the mission writes, where another entry has nearly the
-    same name, or where a guard reads it; the robot's program may write it, so then it is a hint.  A guard reads the
-    root blackboard, so what a tree writes into its own is another entry."""
+    """A signal whose blackboard entry no port and no script of the mission writes, if another entry has nearly the same
+    name, or if a guard reads it; the robot's program may write it, so then it is a hint.  A guard reads the root
+    blackboard, so what a tree writes into its own is another entry."""
     if not view.ask(has_nodes) or not view.is_complete or not view.is_read:
         return
     if view.is_included:
-        return  # what writes it may be in the files that include this one
+        return  # it may be written in the files that include this one
     written = view.ask(written_keys)
     writes = [write for each in view.ask(all_entries) for write in each.writes] if guards else []
     guarding = {signal.name for signals, _ in guards for signal in signals}
@@ -95,13 +95,13 @@ def _never_written(view: View, here: list[Signal], guards: Sequence[Guard]) -> I
 
 
 def _near_keys(store: Store[Workspace], viewpoint: str, key: str) -> tuple[str, ...]:
-    """The entries that are written and have nearly the same name as one."""
+    """The entries that are written and have a name similar to this one."""
     return near(key, store.ask(written_keys, viewpoint))
 
 
 def _of_text(view: View, here: list[Signal]) -> Iterator[Found]:
-    """A signal that is a number, whose entry a port of texts writes: a script that compares it converts the text, and
-    throws where it is no number."""
+    """A numeric signal whose entry a text port writes: a script that compares it converts the text, and throws if it is
+    not a number."""
     main = view.ask(mission)
     numbers = {(signal.key or "").removeprefix("@"): signal for signal in here if signal.sort == "number"}
     entries = [each for each in view.ask(all_entries) if not numbers.keys().isdisjoint(each.pointers)]

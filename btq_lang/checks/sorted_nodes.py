@@ -1,6 +1,6 @@
-"""The nodes of a tree, sorted by what checks look for: nearly every check would look at each node of a file.
+"""The nodes of a tree, sorted by what checks look for, so that not every check has to look at every node of a file.
 
-One invariant: nothing is said here of a node that it does not say itself (workspace/resolved.py).
+One invariant: it only sorts; all properties are the nodes' own (workspace/resolved.py).
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ def sorted_nodes(store: Store[Workspace], viewpoint: str, path: str, tree: Facts
 
 
 class SortedNodes:
-    """The nodes of a tree, each list of them depth first, in document order.
+    """The nodes of a tree, each list depth first, in document order.
 
     Attributes:
         all: all of them.
         given: those with attributes.
-        marked: those with attributes that are no port by their first letter, as `_while`.
+        marked: those with attributes that begin with `_`, so that they are not ports, as `_while`.
         demanding: those with clauses.
         categorized: those whose category is written.
         subtrees: those that run another tree.

@@ -1,7 +1,7 @@
-"""What a built-in can return when it is known what its children can.
+"""The possible results of a built-in, given those of its children.
 
-One invariant: never less than the engine's node returns, in any version.  A set of statuses is a sum of powers of two;
-a missing or surplus child is one that can return anything.
+One invariant: every status that the engine's node returns in any version is included.  A set of statuses is a sum of
+powers of two; a missing or surplus child can return anything.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ def of_builtin(kind: NodeKind, node: Node, children: Sequence[int], starting: bo
     """The statuses that a built-in can return.
 
     Args:
-        node: where its ports are.
-        children: what each of its children can return.
-        starting: the sets are those of the tick that starts the node; else those of any tick.
+        node: that has the ports.
+        children: the possible results of each child.
+        starting: whether the sets are those of the tick that starts the node; else of any tick.
     """
     flow = kind.flow
     if flow in _LEAVES:
@@ -52,7 +52,7 @@ def of_builtin(kind: NodeKind, node: Node, children: Sequence[int], starting: bo
 
 
 def _number(kind: NodeKind, node: Node, role: Role) -> int | None:
-    """The whole number that is written as the value of the port; None where another thing is, or nothing."""
+    """The literal integer of the port; None if that is not an integer."""
     value = _written(kind, node, role)
     text = value.text if value is not None else ""
     return int(text) if text.removeprefix("-").isdecimal() and len(text) < 12 else None
@@ -66,7 +66,7 @@ def _written(kind: NodeKind, node: Node, role: Role) -> Word | None:
 def _in_order(children: Sequence[int], goes_on: int, pauses: bool, starting: bool) -> int:
     """A sequence goes on after SUCCESS, a fallback after FAILURE.
 
-    `pauses`: it returns RUNNING between two children that complete at once.
+    `pauses`: whether it returns RUNNING between two children that complete at once.
     """
     found = 0
     skipped = ANYTHING
@@ -78,7 +78,7 @@ def _in_order(children: Sequence[int], goes_on: int, pauses: bool, starting: boo
             child &= ~goes_on if starting else ANYTHING
         if not child & (goes_on | SKIPPED):
             return found
-    # Resumed at a child that was running and is now skipped, it has forgotten that those before it were skipped too.
+    # Resumed at a child that was running and is now skipped, it has forgotten that earlier ones were skipped too.
     resumed = not starting and skipped & SKIPPED and any(child & RUNNING for child in children)
     passed = goes_on if resumed or any(child & goes_on for child in children) else 0
     return found | passed | (skipped & SKIPPED)
@@ -103,7 +103,7 @@ def _if_then_else(children: Sequence[int]) -> int:
 
 
 def _parallel(kind: NodeKind, node: Node, children: Sequence[int]) -> int:
-    """Without thresholds all must succeed and one may fail; with some, anything that a child completes with."""
+    """Without thresholds all must succeed and one may fail; with some, any completed child may decide."""
     found = _any_of(children)
     everyone = ANYTHING
     for child in children:
@@ -125,13 +125,13 @@ def _retry(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
 
 
 def _again(child: int, repeats: int, count: int | None, starting: bool) -> int:
-    """It repeats after SUCCESS or after FAILURE; a count of -1 is without end."""
+    """It repeats after SUCCESS or after FAILURE; a count of -1 is unlimited."""
     if count is not None and (count == 0 or count < -1):
         return repeats | SKIPPED
     if count == 1 or not child & repeats:
         return child
     found = child | RUNNING
-    counted = not starting or child & SKIPPED  # a skipped child leaves the count as it is
+    counted = not starting or child & SKIPPED  # a skipped child does not change the count
     return found if count is None or (count > 0 and counted) else found & ~repeats
 
 
@@ -161,7 +161,7 @@ def _delay(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
 
 
 def _once(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    """Once it has run it is skipped, or returns a result again that it had at any tick."""
+    """Once it has run it is skipped, or repeats a result that it had at any tick."""
     skips = node.attribute("then_skip") is None
     return child | (SKIPPED if skips else ANYTHING)
 
@@ -183,7 +183,7 @@ def _wait_until_updated(kind: NodeKind, node: Node, child: int, starting: bool) 
 
 
 def _otherwise(kind: NodeKind, node: Node) -> int:
-    """What it returns without its child."""
+    """The result without its child."""
     port = kind.port_for("otherwise")
     value = node.attribute(port.name) if port is not None else None
     text = value.text if value is not None else port.default if port is not None else None
@@ -192,7 +192,7 @@ def _otherwise(kind: NodeKind, node: Node) -> int:
 
 _STATUSES: Final = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED, "RUNNING": RUNNING}
 _LEAVES: Final[Mapping[Flow, int]] = {"succeeds": SUCCESS, "fails": FAILURE, "answers": SUCCESS | FAILURE}
-# After which status of a child the next one is ticked.
+# The status of a child after which the next one is ticked.
 GOES_ON: Final[Mapping[Flow, int]] = {"sequence": SUCCESS, "fallback": FAILURE}
 _DECORATORS: Final[Mapping[Flow, _Decorator]] = {
     "invert": _invert,

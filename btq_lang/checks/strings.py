@@ -1,4 +1,4 @@
-"""Places inside a value: from the text that a STRING says back to the source that says it.
+"""Places inside a value: from the text of a STRING back to its source.
 
 One invariant: the characters of a value's text and the pieces of its source correspond one to one and in order, an
 escape or a line end of two characters being one piece.
@@ -15,7 +15,7 @@ _ESCAPED = frozenset("\"'\\nt")
 
 
 def in_source(word: Word, span: Span) -> Span:
-    """Where a part of a value's text stands, counted as the value is."""
+    """The span in the source for a part of a value's text, counted from the value."""
     if not word.quoted:
         return span.shifted(word.start)
     if "\\" not in word.raw and "\r" not in word.raw:
@@ -37,7 +37,7 @@ def moved(diagnostic: Diagnostic, word: Word) -> Diagnostic:
 
 
 def _changes(changes: tuple[Change, ...], word: Word) -> tuple[Change, ...]:
-    """In a STRING each change where it belongs; another value needs quotes, once something is changed in it."""
+    """In a STRING each change in its place; another value needs quotes once it changes."""
     if word.quoted:
         sign = word.raw[0]
         return tuple(

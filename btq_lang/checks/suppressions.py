@@ -1,9 +1,9 @@
 """`# btq: ignore[rule, …]`: a comment that silences rules on its line, or, alone on a line, on the next one.
 
-Such comments may follow each other: they all mean the first line behind them that is no comment.
+Such comments may follow each other: they all apply to the next line that is not a comment.
 
-`# btq: ignore` without rules silences all of them there.  Nothing silences an error after which the file is not read
-as it stands.
+`# btq: ignore` without rules silences all of them there.  Nothing silences an error after which the file cannot be read
+reliably.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Suppressions:
         self._everything: set[int] = set()
         self._silenced: dict[int, set[str]] = {}
         self.useless: list[Diagnostic] = []
-        meant: dict[int, int] = {}  # of lines that are only a comment: the line behind them that is more
+        meant: dict[int, int] = {}  # from lines that are only a comment to the next line that is more
         for token in reversed(file.parsed.tokens):
             if token.kind != COMMENT:
                 continue

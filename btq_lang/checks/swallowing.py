@@ -21,12 +21,12 @@ _NEVER_ENFORCED = frozenset(("runs", "starts", "ends"))
 
 
 def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
-    """A failure that never reaches the root, whichever way the node is run."""
+    """A failure that never reaches the root, on whichever way the node is run."""
     for applied, claim, node, place in demanded.claims:
         if applied.requirement.action != "fail" or not is_enforced(applied) or claim.verb in _NEVER_ENFORCED:
             continue
         if claim.limit is not None and highest(claim) is None:
-            continue  # what takes too little time is only seen when it is over
+            continue  # too short a time is only noticed afterwards
         swallower = _in_tree(node) or (demanded.view.ask(_above, node.tree) if node.tree is not None else None)
         if swallower is None:
             continue
@@ -64,7 +64,7 @@ def _above(store: Store[Workspace], viewpoint: str, tree: str) -> Swallower | No
 
 
 def _callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[ResolvedNode, ...]:
-    """The SubTree nodes that run a tree; none where that is the mission's, from which a failure goes nowhere."""
+    """The SubTree nodes that run a tree; empty for the mission's, where failures end."""
     if tree is None or tree == store.ask(_main_tree, viewpoint):
         return ()
     return store.ask(callers, viewpoint, tree)
@@ -87,7 +87,7 @@ def _in_tree(node: ResolvedNode) -> Swallower | None:
 
 
 def _swallows(parent: ResolvedNode, child: ResolvedNode) -> str | None:
-    """What a node does when this child of it fails, if it does not fail, too."""
+    """Why a node does not fail when this child of it fails; None if it may fail."""
     flow = parent.flow
     last = child.index == len(parent.node.children) - 1
     if flow == "fallback":
@@ -104,7 +104,7 @@ def _swallows(parent: ResolvedNode, child: ResolvedNode) -> str | None:
 
 
 def _failures_needed(parallel: ResolvedNode) -> int:
-    """How many children must fail for it to fail; 1 where that is unknown."""
+    """The number of children that must fail for it to fail; 1 if unknown."""
     n = len(parallel.node.children)
     wanted, failures = port_count(parallel, "successes"), port_count(parallel, "failures")
     if failures is None:

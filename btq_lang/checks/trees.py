@@ -1,4 +1,4 @@
-"""Trees that are missing, doubled, recursive, never used, or not exactly one node."""
+"""Trees that are missing, duplicate, recursive, unused, or without exactly one root."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from btq_lang.checks.view import View
 
 _MOST_NAMES = 5  # in one message
-_DEEPEST_OF_4_6 = 97  # below a BehaviorTree: its reader of XML (tinyxml2 8.0) ends where 100 elements are open
+_DEEPEST_OF_4_6 = 97  # below a BehaviorTree: its XML reader (tinyxml2 8.0) stops at 100 open elements
 _LAST_WINS = "the engine does not report this: it runs the last one that it reads"
 
 
@@ -41,7 +41,7 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if not view.is_complete or view.has_torn_tree:
             return
         if view.is_xml and view.look_up(lookups.is_tree_of_mission, use.name):
-            continue  # the engine has read all files before it makes a tree, and nobody adds an include to others' XML
+            continue  # the engine reads all files before it creates a tree, and other projects' XML gets no include
         elsewhere = view.elsewhere(Kind.TREE, use.name)
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
         likely = view.near(use.name, Kind.TREE)
@@ -55,7 +55,7 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def nested_too_deep(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A node further down than 4.6 reads; what no version reads the parser tells."""
+    """A node deeper than 4.6 reads; what no version reads is reported by the parser."""
     nodes, project = view.nodes, view.project
     if len(nodes) <= _DEEPEST_OF_4_6 or DEEP_TREES.holds(project.engines[0]):
         return
@@ -101,7 +101,7 @@ def duplicate_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A tree that contains itself, told where the circle begins in the first of its trees."""
+    """A tree that contains itself, reported where the circle begins in the first of its trees."""
     if not isinstance(entry.item, Tree) or entry.item.name is None:
         return
     name = entry.item.name.text
@@ -121,7 +121,7 @@ def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A tree that nothing refers to, or that only such trees refer to, in a file with a mission."""
+    """A tree to which nothing refers, or only such trees, in a file with a mission."""
     if not isinstance(entry.item, Tree) or entry.item.name is None or view.is_included:
         return
     name = entry.item.name
@@ -141,16 +141,16 @@ def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """Several trees, and nothing says which of them is the mission; told at the first."""
+    """Several trees of which none is marked as the mission; reported at the first."""
     if not isinstance(entry.item, Tree) or not view.is_first_tree or view.is_included:
         return
     if view.ask(calls.has_gaps) or not view.is_read:
-        return  # the tree that runs the others may be what is misspelt
+        return  # the tree that runs the others may be misspelt
     if view.main_tree or view.look_up(lookups.has_root_of_tree):
         return
     tops = [name for name in view.look_up(lookups.own_trees) if not view.ask(calls.callers, name)]
     if len(tops) < 2:
-        return  # without one at the top they run in circles, and that is told
+        return  # without one at the top they run in circles, which is reported
     shown = [f"`{name}`" for name in tops[:_MOST_NAMES]]
     names = f"{', '.join(shown[:-1])} or {shown[-1]}" if len(tops) <= _MOST_NAMES else f"{', '.join(shown)}, …"
     span = entry.item.name.span if entry.item.name else Span(entry.item.start, entry.item.end)
@@ -170,13 +170,13 @@ def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def tree_root_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A tree without exactly one node at its top."""
+    """A tree without exactly one root node."""
     tree = entry.item
     if not isinstance(tree, Tree) or len(tree.children) == 1:
         return
     place = tree.name.span if tree.name else Span(tree.start, tree.end)
     if not tree.children:
-        if not entry.diagnostics:  # else its node may be what could not be read
+        if not entry.diagnostics:  # else its node may be on a line that could not be read
             note = "write one node in the tree's block"
             yield Diagnostic(
                 "tree-root-count", place, "a tree must have one node at its top, found none", notes=(note,)
@@ -218,7 +218,7 @@ def tree_named_like_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _as_node(use: Use) -> tuple[Fix, ...]:
-    """`SubTree MoveBase`, where MoveBase is a node: without the word."""
+    """The fix for `SubTree MoveBase`, where MoveBase is a node: without the word."""
     node = use.node
     if node is None or node.category is None or node.kind is None:
         return ()
@@ -227,7 +227,7 @@ def _as_node(use: Use) -> tuple[Fix, ...]:
 
 
 def _main_tree_fix(view: View, name: str) -> Fix:
-    """Name the main tree: in the Root that is there, or in a line of its own behind the includes."""
+    """The fix that names the main tree: in the existing Root, or in a line of its own after the includes."""
     root = view.look_up(lookups.root)
     at, margin = root or view.look_up(lookups.head)
     text = f" {written(name)}" if root else f"{margin}Root {written(name)}\n"

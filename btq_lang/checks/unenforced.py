@@ -1,4 +1,4 @@
-"""`on violation fail` and `halt` where a build does not make the engine do it."""
+"""`on violation fail` and `halt` that a build does not enforce."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def not_enforced(demanded: Demanded) -> Iterator[Found]:
-    """A claim about a node that no build enforces, or only one that writes all files as one."""
+    """A claim about a node that no build enforces, or only one that writes all files into one."""
     for applied, claim, node, place, why in demanded.hard:
         if place is None or _is_reported_otherwise(demanded, claim, node, place):
             continue
@@ -33,7 +33,7 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
             continue
         elsewhere = next((each for each in _nodes(claim, node) if not _is_built(demanded, applied, claim, each)), None)
         if elsewhere is not None:
-            from btq_lang.btcpp.judging import where_else  # few missions ask for what is in other files
+            from btq_lang.btcpp.judging import where_else  # few missions demand anything of other files' nodes
 
             path = elsewhere.path
             why = where_else(elsewhere, is_xml=lookups.is_xml(demanded.view.store, path))
@@ -41,7 +41,7 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
 
 
 def not_enforced_between(view: View, name: str) -> Iterator[Found]:
-    """The same of the claims of a requirement about no node in particular."""
+    """The same for the claims of a requirement that are about no particular node."""
     between = view.ask(claimed_of_no_tree, name)
     judge = judge_of(view) if between else None
     for applied in between:
@@ -56,7 +56,7 @@ def _found(
     applied: Applied, place: Place, why: str, related: tuple[Related, ...], *, is_bundled: bool = False
 ) -> Diagnostic:
     requirement = applied.requirement
-    asked = "this" if requirement.classic else f"`on violation {requirement.action}`"  # classic ones are hard unasked
+    asked = "this" if requirement.classic else f"`on violation {requirement.action}`"  # classic ones are always hard
     note = (
         "nothing stops the robot, and `btq verify` can only check it in the logs afterwards; "
         "remove `on violation`, or write `on violation warn`"
@@ -72,7 +72,7 @@ def _found(
 
 
 def _is_reported_otherwise(demanded: Demanded, claim: Claim, node: ResolvedNode, place: Place) -> bool:
-    """Whether a rule of its own says why the engine does not hold it."""
+    """Whether a rule of its own reports why the engine does not enforce it."""
     if claim.signal is not None:
         return claim.signal.behaviour == "gauge"
     most = highest(claim) if VERBS[claim.verb].limits and place != node.place else None
@@ -80,7 +80,7 @@ def _is_reported_otherwise(demanded: Demanded, claim: Claim, node: ResolvedNode,
 
 
 def _nodes(claim: Claim, node: ResolvedNode) -> Iterator[ResolvedNode]:
-    """The nodes that something is put around."""
+    """The nodes that get a wrapper."""
     yield node
     for other in (claim.per, claim.event.subject if claim.event is not None else None):
         if isinstance(other, Target):
@@ -88,7 +88,7 @@ def _nodes(claim: Claim, node: ResolvedNode) -> Iterator[ResolvedNode]:
 
 
 def _is_built(demanded: Demanded, applied: Applied, claim: Claim, node: ResolvedNode) -> bool:
-    """Whether what is put around a node is written: in this file, or because the node's own file asks for it."""
+    """Whether the wrapper is written: in this file, or because the node's own file attaches the requirement."""
     if node.path == demanded.view.path:
         return True
     view = demanded.view

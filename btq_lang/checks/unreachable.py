@@ -1,4 +1,4 @@
-"""Children that can never run, because of what those before them return or because of their parent's attributes."""
+"""Children that can never run, because of the results of earlier ones or because of their parent's attributes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def unreachable_child(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A child that can never run; told once for all those behind one place."""
+    """A child that can never run; reported once for all those after one place."""
     for seen in view.nodes:
         if len(seen.node.children) < 2:
             continue
@@ -41,7 +41,7 @@ def unreachable_child(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def _behind(
     view: View, entry: Entry, seen: ResolvedNode, children: tuple[Node | Verbatim, ...], goes_on: int
 ) -> Diagnostic | None:
-    """The child behind one that can only end the node."""
+    """The child after one that can only end the node."""
     known = results(view)
     for child, following in pairwise(children):
         if isinstance(child, Node) and not known.get(id(child), UNKNOWN).ever & (goes_on | SKIPPED):
@@ -51,7 +51,7 @@ def _behind(
 
 
 def _in_try(view: View, entry: Entry, seen: ResolvedNode) -> Diagnostic | None:
-    """The last child is the one that cleans up, after a failure and perhaps after a halt."""
+    """The last child of a try, which cleans up after a failure and perhaps after a halt, if it can never run."""
     *tried, last = seen.node.children
     found = _behind(view, entry, seen, tuple(tried), SUCCESS)
     if found is not None or seen.node.attribute("catch_on_halt") is not None:
@@ -74,7 +74,7 @@ def _by_condition(view: View, entry: Entry, seen: ResolvedNode) -> Diagnostic | 
 
 
 def _in_switch(seen: ResolvedNode) -> Diagnostic | None:
-    """A case that an earlier one has already, or that a literal variable does not name."""
+    """A case that repeats an earlier one, or that a literal variable does not name."""
     variable = seen.node.attribute("variable")
     if variable is None:
         reason = f"without a `variable` {seen.shown_kind} runs its last child"

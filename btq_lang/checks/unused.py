@@ -1,4 +1,4 @@
-"""Signals and contexts that nothing in the mission speaks of."""
+"""Signals and contexts to which nothing in the mission refers."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ def _is_unused(view: View, entry: Entry, kind: Kind) -> bool:
             view.defines_here(kind, symbol.name)
             and not view.look_up(lookups.is_asked_for, symbol.name)
             and not _is_meant(view, symbol.name)
-            and view.is_read  # else its user may be what could not be
+            and view.is_read  # else its user may be on a line that could not be read
         )
     return False
 
 
 def _is_meant(view: View, name: str) -> bool:
-    """Whether something asks for what nothing declares and what looks like this name: that is told already."""
+    """Whether something uses an undeclared name that looks like this one, which is reported already."""
     return view.ask(_is_near, name)
 
 
@@ -57,7 +57,7 @@ def _is_near(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     asked = view.look_up(lookups.asked_for_in_vain)
     declared = len(view.names(Kind.SIGNAL)) + len(view.names(Kind.CONTEXT))
     if len(asked) * declared > _MOST_COMPARED:
-        return True  # among so much that nobody knows there is something like any name
+        return True  # among so many unknown names there is a similar one to any
     return bool(near(name, asked, limit=1))
 
 

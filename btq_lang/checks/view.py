@@ -1,7 +1,7 @@
-"""What a check sees: one item in the scope of a viewpoint, with the questions that many checks ask.
+"""What a check sees: one item in the scope of a viewpoint, with the look-ups that many checks need.
 
-It decides nothing and remembers nothing: every answer comes from the query store.  A question that only one rule asks
-does not belong here.
+It decides nothing and caches nothing: every result comes from the query store.  A look-up that only one rule needs does
+not belong here.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ class View:
     """An item, or none in particular, in the scope of a viewpoint.
 
     Attributes:
-        store: where answers are kept.
-        viewpoint: from where names are looked up.
+        store: that caches results.
+        viewpoint: the file in whose scope names are looked up.
         facts: of the item that is checked.
-        seen: the nodes of a tree, and those among them that only some checks look for; none for any other item.
+        seen: the sorted nodes of a tree; empty for any other item.
     """
 
     __slots__ = ("facts", "seen", "store", "viewpoint")
@@ -56,18 +56,18 @@ class View:
         self.seen = self.seen_in(viewpoint, facts) if facts is not None else NO_NODES
 
     def ask(self, query: Callable[..., T], *key: Any) -> T:
-        """What a query says from this viewpoint."""
+        """The result of a query from this viewpoint."""
         return self.store.ask(query, self.viewpoint, *key)
 
     def look_up(self, read: Callable[..., T], *key: Any) -> T:
-        """What the files say from this viewpoint."""
+        """The value of an input from this viewpoint."""
         return read(self.store, self.viewpoint, *key)
 
     # ---- the item ----
 
     @property
     def entry(self) -> Entry:
-        """The item and what is wrong with its syntax; it begins at 0."""
+        """The item and its syntax diagnostics; it begins at 0."""
         return inputs.entry(self.store, self.viewpoint, self.facts)
 
     @property
@@ -77,7 +77,7 @@ class View:
 
     @property
     def nodes(self) -> tuple[ResolvedNode, ...]:
-        """The nodes of a tree, depth first, in document order; none for any other item."""
+        """The nodes of a tree, depth first, in document order; empty for any other item."""
         return self.seen.all
 
     def uses(self, kind: Kind) -> list[Use]:
@@ -104,7 +104,7 @@ class View:
         return bool(is_only_one) or (is_only_one is not None and self.defines_here(Kind.TREE, name))
 
     def is_first_use(self, node: Node, name: str) -> bool:
-        """Whether no node of the file before this one has an ID."""
+        """Whether no earlier node of the file has an ID."""
         if self.look_up(lookups.first_user, Kind.MODEL, name) is not self.facts:
             return False
         uses = self.facts.summary.uses
@@ -113,7 +113,7 @@ class View:
     # ---- names ----
 
     def defines(self, kind: Kind, name: str) -> bool:
-        """Whether a name in scope means something."""
+        """Whether a name in scope is defined."""
         return self.look_up(lookups.is_defined, kind, name)
 
     def find(self, kind: Kind, name: str) -> Meaning | None:
@@ -121,7 +121,7 @@ class View:
         return self.look_up(lookups.meaning, kind, name)
 
     def definition(self, kind: Kind, name: str) -> Placed | None:
-        """The item that defines what a name means, and the path of its file."""
+        """The item that defines a name, and the path of its file."""
         return self.look_up(inputs.definition, kind, name)
 
     def declaration(self, kind: Kind, name: str) -> Declaration | None:
@@ -134,7 +134,7 @@ class View:
         return (Related(declaration.place, message),) if declaration is not None else ()
 
     def defines_here(self, kind: Kind, name: str) -> bool:
-        """Whether the item defines what a name means, and no other one does."""
+        """Whether the item has the definition of a name that counts."""
         found = self.definition(kind, name)
         return found is not None and found[1] is self.facts
 
@@ -152,7 +152,7 @@ class View:
 
     @property
     def is_complete(self) -> bool:
-        """Whether a name that is not in scope is nowhere."""
+        """Whether a name that is not in scope does not exist."""
         return self.look_up(inputs.is_complete)
 
     def elsewhere(self, kind: Kind, name: str) -> tuple[str, ...]:
@@ -160,18 +160,17 @@ class View:
         return self.look_up(lookups.elsewhere, kind, name)
 
     def clashes(self, *kinds: Kind) -> list[tuple[Declaration, Declaration]]:
-        """The names that the file of this include and one included before it both define, each with the definition
-        that counts and the other one."""
+        """The names that the file of this include and one included before it both define, each with the definition that
+        counts and the other one."""
         if not isinstance(self.facts.item, Include):
             return []
         found = self.look_up(lookups.clashes)
         return [(first, second) for at, first, second in found if at is self.facts and second.symbol.kind in kinds]
 
     def near(self, word: str, kind: Kind | None) -> tuple[str, ...]:
-        """The names of a kind that look like a word that is none; a node may have a built-in's name, too.
+        """The names of a kind that are similar to an unknown word; a node may have a built-in's name too.
 
-        In a file where hundreds of names are unknown nobody reads what each of them may mean, so at some point there
-        is no answer any more.
+        In a file with hundreds of unknown names suggestions are of no use, so above a limit the result is empty.
 
         Args:
             kind: None for the project's other files, as an include names them.
@@ -179,7 +178,7 @@ class View:
         return self.ask(_near_names, kind, word)
 
     def seen_in(self, path: str, tree: Facts) -> SortedNodes:
-        """The nodes of a tree of any file in scope, sorted; none for any other item."""
+        """The nodes of a tree of any file in scope, sorted; empty for any other item."""
         return self.ask(sorted_nodes, path, tree) if isinstance(tree.item, Tree) else NO_NODES
 
     def model_ports(self, seen: ResolvedNode) -> tuple[Port, ...]:
@@ -201,7 +200,7 @@ class View:
 
     @property
     def is_xml(self) -> bool:
-        """Whether the file is XML that the engine loads as it is: no build comes between."""
+        """Whether the file is XML that the engine loads as it is, without a build."""
         return self.look_up(lookups.is_xml)
 
     @property
@@ -226,17 +225,17 @@ class View:
         return self.look_up(lookups.edition)
 
     def quality(self, name: str) -> QualityMatch | None:
-        """What the catalog says of a quality's name; None for a quality that a file in scope declares."""
+        """The catalog's match of a quality name; None for a quality that a file in scope declares."""
         return self.ask(_quality, name)
 
     @property
     def is_read(self) -> bool:
-        """Whether the whole file could be read: else what seems to be missing may be what could not."""
+        """Whether the whole file could be read: else what seems missing may be on a line that could not."""
         return self.look_up(lookups.is_read)
 
     @property
     def has_torn_tree(self) -> bool:
-        """Whether the name of one of the file's trees may be what could not be read."""
+        """Whether the name of one of the file's trees may be on a line that could not be read."""
         return self.look_up(lookups.has_torn_tree)
 
     @property
@@ -249,12 +248,12 @@ class View:
         return self.ask(_is_used, kind, name)
 
     def is_meant_as_requirement(self, name: str) -> bool:
-        """Whether a name is where a quality or a node should be, and seems to be a requirement's; each is reported."""
+        """Whether a name in the place of a quality or a node seems to be a requirement's; each is reported."""
         return self.is_used(Kind.QUALITY, name) or self.ask(_is_misspelt_use, name)
 
     @property
     def has_palette(self) -> bool:
-        """Whether the models in scope are meant to be all there are: a TreeNodesModel, or models of another file."""
+        """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file."""
         return self.look_up(lookups.has_palette)
 
     @property
@@ -263,7 +262,7 @@ class View:
         return self.look_up(lookups.other_files)
 
     def script(self, text: str) -> Script:
-        """What a script says; several checks ask for each."""
+        """A parsed script; several checks need each."""
         return self.store.ask(_script, text)
 
     # ---- what runs again after each edit of a linked file ----
@@ -309,7 +308,7 @@ def subtree_ports(view: View, seen: ResolvedNode) -> tuple[Port, ...]:
 
 
 def misspelt_clause(node: Node) -> str | None:
-    """What is probably meant by a node that reads `satisfys rq1`: satisfices or satisfies."""
+    """The clause that a node like `satisfys rq1` probably means: satisfices or satisfies."""
     kind = node.kind
     if kind is None or not kind.raw.startswith("sa") or node.label is None or node.label.quoted:
         return None
@@ -339,7 +338,7 @@ def _is_first_tree(store: Store[Workspace], viewpoint: str, tree: Facts) -> bool
 
 
 def _is_main_tree(store: Store[Workspace], viewpoint: str, name: str) -> bool | None:
-    """Whether this file's own tree of a name runs when the engine loads it; None: no tree of that name does."""
+    """Whether this file's own tree of a name runs when the engine loads it; None if no tree of that name does."""
     main = View(store, viewpoint).look_up(lookups.main_tree)
     return main[1] if main is not None and main[0] == name else None
 

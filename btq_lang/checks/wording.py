@@ -1,7 +1,7 @@
-"""What a sentence about a bound says as a clause: "shall take at most 30 sec" is `takes at most 30 s`.
+"""The clause for a sentence about a bound: "shall take at most 30 sec" is `takes at most 30 s`.
 
-One invariant: there is an answer only where the sentence has one number, with a unit, one comparison, and no word that
-could change what it says (and, or, if, per, average …).  It knows no file; what is measured is given to it.
+One invariant: there is a result only if the sentence has one number with a unit, one comparison, and no word that could
+change its meaning (and, or, if, per, average …).  It knows no file; signals are arguments.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from btq_lang.catalog.units import Dimension, parse_unit
 
 
 def as_clause(sentence: str, *, violates: bool, signals: Mapping[str, Dimension]) -> str | None:
-    """The clause that says what a sentence says; None where it is not plain.
+    """The clause that means the same as a sentence; None if it is not plain.
 
     Args:
-        violates: the sentence says when the requirement is violated, not when it is met.
-        signals: what is measured, with the dimension of its unit.
+        violates: whether the sentence describes when the requirement is violated, not when it is met.
+        signals: with the dimensions of their units.
     """
     sentence = " ".join(sentence.split())
     words = frozenset(_WORD.findall(sentence.lower()))
@@ -105,7 +105,7 @@ _COMPARISONS = {
     "exceeding": ">",
 }
 _TRIES = frozenset(("times", "attempts", "tries", "retries"))
-# Words by which a sentence may say more than its one comparison does, or less.
+# Words by which a sentence may mean more or less than its one comparison.
 _QUALIFIERS = frozenset(
     (
         *("and", "or", "but", "if", "when", "whenever", "while", "unless", "except", "until", "after", "before"),
@@ -122,6 +122,6 @@ _DURATIONS = frozenset(
 )
 _USES = frozenset(("use", "uses", "used", "using", "consume", "consumes", "consumed"))
 _AT_THE_END = frozenset(("left", "remain", "remains", "remaining", "arrive", "arrives", "arrived"))
-# What the module needs of a text before it knows whether there is more to do.
+# The patterns that are needed for every text; others are compiled on demand.
 _WORD = re.compile(r"[^\W_]+")
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?")

@@ -1,7 +1,7 @@
-"""Which nodes write which blackboard entries, as far as a mission says it.
+"""Which nodes write which blackboard entries, as far as a mission determines it.
 
-One invariant: a node that may write an entry is said to: only ports that are declared as inputs are not.  It does not
-know when nodes run.
+One invariant: every node that may write an entry is included; only ports that are declared as inputs are not.  When
+nodes run is not known here.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ class Entries(Record):
     """The blackboard entries that the nodes of a tree name.
 
     Attributes:
-        writes: those that something may write, with the node that does, those of the root blackboard with their `@`.
-        sure: those of them that are said to be written: by a port declared so, or by a script.
-        written: all of them, without.
-        pointers: the attributes in braces, with their nodes, by the entry, without its `@`; and whether it had one.
-        mentioned: names without braces that a node is given, which may do with that entry what it likes.
-        is_open: something in it may write any entry: XML as it is, or an entry that another one names.
+        writes: those that a node may write, with that node, those of the root blackboard with their `@`.
+        sure: those of them that are certainly written: by a declared output, or by a script.
+        written: all of them, without the `@`.
+        pointers: the attributes in braces, with their nodes, by the entry without its `@`, and whether it had one.
+        mentioned: names without braces that a node gets, which may read or write that entry.
+        is_open: whether something in it may write any entry: verbatim XML, or an entry that another one names.
     """
 
     writes: tuple[tuple[ResolvedNode, str], ...]
@@ -100,10 +100,10 @@ def key_of(pointer: str, port: str) -> str:
 
 
 def isolated(view: View, writes: Sequence[tuple[ResolvedNode, str]], key: str) -> ResolvedNode | None:
-    """One that writes an entry of this name in the blackboard of its own tree, where nothing writes that of the root.
+    """A node that writes an entry of this name in its own tree's blackboard, if nothing writes that of the root.
 
     Args:
-        writes: as of `Entries`; at least one is of the entry.
+        writes: as in `Entries`, at least one of the entry.
     """
     main = view.ask(nodes.mission)
     if main is None:
@@ -111,7 +111,7 @@ def isolated(view: View, writes: Sequence[tuple[ResolvedNode, str]], key: str) -
     calls: dict[str | None, list[tuple[str, ResolvedNode]]] = {}
     for tree in view.ask(nodes.nodes).trees:
         calls.setdefault(tree.name, []).extend(tree.calls)
-    # Which name the root's entry has in which tree.
+    # The names of the root's entry, by tree.
     names = {(main.tree, key)}
     waiting = [main.tree]
     while waiting:
@@ -164,7 +164,7 @@ def _assigned(script: str) -> Iterator[str]:
 
 
 def _writes(view: View, node: ResolvedNode, port: str) -> bool | None:
-    """Whether a port is written, which is so unless it is an input; None: that is not declared."""
+    """Whether a port is written, which it is unless it is an input; None if it is not declared."""
     if node.kind is not None:
         builtin = node.kind.port(port)
         return builtin is not None and builtin.direction != "input"
@@ -173,7 +173,7 @@ def _writes(view: View, node: ResolvedNode, port: str) -> bool | None:
 
 
 def _passed_on(node: ResolvedNode, names: set[str]) -> Iterator[str]:
-    """The names by which a tree that runs another one makes its entries known to that."""
+    """The names under which a tree that runs another one passes its entries to that."""
     given = {pair.key.text: pair.value.text for pair in node.node.attributes if pair.value is not None}
     for port, text in given.items():
         if is_pointer(text) and key_of(text, port) in names:
