@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.btcpp.around import START, FirstValues, Leaf, Wrapper
 from btq_lang.btcpp.document import Comment, Document, Element
+from btq_lang.btcpp.enforceability import Elsewhere, Judge, where_else
 from btq_lang.btcpp.export import Export, is_mission
 from btq_lang.btcpp.guards import NotEnforced
-from btq_lang.btcpp.judging import Elsewhere, Judge, where_else
 from btq_lang.btcpp.keys import Keys
 from btq_lang.btcpp.marks import GUARDS_NOTE
 from btq_lang.btcpp.wrappers import wrapped
@@ -215,8 +215,8 @@ class _Planner:
         self._keys: Final = Keys()
         is_shared = path in workspace.included_files
         self._budgets: Final = budgets or Budgets(found.store, found.viewpoint)
-        looks = _Looks(found, self._budgets, _begins(workspace, found, path, files))
-        self._judge: Final = Judge(looks, files=files, is_shared=is_shared)
+        view = _MissionView(found, self._budgets, _begins(workspace, found, path, files))
+        self._judge: Final = Judge(view, files=files, is_shared=is_shared)
 
     def held(self, applied: Applied, claim: Claim) -> Held:
         """How a clause is enforced; records the wrappers it needs."""
@@ -275,7 +275,7 @@ class _Planner:
         return "; ".join(notes)
 
 
-class _Looks:
+class _MissionView:
     """The view of nodes that a `Judge` needs."""
 
     def __init__(self, found: Requirements, budgets: Budgets, begins: bool) -> None:

@@ -16,7 +16,7 @@ from btq_lang.requirements.nodes import mission
 from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
 
 if TYPE_CHECKING:
-    from btq_lang.btcpp.judging import Judge
+    from btq_lang.btcpp.enforceability import Judge
     from btq_lang.requirements.durations import Term
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
@@ -68,12 +68,12 @@ def _hard_claims(
 
 def judge_of(view: View) -> Judge:
     """The judge of enforceability, as if all files were written into one."""
-    from btq_lang.btcpp.judging import Judge  # few missions have a claim that is to be enforced
+    from btq_lang.btcpp.enforceability import Judge  # few missions have a claim that is to be enforced
 
-    return Judge(_Looks(view), files=None, is_shared=view.is_included)
+    return Judge(_MissionView(view), files=None, is_shared=view.is_included)
 
 
-class _Looks:
+class _MissionView:
     """The view of nodes that a judge needs."""
 
     def __init__(self, view: View) -> None:

@@ -33,7 +33,7 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
             continue
         elsewhere = next((each for each in _nodes(claim, node) if not _is_built(demanded, applied, claim, each)), None)
         if elsewhere is not None:
-            from btq_lang.btcpp.judging import where_else  # few missions demand anything of other files' nodes
+            from btq_lang.btcpp.enforceability import where_else  # few missions demand anything of other files' nodes
 
             path = elsewhere.path
             why = where_else(elsewhere, is_xml=lookups.is_xml(demanded.view.store, path))

@@ -18,7 +18,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 
 if TYPE_CHECKING:
 
-    class Looks(Protocol):
+    class MissionView(Protocol):
         """What a judge has to know of nodes and of the mission."""
 
         def waits(self, node: ResolvedNode) -> bool:
@@ -45,21 +45,21 @@ class Elsewhere(NotEnforced):
         self.node: Final = node
 
 
-class NoBeginning(NotEnforced):
+class UnknownMission(NotEnforced):
     """It is not known which tree is the mission."""
 
 
 class Judge:
     """Judges the clauses that some files see."""
 
-    def __init__(self, looks: Looks, *, files: Container[str] | None, is_shared: bool) -> None:
+    def __init__(self, view: MissionView, *, files: Container[str] | None, is_shared: bool) -> None:
         """
         Args:
-            looks: queried only for what matters.
+            view: queried only for what matters.
             files: that are written together; None: all.
             is_shared: whether they are a part of several missions.
         """
-        self._looks: Final = looks
+        self._view: Final = view
         self._files: Final = files
         self._is_shared: Final = is_shared
 
@@ -70,7 +70,7 @@ class Judge:
             return f"verified by {applied.requirement.method}"
         try:
             self.needs(applied.requirement, claim, self.node(applied, claim), "_", "@_")
-        except NoBeginning:
+        except UnknownMission:
             return None
         except NotEnforced as reason:
             return str(reason)
@@ -92,13 +92,13 @@ class Judge:
         if (
             isinstance(subject, Span)
             and VERBS[claim.verb].limits == "completion"
-            and (node := self._looks.of_span(subject)) is not None
+            and (node := self._view.of_span(subject)) is not None
         ):
             return node
         if not isinstance(subject, Target | Mission):
             raise NotEnforced("it limits the time between nodes, and no node encloses that time")
         if subject.node is None:
-            raise NoBeginning("the main tree is unknown; name it with a line `Root <tree>`")
+            raise UnknownMission("the main tree is unknown; name it with a line `Root <tree>`")
         return subject.node
 
     def needs(
@@ -113,22 +113,22 @@ class Judge:
             NotEnforced: the engine cannot do it.
         """
         made = guarded(requirement, claim, node, name, stop, self._is_shared)
-        if VERBS[claim.verb].limits and claim.limit is not None and not self._looks.waits(node):
+        if VERBS[claim.verb].limits and claim.limit is not None and not self._view.waits(node):
             raise NotEnforced(f"{node.shown} completes within one tick")
         for each in dict.fromkeys(each for each, _ in made.wrappers):
             if self._files is not None and each.path not in self._files:
                 raise Elsewhere(each)
-            _can_stand_around(each, self._looks.is_skipped(each))
+            _can_stand_around(each, self._view.is_skipped(each))
         first: dict[str, str] = {}
         for signal in made.signals:
             first |= _first_value(signal)
         if (first or made.cells or made.stop) and not self._is_shared:
-            if not self._looks.begins():
-                raise NoBeginning("the main tree is unknown; name it with a line `Root <tree>`")
+            if not self._view.begins():
+                raise UnknownMission("the main tree is unknown; name it with a line `Root <tree>`")
             if made.stop is not None:
-                mission = self._looks.mission()
+                mission = self._view.mission()
                 assert mission is not None, "there is a mission that begins"
-                _can_stand_around(mission, self._looks.is_skipped(mission))
+                _can_stand_around(mission, self._view.is_skipped(mission))
         return made, first
 
 
