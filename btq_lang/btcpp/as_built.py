@@ -9,8 +9,8 @@ import os
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Protocol
 
-from btq_lang.btcpp.by_hand import ByHand
 from btq_lang.btcpp.importing import import_xml
+from btq_lang.btcpp.manual_edits import ManualEdit
 from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.restoring import restored
 from btq_lang.btcpp.side_file import side_path
@@ -47,13 +47,13 @@ class Built(Record):
         workspace: the mission with all that it includes, and the XML files that were edited by hand.
         path: of the mission in the workspace; the file need not exist.
         shown: its paths as they are shown: that of the side file, then those recorded in it.
-        by_hand: the manual edits of generated nodes, with their XML file.
+        manual_edits: the manual edits of generated nodes, with their XML file.
     """
 
     workspace: Workspace
     path: str
     shown: Callable[[str], str]
-    by_hand: tuple[tuple[str, ByHand], ...]
+    manual_edits: tuple[tuple[str, ManualEdit], ...]
 
 
 def as_built(path: str, source: Source, called: Callable[[str], str] = shown) -> Built | None:
@@ -73,11 +73,11 @@ def as_built(path: str, source: Source, called: Callable[[str], str] = shown) ->
     target = f"{os.path.splitext(path)[0]}.btq"
     known: dict[str, str] = {}
     sources: dict[str, str] = {}
-    by_hand: list[tuple[str, ByHand]] = []
+    manual_edits: list[tuple[str, ManualEdit]] = []
     waiting = [(made, path, target)]
     for made, xml, place in waiting:
         folder = os.path.dirname(xml)
-        by_hand += ((xml, each) for each in made.by_hand)
+        manual_edits += ((xml, each) for each in made.manual_edits)
         for name, text in (
             (place, made.text),
             *((absolute(os.path.join(folder, each)), it) for each, it in made.others),
@@ -91,12 +91,12 @@ def as_built(path: str, source: Source, called: Callable[[str], str] = shown) ->
     workspace = source.workspace(target, known)
     if workspace is None:
         return None
-    changed = {xml: File(xml, source.text(xml) or "") for xml, _ in by_hand}
+    changed = {xml: File(xml, source.text(xml) or "") for xml, _ in manual_edits}
     return Built(
         Workspace({**changed, **workspace.files}, workspace.project),
         target,
         lambda each: f"{called(sources[each])}:{shown(each)}" if each in sources else called(each),
-        tuple(by_hand),
+        tuple(manual_edits),
     )
 
 
@@ -108,14 +108,14 @@ class _Made(Record):
         others: of a bundle, the paths (relative to the mission) and texts of the files it includes.
         includes: paths that the XML includes, in order.
         source: the file that all this was read from: the side file, or the XML.
-        by_hand: the manual edits of generated nodes.
+        manual_edits: the manual edits of generated nodes.
     """
 
     text: str
     others: tuple[tuple[str, str], ...]
     includes: tuple[str | None, ...]
     source: str
-    by_hand: tuple[ByHand, ...] = ()
+    manual_edits: tuple[ManualEdit, ...] = ()
 
 
 def _made(path: str, source: Source) -> _Made | None:
@@ -131,7 +131,7 @@ def _made(path: str, source: Source) -> _Made | None:
     includes = tuple(_includes(done.text))
     mission = restored(xml, done.text, said) if said is not None else None
     if mission is not None:
-        return _Made(mission.text, mission.others, includes, side, mission.by_hand)
+        return _Made(mission.text, mission.others, includes, side, mission.manual_edits)
     return _Made(done.text if is_generated(xml) else xml, (), includes, path)
 
 

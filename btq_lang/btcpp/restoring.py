@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
-from btq_lang.btcpp.by_hand import ByHand, NodeGuards, changed_by_hand
+from btq_lang.btcpp.manual_edits import ManualEdit, NodeGuards, manual_edits
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.side_file import FORMAT, VERSIONS
 from btq_lang.catalog.names import legal_name
@@ -48,7 +48,7 @@ class Restored(Record):
         is_whole: whether it is the mission as it was.
         file: the mission's path relative to the side file; not validated.
         lost: clauses of nodes that no longer exist.
-        by_hand: the manual edits of generated nodes, which are ignored.
+        manual_edits: the manual edits of generated nodes, which are ignored.
         others: if a whole bundle, the paths (relative to the mission) and texts of the files that it includes.  The
             paths come from the side file and may lead anywhere.
     """
@@ -57,7 +57,7 @@ class Restored(Record):
     is_whole: bool
     file: str
     lost: tuple[Lost, ...] = ()
-    by_hand: tuple[ByHand, ...] = ()
+    manual_edits: tuple[ManualEdit, ...] = ()
     others: tuple[tuple[str, str], ...] = ()
 
 
@@ -105,7 +105,7 @@ def restored(xml: str, imported: str, side: str) -> Restored | None:
     sources = ((None, mission), *((file, text) for file, text in others if is_btq(file)))
     merged = _merged(parse(imported), [(file, parse(text)) for file, text in sources], place)
     document = read(xml).document if guards else None
-    return merged if document is None else replace(merged, by_hand=changed_by_hand(document.root, guards))
+    return merged if document is None else replace(merged, manual_edits=manual_edits(document.root, guards))
 
 
 def _is_text(value: object) -> bool:

@@ -11,10 +11,10 @@ import posixpath
 from collections.abc import Iterator, Mapping
 from typing import Final, TypeAlias
 
-from btq_lang.btcpp.by_hand import node_guards
 from btq_lang.btcpp.document import Document, Element
 from btq_lang.btcpp.enforcement import Held
 from btq_lang.btcpp.instances import Instance, instances
+from btq_lang.btcpp.manual_edits import node_guards
 from btq_lang.btcpp.wrappers import MARK
 from btq_lang.catalog.units import Unit
 from btq_lang.diagnostics.model import Place

@@ -9,14 +9,14 @@ from argparse import Namespace
 from collections.abc import Callable, Collection, Iterator
 
 from btq_lang.btcpp.as_built import Built, as_built
-from btq_lang.btcpp.by_hand import ADVICE
+from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of, is_mission
 from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import STDIN, Files, Group
 from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.diff import Place, as_json, as_markdown, as_text
-from btq_lang.diff.comparison import NOWHERE, ByHand, Comparison, Side, compared, without_made_models
+from btq_lang.diff.comparison import NOWHERE, Comparison, ManualEdit, Side, compared, without_made_models
 from btq_lang.render.colour import painter, wants_colour
 from btq_lang.util.record import replace
 from btq_lang.workspace.file import SUFFIXES, File
@@ -168,10 +168,11 @@ def _built_on_disk(path: str) -> Side | None:
 
 
 def _side(name: str, built: Built) -> Side:
-    by_hand = tuple(
-        ByHand(each.guard, each.sum, f"{each.happened}; {ADVICE}", Place(xml, each.span)) for xml, each in built.by_hand
+    manual_edits = tuple(
+        ManualEdit(each.guard, each.sum, f"{each.happened}; {ADVICE}", Place(xml, each.span))
+        for xml, each in built.manual_edits
     )
-    return Side(name, built.workspace, built.workspace.closure(built.path), built.shown, by_hand)
+    return Side(name, built.workspace, built.workspace.closure(built.path), built.shown, manual_edits)
 
 
 def _xml_below(folder: str) -> tuple[str, ...]:

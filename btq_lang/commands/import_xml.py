@@ -8,8 +8,8 @@ from argparse import Namespace
 from collections.abc import Iterable, Iterator, Mapping
 from shlex import quote
 
-from btq_lang.btcpp.by_hand import ADVICE
 from btq_lang.btcpp.importing import Imported, import_xml
+from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.btcpp.version3 import Change
 from btq_lang.render import Finding, Report, render, with_paths
@@ -127,8 +127,10 @@ def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProb
         f"its node no longer exists: {lost.text} (line {lost.line} of {lost.file or 'the mission'} as built)"
         for lost in mission.lost
     )
-    by_hand = (Change(each.span, f"`{each.guard}` was {each.happened} by hand: {ADVICE}") for each in mission.by_hand)
-    changes = (*by_hand, *job.done.changes)
+    manual_edits = (
+        Change(each.span, f"`{each.guard}` was {each.happened} by hand: {ADVICE}") for each in mission.manual_edits
+    )
+    changes = (*manual_edits, *job.done.changes)
     return replace(job, done=replace(job.done, text=format_text(mission.text).text, changes=changes), losses=losses)
 
 

@@ -14,17 +14,17 @@ from btq_lang.util.text import Position
 from btq_lang.workspace.workspace import Workspace
 
 
-class ByHand(Record):
+class ManualEdit(Record):
     """A manual edit of a mission's XML that is not a part of the mission.
 
     Attributes:
         name: of the generated node.
-        said: its contents now, in a form that can be compared.
+        contents: now, in a form that can be compared.
         message: what happened to it, and what to do.
     """
 
     name: str
-    said: str
+    contents: str
     message: str
     place: Place
 
@@ -36,14 +36,14 @@ class Side(Record):
         name: None if this mission does not exist, so that all of the other was added or removed.
         paths: its files, the mission's own last.
         shown: turns a path into the one to show.
-        by_hand: the manual edits, if it is XML.
+        manual_edits: the manual edits, if it is XML.
     """
 
     name: str | None
     workspace: Workspace
     paths: tuple[str, ...]
     shown: Callable[[str], str]
-    by_hand: tuple[ByHand, ...] = ()
+    manual_edits: tuple[ManualEdit, ...] = ()
 
     def place(self, place: Place) -> tuple[str, Position, Position]:
         """A place: the file as it is shown, and its start and end, counted from 0."""
@@ -97,7 +97,7 @@ def diff_missions(old: Workspace, old_path: str, new: Workspace, new_path: str) 
 def compared(old: Side, new: Side) -> Comparison:
     """Compare two missions."""
     changes = compare(old.workspace, old.paths, new.workspace, new.paths)
-    return Comparison(old, new, (*changes, *_by_hand(old, new)))
+    return Comparison(old, new, (*changes, *_manual_edits(old, new)))
 
 
 def without_made_models(comparison: Comparison) -> Comparison:
@@ -117,13 +117,16 @@ def without_made_models(comparison: Comparison) -> Comparison:
     return replace(comparison, changes=tuple(each for each in comparison.changes if not is_made(each)))
 
 
-def _by_hand(old: Side, new: Side) -> Iterator[Change]:
-    known = {(each.name, each.said) for each in old.by_hand}, {(each.name, each.said) for each in new.by_hand}
-    for each in old.by_hand:
-        if (each.name, each.said) not in known[1]:
+def _manual_edits(old: Side, new: Side) -> Iterator[Change]:
+    known = (
+        {(each.name, each.contents) for each in old.manual_edits},
+        {(each.name, each.contents) for each in new.manual_edits},
+    )
+    for each in old.manual_edits:
+        if (each.name, each.contents) not in known[1]:
             yield Change("changed", GUARD, each.name, each.place, None, (Detail("by hand", each.message, None),))
-    for each in new.by_hand:
-        if (each.name, each.said) not in known[0]:
+    for each in new.manual_edits:
+        if (each.name, each.contents) not in known[0]:
             yield Change("changed", GUARD, each.name, None, each.place, (Detail("by hand", None, each.message),))
 
 

@@ -403,7 +403,7 @@ def test_what_is_lost_comes_first_and_what_a_build_put_there_in_one_line(btq: Bt
     assert capsys.readouterr().err == f"out/main.xml: {lost}{no}\n{summary.format(put)}{after}"
 
 
-def test_guards_that_were_changed_by_hand_are_told(btq: Btq, capsys: Capsys) -> None:
+def test_manual_edits_of_guards_are_reported(btq: Btq, capsys: Capsys) -> None:
     (btq.folder / "main.btq").write_text(
         "QualityReq quick\n    takes at most 30 s\n    on violation fail\nBehaviorTree M\n    ->\n"
         "        Go satisfies quick\n        Stay (_skipIf = off) satisfies quick\n        Go satisfies quick\n"

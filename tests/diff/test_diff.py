@@ -365,7 +365,7 @@ def test_a_mission_and_what_was_built_of_it_in_another_folder(tmp_path: Path) ->
     assert (code, out.splitlines()[1], told) == (1, f"~ requirement rq1 changed  {where}", "")
 
 
-def test_guards_that_were_changed_by_hand(tmp_path: Path) -> None:
+def test_manual_edits_of_guards(tmp_path: Path) -> None:
     requirement = "QualityReq rq1\n    takes at most 30 s\n    on violation fail\n"
     tree = "BehaviorTree M\n    Sequence\n        Go satisfies rq1\nTreeNodesModel\n    Action Go\n"
     (tmp_path / "main.btq").write_text(requirement + tree)

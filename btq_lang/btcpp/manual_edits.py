@@ -29,7 +29,7 @@ class NodeGuards(Record):
     guards: tuple[tuple[str, str], ...]
 
 
-class ByHand(Record):
+class ManualEdit(Record):
     """A guard that was edited after the build.
 
     Attributes:
@@ -53,7 +53,7 @@ def node_guards(root: Element) -> Iterator[NodeGuards]:
             yield NodeGuards(key, tuple(guards.items()))
 
 
-def changed_by_hand(root: Element, built: Iterable[NodeGuards]) -> tuple[ByHand, ...]:
+def manual_edits(root: Element, built: Iterable[NodeGuards]) -> tuple[ManualEdit, ...]:
     """The manual edits since a build, in the order of the file.
 
     Args:
@@ -61,11 +61,11 @@ def changed_by_hand(root: Element, built: Iterable[NodeGuards]) -> tuple[ByHand,
         built: the guards as they were built.
     """
     built = tuple(built)
-    known = {said for each in built for said in each.guards}
+    known = {guard for each in built for guard in each.guards}
     marked = {_name(each): each for each in _walk(root) if each.get(MARK) is not None and _name(each)}
     nodes = {key: (node, guards) for key, node, guards in _nodes(root)}
     found = [
-        ByHand(name, sum_, _span(marked[name]))
+        ManualEdit(name, sum_, _span(marked[name]))
         for _, guards in nodes.values()
         for name, sum_ in guards.items()
         if (name, sum_) not in known
@@ -74,7 +74,7 @@ def changed_by_hand(root: Element, built: Iterable[NodeGuards]) -> tuple[ByHand,
         node, guards = nodes.get(each.node, (None, {}))
         was_another = bool(guards) and guards.keys().isdisjoint(dict(each.guards))  # of its kind, before it was deleted
         if node is not None and not was_another:
-            found += [ByHand(name, "", _span(node)) for name, _ in each.guards if name not in marked]
+            found += [ManualEdit(name, "", _span(node)) for name, _ in each.guards if name not in marked]
     return tuple(sorted(found, key=lambda each: each.span))
 
 
@@ -97,7 +97,7 @@ def _nodes(root: Element) -> Iterator[tuple[str, Element, dict[str, str]]]:
 
 def _split(outermost: Element) -> tuple[dict[str, str], list[Element]]:
     """The guards that an element begins, by name, and the mission's own nodes in them."""
-    said: dict[str, list[str]] = {}
+    contents: dict[str, list[str]] = {}
     own = []
     stack = [(outermost, "")]
     while stack:
@@ -106,12 +106,12 @@ def _split(outermost: Element) -> tuple[dict[str, str], list[Element]]:
             own.append(element)
             continue
         named = _name(element) or named  # an element without a name is a part of the guard around it
-        said.setdefault(named, []).append(_said(element))
+        contents.setdefault(named, []).append(_normal_form(element))
         stack += [(child, named) for child in element.elements][::-1]
-    return {name: _sum(parts) for name, parts in said.items()}, own
+    return {name: _sum(parts) for name, parts in contents.items()}, own
 
 
-def _said(element: Element) -> str:
+def _normal_form(element: Element) -> str:
     """The tag and the attributes in a normal form, without those that belong to the node itself."""
     moved = {MOVED, *(each.partition(":")[0] for each in (element.get(MOVED) or "").split())}
     return repr((element.tag, sorted((each.name, each.value) for each in element.attributes if each.name not in moved)))
