@@ -81,6 +81,17 @@ if TYPE_CHECKING:
 
 Check: TypeAlias = "Callable[[View, Entry], Iterator[Diagnostic]]"
 
+_OF_MODELS: tuple[Check, ...] = (
+    kinds.duplicate_definition,
+    ports.duplicate_attribute,
+    ports.duplicate_port,
+    ports.misspelt_type,
+    literals.invalid_literal,
+    literals.quantity_on_unitless_port,
+    constants.number_for_text,
+    names.forbidden_name,
+    empty.empty_text,
+)
 # The checks of each type of item: most items are small, and most checks do not concern most of them.
 CHECKS: dict[type, tuple[Check, ...]] = {
     Include: (
@@ -153,28 +164,8 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         measures.unresolved,
         demands.demands,
     ),
-    Model: (
-        kinds.duplicate_definition,
-        ports.duplicate_attribute,
-        ports.duplicate_port,
-        ports.misspelt_type,
-        literals.invalid_literal,
-        literals.quantity_on_unitless_port,
-        constants.number_for_text,
-        names.forbidden_name,
-        empty.empty_text,
-    ),
-    Models: (
-        kinds.duplicate_definition,
-        ports.duplicate_attribute,
-        ports.duplicate_port,
-        ports.misspelt_type,
-        literals.invalid_literal,
-        literals.quantity_on_unitless_port,
-        constants.number_for_text,
-        names.forbidden_name,
-        empty.empty_text,
-    ),
+    Model: _OF_MODELS,
+    Models: _OF_MODELS,
     Signal: (kinds.duplicate_definition, empty.empty_text, unused.unused_signal, measures.unresolved, demands.demands),
     Context: (
         kinds.duplicate_definition,

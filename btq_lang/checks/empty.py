@@ -7,32 +7,16 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import (
-    Because,
-    Entry,
-    Item,
-    Model,
-    Models,
-    NodeClause,
-    QualityDecl,
-    QualityPath,
-    Requirement,
-    Root,
-    Satisfices,
-    Signal,
-    Tags,
-    Tree,
-    Word,
-)
+from btq_lang.syntax import tree as syntax
 from btq_lang.workspace.symbols import requirements_at
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
 
-_Found: TypeAlias = "Iterator[tuple[str, Word | None]]"
+_Found: TypeAlias = "Iterator[tuple[str, syntax.Word | None]]"
 
 
-def empty_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def empty_text(view: View, entry: syntax.Entry) -> Iterator[Diagnostic]:
     """An empty name, to which nothing can refer; or an empty text for readers."""
     if view.is_xml or not any(sign in view.text for sign in _EMPTY):
         return
@@ -47,47 +31,47 @@ _TITLE, _REASON = "this title", "this reason"
 _FOR_PEOPLE = (_TITLE, _REASON)
 
 
-def _names(item: Item) -> _Found:
-    if isinstance(item, Tree):
+def _names(item: syntax.Item) -> _Found:
+    if isinstance(item, syntax.Tree):
         yield from _of_clauses(item.clauses)
         for node in item.walk():
             if node.clauses:
                 yield from _of_clauses(node.clauses)
-    elif isinstance(item, Requirement):
+    elif isinstance(item, syntax.Requirement):
         yield from _of_requirement(item)
-    elif isinstance(item, Model | Models):
-        for model in (item,) if isinstance(item, Model) else item.models:
-            if isinstance(model, Model):
+    elif isinstance(item, syntax.Model | syntax.Models):
+        for model in (item,) if isinstance(item, syntax.Model) else item.models:
+            if isinstance(model, syntax.Model):
                 yield "the node's ID", model.name
                 yield from (("the port's type", port.type) for port in model.ports)
-    elif isinstance(item, Signal):
+    elif isinstance(item, syntax.Signal):
         yield "the blackboard entry", item.source
-    elif isinstance(item, Root):
+    elif isinstance(item, syntax.Root):
         yield "the main tree's name", item.name
-    elif isinstance(item, QualityDecl):
+    elif isinstance(item, syntax.QualityDecl):
         yield "the quality's name", item.name
         yield from _of_quality(item.parent)
 
 
-def _of_clauses(clauses: tuple[NodeClause, ...]) -> _Found:
+def _of_clauses(clauses: tuple[syntax.NodeClause, ...]) -> _Found:
     for clause in clauses:
-        if isinstance(clause, Tags):
+        if isinstance(clause, syntax.Tags):
             yield from (("this tag", name) for name in clause.names)
-        elif isinstance(clause, Satisfices):
+        elif isinstance(clause, syntax.Satisfices):
             for quality in clause.qualities:
                 yield from _of_quality(quality.path)
     for requirement in requirements_at(clauses):
-        if isinstance(requirement, Requirement):
+        if isinstance(requirement, syntax.Requirement):
             yield from _of_requirement(requirement)
 
 
-def _of_requirement(requirement: Requirement) -> _Found:
+def _of_requirement(requirement: syntax.Requirement) -> _Found:
     yield "the requirement's ID", requirement.name
     yield from _of_quality(requirement.quality)
     if requirement.clauses:  # else it has no content, which is reported
         yield _TITLE, requirement.text
-    yield from ((_REASON, clause.text) for clause in requirement.clauses if isinstance(clause, Because))
+    yield from ((_REASON, clause.text) for clause in requirement.clauses if isinstance(clause, syntax.Because))
 
 
-def _of_quality(path: QualityPath | None) -> _Found:
+def _of_quality(path: syntax.QualityPath | None) -> _Found:
     yield from (("the quality's name", name) for name in (path.names if path is not None else ()))

@@ -16,44 +16,9 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.qualities import EDITIONS, find
 from btq_lang.catalog.units import convert, parse_unit, to_si
 from btq_lang.lexer import tokens
+from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import COMMENT, NUMBER, QUANTITY
-from btq_lang.syntax.tree import (
-    Apply,
-    Because,
-    Claim,
-    Confidence,
-    Context,
-    Entry,
-    Goal,
-    How,
-    Include,
-    Meta,
-    Model,
-    Models,
-    Node,
-    NodeClause,
-    Odds,
-    OnViolation,
-    Pair,
-    Port,
-    Qualities,
-    QualityDecl,
-    QualityPath,
-    ReqRef,
-    Requirement,
-    Root,
-    Satisfices,
-    Scope,
-    Signal,
-    Tags,
-    Tree,
-    Verbatim,
-    Window,
-    Word,
-    shape,
-    walk,
-)
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.file import File
@@ -158,11 +123,11 @@ def said(workspace: Workspace, paths: Iterable[str]) -> Said:
         reader = _Reader(workspace, workspace.files[path])
         for entry in workspace.files[path].parsed.entries:
             reader.entry = entry
-            if isinstance(entry.item, Tree):
+            if isinstance(entry.item, syntax.Tree):
                 trees.append(reader.tree(entry.item))
             else:
                 for item in reader.items():
-                    if path == paths[-1] or not isinstance(entry.item, Root):
+                    if path == paths[-1] or not isinstance(entry.item, syntax.Root):
                         items.setdefault((item.thing, item.name), item)
         for item in reader.inside:
             items.setdefault((item.thing, item.name), item)
@@ -185,30 +150,30 @@ class _Reader:
     """One file being read."""
 
     def __init__(self, workspace: Workspace, file: File) -> None:
-        self.entry: Entry = Entry(0, Verbatim(0, 0, None), False)
+        self.entry: syntax.Entry = syntax.Entry(0, syntax.Verbatim(0, 0, None), False)
         self.inside: list[Item] = []  # requirements that are defined at nodes
         self._file: Final = file
         self._edition: Final = EDITIONS[_edition(file) or workspace.project.qualities]
 
     # ---- trees ----
 
-    def tree(self, tree: Tree) -> Part:
+    def tree(self, tree: syntax.Tree) -> Part:
         top = Part(TREE, "BehaviorTree", self._place(tree.start, tree.end))
         top.name = tree.name.text if tree.name is not None else None
         self._pairs(top, tree.attributes)
         self._clauses(top, tree.clauses)
         top.values.update(self._ports(tree.ports))
-        waiting: list[tuple[Part, tuple[Node | Verbatim, ...]]] = [(top, tree.children)]
+        waiting: list[tuple[Part, tuple[syntax.Node | syntax.Verbatim, ...]]] = [(top, tree.children)]
         while waiting:
             above, children = waiting.pop()
             for child in children:
-                part = self._node(child) if isinstance(child, Node) else self._verbatim(child)
+                part = self._node(child) if isinstance(child, syntax.Node) else self._verbatim(child)
                 above.children.append(part)
-                if isinstance(child, Node) and child.children:
+                if isinstance(child, syntax.Node) and child.children:
                     waiting.append((part, child.children))
         return top
 
-    def _node(self, node: Node) -> Part:
+    def _node(self, node: syntax.Node) -> Part:
         part = Part("", node.head.text, self._place(node.start, node.end))
         part.category = node.category.raw if node.category is not None else None
         part.name = node.name.text if node.name is not None else None
@@ -223,12 +188,12 @@ class _Reader:
         self._clauses(part, node.clauses)
         return part
 
-    def _verbatim(self, verbatim: Verbatim) -> Part:
+    def _verbatim(self, verbatim: syntax.Verbatim) -> Part:
         part = Part(VERBATIM, "xml", self._place(verbatim.start, verbatim.end))
         part.values["element"] = _value(verbatim.text)
         return part
 
-    def _pairs(self, part: Part, pairs: tuple[Pair, ...], has_id: bool = False) -> None:
+    def _pairs(self, part: Part, pairs: tuple[syntax.Pair, ...], has_id: bool = False) -> None:
         builtin = BUILTINS.get(part.kind)
         for pair in pairs:
             key = pair.key.text
@@ -237,12 +202,12 @@ class _Reader:
             port = builtin.port(key) if builtin is not None else None
             part.values[key] = _value(pair.value, port.unit if port is not None else None)
 
-    def _clauses(self, part: Part, clauses: tuple[NodeClause, ...]) -> None:
+    def _clauses(self, part: Part, clauses: tuple[syntax.NodeClause, ...]) -> None:
         for clause in clauses:
-            if isinstance(clause, Tags):
+            if isinstance(clause, syntax.Tags):
                 for tag in clause.names:
                     part.values[f"tag {tag.text}"] = Value(True, "")
-            if isinstance(clause, Satisfices):
+            if isinstance(clause, syntax.Satisfices):
                 for quality in clause.qualities:
                     if not quality.requirements:
                         part.values[f"quality {self._quality(quality.path)}"] = Value(True, "")
@@ -252,11 +217,13 @@ class _Reader:
                 for use in requirements_at((clause,)):
                     self._attach(part, use)
 
-    def _attach(self, part: Part, requirement: Requirement | ReqRef, quality: QualityPath | None = None) -> None:
+    def _attach(
+        self, part: Part, requirement: syntax.Requirement | syntax.ReqRef, quality: syntax.QualityPath | None = None
+    ) -> None:
         arguments: tuple[object, ...] = ()
         text = ""
         name = requirement.name.text if requirement.name is not None else ""
-        if isinstance(requirement, ReqRef):
+        if isinstance(requirement, syntax.ReqRef):
             arguments = tuple(
                 sorted(((each.name.text, _meaning(each.value)) for each in requirement.arguments), key=repr)
             )
@@ -271,14 +238,14 @@ class _Reader:
     def items(self) -> Iterator[Item]:
         """The things that an item other than a tree defines."""
         item = self.entry.item
-        if isinstance(item, Requirement):
+        if isinstance(item, syntax.Requirement):
             yield self._requirement(item)
-        elif isinstance(item, Model):
+        elif isinstance(item, syntax.Model):
             yield self._model(item)
-        elif isinstance(item, Models):
+        elif isinstance(item, syntax.Models):
             for each in item.models:
-                yield self._model(each) if isinstance(each, Model) else self._item("xml", each.text, {}, each)
-        elif isinstance(item, Signal):
+                yield self._model(each) if isinstance(each, syntax.Model) else self._item("xml", each.text, {}, each)
+        elif isinstance(item, syntax.Signal):
             words = {"unit": item.unit, "from": item.source, "kind": item.behaviour, "fresh within": item.fresh}
             values = {aspect: _value(word) for aspect, word in words.items() if word is not None}
             if item.fresh is not None:
@@ -286,34 +253,34 @@ class _Reader:
             if item.initially is not None:
                 values["initially"] = Value(_meaning(item.initially), self._text(item.initially))
             yield self._item("signal", item.name, values, item)
-        elif isinstance(item, Context):
+        elif isinstance(item, syntax.Context):
             condition = Value(_meaning(item.condition), self._text(item.condition))
             yield self._item("context", item.name, {"condition": condition}, item)
-        elif isinstance(item, QualityDecl):
+        elif isinstance(item, syntax.QualityDecl):
             values = {"title": _value(item.text)} if item.text is not None else {}
             if item.parent is not None:
                 values["below"] = self._quality_value(item.parent)
             yield self._item("quality", item.name, values, item)
-        elif isinstance(item, Include):
+        elif isinstance(item, syntax.Include):
             values = {pair.key.text: _value(pair.value) for pair in item.attributes}
             path = posixpath.normpath(item.path.text) if item.path is not None else ""  # `./lib.btq` is the same file
             yield Item("include", path, values, self._place(item.start, item.end))
-        elif isinstance(item, Root):
+        elif isinstance(item, syntax.Root):
             values = {_MISSION_WORDS.get(pair.key.text, pair.key.text): _value(pair.value) for pair in item.attributes}
             if item.name is not None:
                 values[MAIN] = _value(item.name)
             values.pop("BTCPP_format", None)  # which built files and XML have, and missions do not
             if values:
                 yield Item(MISSION, "", values, self._place(item.start, item.end))
-        elif isinstance(item, Qualities):
+        elif isinstance(item, syntax.Qualities):
             yield Item(MISSION, "qualities", {"edition": _value(item.edition)}, self._place(item.start, item.end))
-        elif isinstance(item, Apply):
+        elif isinstance(item, syntax.Apply):
             text = self._slice(item.start, item.end)
             yield Item("apply", text, {"": Value(_meaning(item), text)}, self._place(item.start, item.end))
-        elif isinstance(item, Verbatim):
+        elif isinstance(item, syntax.Verbatim):
             yield self._item("xml", item.text, {}, item)
 
-    def _requirement(self, requirement: Requirement, quality: QualityPath | None = None) -> Item:
+    def _requirement(self, requirement: syntax.Requirement, quality: syntax.QualityPath | None = None) -> Item:
         values: Values = {}
         if requirement.text is not None:
             text = " ".join(requirement.text.text.split())
@@ -326,7 +293,7 @@ class _Reader:
             default = f" = {self._text(parameter.default)}" if parameter.default is not None else ""
             values[f"parameter {parameter.name.text}"] = Value(_meaning(parameter), text + default)
         for clause in requirement.clauses:
-            aspect = clause.verb.text if isinstance(clause, Claim) else _ASPECTS[type(clause)]
+            aspect = clause.verb.text if isinstance(clause, syntax.Claim) else _ASPECTS[type(clause)]
             number = 2
             while aspect in values:
                 aspect = f"{aspect.split(' #')[0]} #{number}"
@@ -334,21 +301,21 @@ class _Reader:
             values[aspect] = Value(_meaning(clause), self._slice(clause.start, clause.end))
         return self._item("requirement", requirement.name, values, requirement)
 
-    def _model(self, model: Model) -> Item:
+    def _model(self, model: syntax.Model) -> Item:
         values = {"category": _value(model.category), **self._ports(model.ports)}
         if model.text is not None:
             values["title"] = _value(model.text)
         for pair in model.attributes:
             values[pair.key.text] = _value(pair.value)
         for part in model.body:
-            if isinstance(part, Meta):
+            if isinstance(part, syntax.Meta):
                 for pair in part.attributes:
                     values[f"metadata {pair.key.text}"] = _value(pair.value)
-            elif isinstance(part, Verbatim):
+            elif isinstance(part, syntax.Verbatim):
                 values[f"xml {part.text.text if part.text is not None else ''}"] = Value(True, "")
         return self._item("node model", model.name, values, model)
 
-    def _ports(self, ports: tuple[Port, ...]) -> Values:
+    def _ports(self, ports: tuple[syntax.Port, ...]) -> Values:
         return {
             f"port {port.name.text if port.name is not None else ''}": Value(
                 (
@@ -360,17 +327,17 @@ class _Reader:
             for port in ports
         }
 
-    def _item(self, thing: str, name: Word | None, values: Values, part: _HasPlace) -> Item:
+    def _item(self, thing: str, name: syntax.Word | None, values: Values, part: _HasPlace) -> Item:
         return Item(thing, name.text if name is not None else "", values, self._place(part.start, part.end))
 
     # ---- words and places ----
 
-    def _quality(self, path: QualityPath) -> str:
+    def _quality(self, path: syntax.QualityPath) -> str:
         words = tuple(name.text for name in path.names)
         match = find(words, self._edition)
         return match.quality.id if match.quality is not None else ".".join(words)
 
-    def _quality_value(self, path: QualityPath) -> Value:
+    def _quality_value(self, path: syntax.QualityPath) -> Value:
         return Value(self._quality(path), ".".join(name.text for name in path.names))
 
     def _text(self, part: object) -> str:
@@ -391,24 +358,24 @@ class _Reader:
 
 
 def _places(part: object) -> Iterator[tuple[int, int]]:
-    for each in walk(part):
-        if isinstance(each, Word):
+    for each in syntax.walk(part):
+        if isinstance(each, syntax.Word):
             yield each.start, each.end
 
 
 def _meaning(part: object) -> object:
     """The structure of a part, in which `90 s` equals `1.5 min`."""
-    return shape(part, _in_si)
+    return syntax.shape(part, _in_si)
 
 
-def _in_si(word: Word) -> object:
+def _in_si(word: syntax.Word) -> object:
     quantity = parse_quantity(word.raw)
     if quantity is None:
         return "".join(word.raw.split())
     return quantity[1].dimension, f"{to_si(quantity[0], quantity[1]):.12g}"
 
 
-def _value(word: Word | None, unit: str | None = None) -> Value:
+def _value(word: syntax.Word | None, unit: str | None = None) -> Value:
     if word is None:
         return Value(None, "")
     if word.kind == QUANTITY:
@@ -419,11 +386,11 @@ def _value(word: Word | None, unit: str | None = None) -> Value:
     return Value(word.text, word.raw if "\n" not in word.raw else " ".join(word.raw.split()))
 
 
-def _saying(word: Word | None) -> str:
+def _saying(word: syntax.Word | None) -> str:
     return word.text if word is not None else ""
 
 
-def _default(port: Port) -> str:
+def _default(port: syntax.Port) -> str:
     if port.default is not None and port.default.kind == NUMBER and _saying(port.type) in ("double", "float"):
         return f"{float(port.default.text):.15g}"  # a build writes 25.0 for 25
     return _saying(port.default)
@@ -431,19 +398,23 @@ def _default(port: Port) -> str:
 
 def _edition(file: File) -> str | None:
     for entry in file.parsed.entries:
-        if isinstance(entry.item, Qualities) and entry.item.edition is not None and entry.item.edition.text in EDITIONS:
+        if (
+            isinstance(entry.item, syntax.Qualities)
+            and entry.item.edition is not None
+            and entry.item.edition.text in EDITIONS
+        ):
             return entry.item.edition.text
     return None
 
 
 _MISSION_WORDS: Final = {"main_tree_to_execute": MAIN}
 _ASPECTS: Final[dict[type, str]] = {
-    Scope: "scope",
-    Odds: "odds",
-    Confidence: "confidence",
-    Window: "over last",
-    OnViolation: "on violation",
-    Goal: "goal",
-    Because: "because",
-    How: "verified by",
+    syntax.Scope: "scope",
+    syntax.Odds: "odds",
+    syntax.Confidence: "confidence",
+    syntax.Window: "over last",
+    syntax.OnViolation: "on violation",
+    syntax.Goal: "goal",
+    syntax.Because: "because",
+    syntax.How: "verified by",
 }

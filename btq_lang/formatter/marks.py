@@ -10,41 +10,8 @@ from collections.abc import Mapping
 from typing import Final
 
 from btq_lang.parser import Parsed
+from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import BLANK, CLOSE, NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
-from btq_lang.syntax.tree import (
-    Amount,
-    Argument,
-    Because,
-    Call,
-    Claim,
-    Confidence,
-    Goal,
-    How,
-    Include,
-    Meta,
-    Model,
-    Negative,
-    Node,
-    Odds,
-    OnViolation,
-    Pair,
-    Parameter,
-    Path,
-    Port,
-    Quality,
-    QualityPath,
-    ReqRef,
-    Requirement,
-    Root,
-    Satisfices,
-    Satisfies,
-    Scope,
-    Signal,
-    Tags,
-    Tree,
-    Window,
-    Word,
-)
 from btq_lang.util.record import Record, fields_of
 from btq_lang.util.text import LINE_END, Span
 
@@ -97,7 +64,7 @@ def marks_of(parsed: Parsed) -> Marks:
             part = parts.pop()
             if isinstance(part, tuple):
                 parts += part
-            elif not isinstance(part, Word | str | int | None):
+            elif not isinstance(part, syntax.Word | str | int | None):
                 marker.mark(part, entry.start)
                 parts += [getattr(part, field) for field in fields_of(part)]
     return marker.marks
@@ -116,51 +83,51 @@ class _Marker:
         """Mark the tokens of a part of the tree whose offsets count from `base`."""
         marks = self.marks
         match part:
-            case Pair():
+            case syntax.Pair():
                 at = self.index[base + part.key.start]
                 before = self.tokens[at - 1]
                 if before.kind == NAME and before.text == "parameters":
                     at -= 1
                 marks.elements.add(self.tokens[at].start)
-            case Node():
+            case syntax.Node():
                 last = part.label or part.kind or part.category
                 assert last is not None, "a node has a kind or a category"
                 self.mark_bracket(marks.attributes, self.index[base + last.start] + 1)
-            case Root() | Tree() | Model() | Include() | Meta() | Port():
+            case syntax.Root() | syntax.Tree() | syntax.Model() | syntax.Include() | syntax.Meta() | syntax.Port():
                 at = self.index[base + part.start]
                 while self.tokens[at].kind not in (OPEN, NEWLINE):
                     at += 1
                 self.mark_bracket(marks.attributes, at)
-                if isinstance(part, Port):
+                if isinstance(part, syntax.Port):
                     self.mark_atom(part.type, base)
-            case Satisfices() | Satisfies() | Tags():
+            case syntax.Satisfices() | syntax.Satisfies() | syntax.Tags():
                 marks.elements.add(base + part.start)
-            case Quality():
+            case syntax.Quality():
                 self.mark_bracket(marks.attributes, self.path_end(part.path, base))
                 marks.elements.update(base + requirement.start for requirement in part.requirements)
-            case QualityPath():
+            case syntax.QualityPath():
                 first = self.index[base + part.names[0].start]
                 inside = self.tokens[first + 1 : self.path_end(part, base)]
                 marks.tight.update(token.start for token in inside if token.text != "<")
-            case Path():
+            case syntax.Path():
                 first, last_one = (self.index[base + name.start] for name in (part.names[0], part.names[-1]))
                 marks.tight.update(token.start for token in self.tokens[first + 1 : last_one + 1])
-            case Requirement():
+            case syntax.Requirement():
                 self.mark_requirement(part, base)
-            case ReqRef():
+            case syntax.ReqRef():
                 self.mark_arguments(part.name, base)
-            case Argument():
+            case syntax.Argument():
                 marks.elements.add(base + part.name.start)
-            case Parameter():
+            case syntax.Parameter():
                 marks.elements.add(base + part.name.start)
                 self.mark_atom(part.unit, base)
-            case Signal():
+            case syntax.Signal():
                 self.mark_atom(part.unit, base)
-            case Call():
+            case syntax.Call():
                 self.mark_bracket(marks.tight, self.index[base + part.function.start] + 1)
-            case Negative():
+            case syntax.Negative():
                 self.mark_signed(self.index[base + part.start])
-            case Amount(negative=True):
+            case syntax.Amount(negative=True):
                 self.mark_signed(self.index[base + part.word.start] - 1)
 
     def mark_bracket(self, marks: set[int], at: int) -> None:
@@ -168,22 +135,22 @@ class _Marker:
         if self.tokens[at].kind == OPEN:
             marks.add(self.tokens[at].start)
 
-    def mark_arguments(self, name: Word, base: int) -> None:
+    def mark_arguments(self, name: syntax.Word, base: int) -> None:
         """Mark the `(` after the name of a requirement: its parameters, or their values."""
         at = self.index[base + name.start] + 1
         self.mark_bracket(self.marks.arguments, at)
         self.mark_bracket(self.marks.tight, at)
 
-    def mark_atom(self, word: Word | None, base: int) -> None:
+    def mark_atom(self, word: syntax.Word | None, base: int) -> None:
         if word is not None:
             self.marks.atoms[base + word.start] = base + word.end
 
-    def path_end(self, path: QualityPath, base: int) -> int:
+    def path_end(self, path: syntax.QualityPath, base: int) -> int:
         """The token after a quality's path."""
         last = self.index[base + path.names[-1].start]
         return last + 2 if self.tokens[last - 1].text == "<" else last + 1
 
-    def mark_requirement(self, requirement: Requirement, base: int) -> None:
+    def mark_requirement(self, requirement: syntax.Requirement, base: int) -> None:
         """Mark its parameters, and where a long one is broken: before the classic description and before its
         clauses.
         """
@@ -195,7 +162,7 @@ class _Marker:
         if requirement.clauses:
             spans = tuple(Span(clause.start, clause.end).shifted(base) for clause in requirement.clauses)
             ranks = {base + clause.start: _ORDER.index(type(clause)) for clause in requirement.clauses}
-            claims = sum(isinstance(clause, Claim) for clause in requirement.clauses)
+            claims = sum(isinstance(clause, syntax.Claim) for clause in requirement.clauses)
             self.marks.clauses.append(Clauses(base + requirement.start, spans, ranks, claims))
 
     def mark_signed(self, at: int) -> None:
@@ -210,5 +177,15 @@ class _Marker:
 
 
 # The order of clauses in a block: what is demanded, where and how often, what follows, why, and how it is verified.
-_ORDER: Final = (Claim, Scope, Odds, Confidence, Window, OnViolation, Goal, Because, How)
+_ORDER: Final = (
+    syntax.Claim,
+    syntax.Scope,
+    syntax.Odds,
+    syntax.Confidence,
+    syntax.Window,
+    syntax.OnViolation,
+    syntax.Goal,
+    syntax.Because,
+    syntax.How,
+)
 _OPERANDS: Final = (NAME, NUMBER, QUANTITY, STRING, CLOSE)

@@ -5,24 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.syntax.tree import (
-    Apply,
-    Context,
-    Entry,
-    Include,
-    Model,
-    Models,
-    Node,
-    NodeClause,
-    QualityDecl,
-    Requirement,
-    Root,
-    Satisfices,
-    Signal,
-    Tags,
-    Tree,
-    Word,
-)
+from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.node_names import kind_of
@@ -71,7 +54,7 @@ def document_symbols(workspace: Workspace, path: str) -> tuple[Outline, ...]:
             if entry.in_root and root is not None:
                 inside.append(outline)
                 continue
-            if isinstance(entry.item, Root):
+            if isinstance(entry.item, syntax.Root):
                 root = len(found), outline
             found.append(outline)
     if root is not None and inside:
@@ -95,7 +78,7 @@ def workspace_symbols(workspace: Workspace, query: str, limit: int = 500) -> tup
             rank = (not folded.startswith(wanted), len(folded), folded, path, definition.span.start)
             found.append((rank, Match(symbol.name, _KIND_WORDS[symbol.kind], path, definition.span, path)))
         for entry in workspace.files[path].parsed.entries:
-            if isinstance(entry.item, Tree):
+            if isinstance(entry.item, syntax.Tree):
                 tree = entry.item.name.text if entry.item.name else ""
                 for node in entry.item.walk():
                     name = node.name
@@ -112,46 +95,46 @@ def _contains(name: str, wanted: str) -> bool:
     return all(letter in letters for letter in wanted)
 
 
-def _item(workspace: Workspace, path: str, entry: Entry) -> Iterator[Outline]:
+def _item(workspace: Workspace, path: str, entry: syntax.Entry) -> Iterator[Outline]:
     item = entry.item
     by = entry.start
-    if isinstance(item, Tree):
-        end = max([item.end, *(child.block_end for child in item.children if isinstance(child, Node))])
+    if isinstance(item, syntax.Tree):
+        end = max([item.end, *(child.block_end for child in item.children if isinstance(child, syntax.Node))])
         ports = tuple(
             _named(port.name, "port", _ports_detail(port.direction, port.type), port, by) for port in item.ports
         )
-        nodes = tuple(_node(workspace, path, child, by) for child in item.children if isinstance(child, Node))
+        nodes = tuple(_node(workspace, path, child, by) for child in item.children if isinstance(child, syntax.Node))
         name = item.name.text if item.name else "BehaviorTree"
         name_span = _placed(item.name, Span(item.start, item.end), by)
         yield Outline(
             name, "tree", clauses_detail(item.clauses), Span(item.start, end).shifted(by), name_span, (*ports, *nodes)
         )
-    elif isinstance(item, Model):
+    elif isinstance(item, syntax.Model):
         yield _model(item, by)
-    elif isinstance(item, Models):
+    elif isinstance(item, syntax.Models):
         for model in item.models:
-            if isinstance(model, Model):
+            if isinstance(model, syntax.Model):
                 yield _model(model, by)
-    elif isinstance(item, Requirement):
+    elif isinstance(item, syntax.Requirement):
         yield _named(item.name, "requirement", requirement_detail(item), item, by)
-    elif isinstance(item, Signal):
+    elif isinstance(item, syntax.Signal):
         yield _named(item.name, "signal", item.unit.text if item.unit else "", item, by)
-    elif isinstance(item, Context):
+    elif isinstance(item, syntax.Context):
         yield _named(item.name, "context", "", item, by)
-    elif isinstance(item, QualityDecl):
+    elif isinstance(item, syntax.QualityDecl):
         parent = ".".join(name.text for name in item.parent.names) if item.parent else ""
         yield _named(item.name, "quality", parent, item, by)
-    elif isinstance(item, Root):
+    elif isinstance(item, syntax.Root):
         yield _named(item.name, "mission", "", item, by)
-    elif isinstance(item, Include):
+    elif isinstance(item, syntax.Include):
         yield _named(item.path, "include", "", item, by)
-    elif isinstance(item, Apply) and item.uses:
+    elif isinstance(item, syntax.Apply) and item.uses:
         name = ", ".join(use.name.text for use in item.uses)
         span = Span(item.start, item.end).shifted(by)
         yield Outline(f"apply {name}", "apply", "", span, item.uses[0].name.span.shifted(by))
 
 
-def _node(workspace: Workspace, path: str, node: Node, by: int) -> Outline:
+def _node(workspace: Workspace, path: str, node: syntax.Node, by: int) -> Outline:
     name = node.head.text if node.name is None else f"{node.head.text} {node.name.text}"
     children = tuple(_node(workspace, path, child, by) for child in node.nodes)
     span = Span(node.start, node.block_end).shifted(by)
@@ -159,7 +142,7 @@ def _node(workspace: Workspace, path: str, node: Node, by: int) -> Outline:
     return Outline(name, kind, clauses_detail(node.clauses), span, node.head.span.shifted(by), children)
 
 
-def _category(workspace: Workspace, path: str, node: Node) -> str:
+def _category(workspace: Workspace, path: str, node: syntax.Node) -> str:
     if node.category is not None:
         return node.category.raw.lower()
     kind = kind_of(node)
@@ -168,31 +151,31 @@ def _category(workspace: Workspace, path: str, node: Node) -> str:
     name = node.id
     found = workspace.scope(path).find(Kind.MODEL, name.text) if name is not None else None
     target = found.symbol.target if found else None
-    return target.category.raw.lower() if isinstance(target, Model) else "node"
+    return target.category.raw.lower() if isinstance(target, syntax.Model) else "node"
 
 
-def clauses_detail(clauses: tuple[NodeClause, ...]) -> str:
+def clauses_detail(clauses: tuple[syntax.NodeClause, ...]) -> str:
     """What is attached to a node, on one line: `satisfices safety; satisfies rq1, rq2; tags heavy`."""
     qualities: list[str] = []
     tags: list[str] = []
     for clause in clauses:
-        if isinstance(clause, Satisfices):
+        if isinstance(clause, syntax.Satisfices):
             qualities += (".".join(word.text for word in quality.path.names) for quality in clause.qualities)
-        elif isinstance(clause, Tags):
+        elif isinstance(clause, syntax.Tags):
             tags += (name.text for name in clause.names)
     requirements = [one.name.text for one in requirements_at(clauses) if one.name is not None]
     parts = (("satisfices", qualities), ("satisfies", requirements), ("tags", tags))
     return "; ".join(f"{word} {', '.join(names)}" for word, names in parts if names)
 
 
-def requirement_detail(requirement: Requirement) -> str:
+def requirement_detail(requirement: syntax.Requirement) -> str:
     """A requirement's quality and text, on one line."""
     quality = ".".join(name.text for name in requirement.quality.names) if requirement.quality else ""
     text = " ".join(requirement.text.text.split()) if requirement.text else ""
     return ": ".join(filter(None, (quality, text)))
 
 
-def _model(model: Model, by: int) -> Outline:
+def _model(model: syntax.Model, by: int) -> Outline:
     ports = tuple(_named(port.name, "port", _ports_detail(port.direction, port.type), port, by) for port in model.ports)
     ends = [model.end, *(part.end for part in model.body)]
     name = model.name.text if model.name else model.category.text
@@ -201,11 +184,11 @@ def _model(model: Model, by: int) -> Outline:
     return Outline(name, model.category.raw.lower(), model.text.text if model.text else "", span, name_span, ports)
 
 
-def _ports_detail(direction: Word, type_: Word | None) -> str:
+def _ports_detail(direction: syntax.Word, type_: syntax.Word | None) -> str:
     return f"{direction.text} : {type_.text}" if type_ is not None else direction.text
 
 
-def _named(word: Word | None, kind: str, detail: str, item: object, by: int) -> Outline:
+def _named(word: syntax.Word | None, kind: str, detail: str, item: object, by: int) -> Outline:
     start: int = item.start  # type: ignore[attr-defined]  # every item has both
     end: int = item.end  # type: ignore[attr-defined]  # as above
     whole = Span(start, max(end, word.end if word is not None else end))
@@ -214,7 +197,7 @@ def _named(word: Word | None, kind: str, detail: str, item: object, by: int) -> 
     )
 
 
-def _placed(word: Word | None, otherwise: Span, by: int) -> Span:
+def _placed(word: syntax.Word | None, otherwise: Span, by: int) -> Span:
     return (word.span if word is not None else Span(otherwise.start, otherwise.start)).shifted(by)
 
 

@@ -16,40 +16,8 @@ from typing import TypeAlias
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import PLACEHOLDERS
+from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import BRACED, NAME, NUMBER, QUANTITY, STRING
-from btq_lang.syntax.tree import (
-    Amount,
-    Apply,
-    Argument,
-    Call,
-    Claim,
-    Clause,
-    Context,
-    Every,
-    Include,
-    Item,
-    Model,
-    Models,
-    Node,
-    NodeClause,
-    Operand,
-    Pair,
-    Parameter,
-    Path,
-    Port,
-    Qualities,
-    QualityDecl,
-    QualityPath,
-    ReqRef,
-    Requirement,
-    Root,
-    Satisfices,
-    Signal,
-    Tags,
-    Tree,
-    Word,
-    walk,
-)
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.node_names import kind_of
@@ -82,7 +50,7 @@ class What(Enum):
     RULE = "rule"
 
 
-Owner: TypeAlias = "Requirement | Model | Tree | str | None"
+Owner: TypeAlias = "syntax.Requirement | syntax.Model | syntax.Tree | str | None"
 
 
 class Mention(Record):
@@ -104,67 +72,67 @@ class Mention(Record):
     what: What
     name: str
     span: Span
-    word: Word
+    word: syntax.Word
     defines: bool = False
-    node: Node | None = None
+    node: syntax.Node | None = None
     owner: Owner = None
-    pair: Pair | None = None
+    pair: syntax.Pair | None = None
     writes: bool = False
     root: bool = False
     updates: bool = False
 
 
-def mentions(item: Item) -> tuple[Mention, ...]:
+def mentions(item: syntax.Item) -> tuple[Mention, ...]:
     """All words of an item that name something, in the order of the text."""
     told = _Mentions()
     tell(item, told)
     return tuple(sorted(told.found, key=attrgetter("span")))
 
 
-def tell(item: Item, to: Listener) -> None:
+def tell(item: syntax.Item, to: Listener) -> None:
     """Report the words of an item that name something, nearly in the order of the text."""
-    if isinstance(item, Tree):
+    if isinstance(item, syntax.Tree):
         to.word(What.TREE, item.name, defines=True)
         _ports(item.ports, item, to)
         _clauses(item.clauses, None, to)
         for node in item.walk():
             _node(node, item, to)
-    elif isinstance(item, Model):
+    elif isinstance(item, syntax.Model):
         _model(item, to)
-    elif isinstance(item, Models):
+    elif isinstance(item, syntax.Models):
         for model in item.models:
-            if isinstance(model, Model):
+            if isinstance(model, syntax.Model):
                 _model(model, to)
-    elif isinstance(item, Requirement):
+    elif isinstance(item, syntax.Requirement):
         _requirement(item, None, False, to)
-    elif isinstance(item, Signal):
+    elif isinstance(item, syntax.Signal):
         to.word(What.SIGNAL, item.name, defines=True)
         to.word(What.UNIT, item.unit)
         if item.source is not None:
             to.value(item.source)
             _keys_of(item.source, None, None, None, to, root=True)
         _quantities(item, to)
-    elif isinstance(item, Context):
+    elif isinstance(item, syntax.Context):
         to.word(What.CONTEXT, item.name, defines=True)
         _values(item.condition, None, to)
-    elif isinstance(item, QualityDecl):
+    elif isinstance(item, syntax.QualityDecl):
         to.word(What.QUALITY, item.name, defines=True)
         _quality(item.parent, None, to)
-    elif isinstance(item, Qualities):
+    elif isinstance(item, syntax.Qualities):
         to.word(What.EDITION, item.edition)
-    elif isinstance(item, Apply):
+    elif isinstance(item, syntax.Apply):
         for use in item.uses:
             _reference(use, None, to)
         for selector in (*item.targets, *item.exceptions):
             to.word(What.PLACE, selector.every)
             to.word(What.TAG, selector.tag)
             _path(selector.path, to)
-    elif isinstance(item, Root):
+    elif isinstance(item, syntax.Root):
         to.word(What.TREE, item.name)
         for pair in item.attributes:
             if pair.key.text == "main_tree_to_execute":
                 to.word(What.TREE, pair.value)
-    elif isinstance(item, Include):
+    elif isinstance(item, syntax.Include):
         to.word(What.INCLUDE, item.path)
 
 
@@ -174,11 +142,11 @@ class Listener:
     def word(
         self,
         what: What,
-        word: Word | None,
+        word: syntax.Word | None,
         defines: bool = False,
-        node: Node | None = None,
+        node: syntax.Node | None = None,
         owner: Owner = None,
-        pair: Pair | None = None,
+        pair: syntax.Pair | None = None,
     ) -> None:
         """A whole word, or None where one is missing; arguments as for a mention."""
         raise NotImplementedError
@@ -187,11 +155,11 @@ class Listener:
         """A part of a word."""
         raise NotImplementedError
 
-    def words(self, what: What, words: tuple[Word, ...], span: Span, node: Node | None = None) -> None:
+    def words(self, what: What, words: tuple[syntax.Word, ...], span: Span, node: syntax.Node | None = None) -> None:
         """Several words that are one name."""
         raise NotImplementedError
 
-    def value(self, word: Word) -> None:
+    def value(self, word: syntax.Word) -> None:
         """The value of an attribute that as a whole names nothing; parts of it may follow, in the order of the text."""
 
 
@@ -204,11 +172,11 @@ class _Mentions(Listener):
     def word(
         self,
         what: What,
-        word: Word | None,
+        word: syntax.Word | None,
         defines: bool = False,
-        node: Node | None = None,
+        node: syntax.Node | None = None,
         owner: Owner = None,
-        pair: Pair | None = None,
+        pair: syntax.Pair | None = None,
     ) -> None:
         if word is not None:
             self.part(Mention(what, word.text, word.span, word, defines, node, owner, pair))
@@ -217,21 +185,21 @@ class _Mentions(Listener):
         if mention.span.start < mention.span.end:
             self.found.append(mention)
 
-    def words(self, what: What, words: tuple[Word, ...], span: Span, node: Node | None = None) -> None:
+    def words(self, what: What, words: tuple[syntax.Word, ...], span: Span, node: syntax.Node | None = None) -> None:
         name = ".".join([word.text for word in words])
         self.part(Mention(what, name, span, words[-1], False, node))
 
 
-def _model(model: Model, to: Listener) -> None:
+def _model(model: syntax.Model, to: Listener) -> None:
     to.word(What.NODE, model.name, defines=True)
     _ports(model.ports, model, to)
 
 
-def _ports(ports: Iterable[Port], owner: Model | Tree, to: Listener) -> None:
+def _ports(ports: Iterable[syntax.Port], owner: syntax.Model | syntax.Tree, to: Listener) -> None:
     """The port of a tree is an entry of its blackboard."""
     for port in ports:
         name = port.name or next((pair.value for pair in port.attributes if pair.key.text == "name"), None)
-        what = What.KEY if isinstance(owner, Tree) else What.PORT
+        what = What.KEY if isinstance(owner, syntax.Tree) else What.PORT
         to.word(what, name, defines=True, owner=owner)
         if port.default is not None:
             _quantities(port.default, to)
@@ -240,9 +208,9 @@ def _ports(ports: Iterable[Port], owner: Model | Tree, to: Listener) -> None:
 # ---- nodes ----
 
 
-def _node(node: Node, tree: Tree, to: Listener) -> None:
+def _node(node: syntax.Node, tree: syntax.Tree, to: Listener) -> None:
     kind, label = node.kind, node.label
-    stands_for: Word | None = None
+    stands_for: syntax.Word | None = None
     if node.category is None and kind is not None and kind.raw not in _STANDING_FOR_OTHERS:  # nearly all
         to.word(What.NODE, kind, node=node)
     else:
@@ -261,20 +229,20 @@ def _node(node: Node, tree: Tree, to: Listener) -> None:
         _clauses(node.clauses, node, to)
 
 
-def kinds(node: Node) -> list[Word]:
+def kinds(node: syntax.Node) -> list[syntax.Word]:
     """The words that determine what a node is: its kind, if that is not a tree, and the skill of a placeholder."""
     tree = called(node)
     return [word for word in (node.id, placeholder(node)) if word is not None and word is not tree]
 
 
-def called(node: Node) -> Word | None:
+def called(node: syntax.Node) -> syntax.Word | None:
     """The tree that a node runs."""
     if node.kind is not None and node.kind.raw == "SubTreePlus":
         return node.attribute("ID")
     return node.id if node.category is not None and node.category.raw == "SubTree" else None
 
 
-def placeholder(node: Node) -> Word | None:
+def placeholder(node: syntax.Node) -> syntax.Word | None:
     """The skill of a classic placeholder (docs/language.md), if its name can be a node's ID."""
     is_one = node.category is None and node.kind is not None and node.kind.raw in PLACEHOLDERS
     name = node.name
@@ -283,7 +251,9 @@ def placeholder(node: Node) -> Word | None:
     return name
 
 
-def _pair(pair: Pair, node: Node, tree: Tree, stands_for: Word | None, to: Listener) -> None:
+def _pair(
+    pair: syntax.Pair, node: syntax.Node, tree: syntax.Tree, stands_for: syntax.Word | None, to: Listener
+) -> None:
     key, value = pair.key.text, pair.value
     if key == "name":
         to.word(What.ATTRIBUTE, pair.key, node=node, pair=pair)
@@ -310,7 +280,7 @@ def _pair(pair: Pair, node: Node, tree: Tree, stands_for: Word | None, to: Liste
         to.value(value)
 
 
-def _content(key: str, node: Node) -> str | None:
+def _content(key: str, node: syntax.Node) -> str | None:
     """What the value of an attribute contains: of a port of a built-in node, or of an attribute that every node may
     have."""
     attribute = RESERVED_ATTRIBUTES.get(key)
@@ -322,7 +292,12 @@ def _content(key: str, node: Node) -> str | None:
 
 
 def _keys_of(
-    word: Word, node: Node | None, tree: Tree | None, pair: Pair | None, to: Listener, root: bool = False
+    word: syntax.Word,
+    node: syntax.Node | None,
+    tree: syntax.Tree | None,
+    pair: syntax.Pair | None,
+    to: Listener,
+    root: bool = False,
 ) -> None:
     """`{key}`, `{@key}`, and `{=}`, which is the entry named as the port."""
     quotes = 1 if word.kind == STRING else 0
@@ -337,7 +312,7 @@ def _keys_of(
     to.part(Mention(What.KEY, name, Span(start, start + len(name)), word, False, node, tree, pair, False, root))
 
 
-def _script(word: Word, node: Node, tree: Tree, pair: Pair, to: Listener) -> None:
+def _script(word: syntax.Word, node: syntax.Node, tree: syntax.Tree, pair: syntax.Pair, to: Listener) -> None:
     """The entries that a script reads and writes; not of one with escapes, whose offsets differ."""
     text = word.text
     if len(text) != len(word.raw) - (2 if word.quoted else 0):
@@ -370,17 +345,17 @@ def _names_in_script(text: str) -> list[tuple[int, str, str | None]]:
     return sorted(found, key=itemgetter(0))
 
 
-def _clauses(clauses: Iterable[NodeClause], node: Node | None, to: Listener) -> None:
+def _clauses(clauses: Iterable[syntax.NodeClause], node: syntax.Node | None, to: Listener) -> None:
     for clause in clauses:
-        if isinstance(clause, Tags):
+        if isinstance(clause, syntax.Tags):
             for name in clause.names:
                 to.word(What.TAG, name, defines=True, node=node)
             continue
-        if isinstance(clause, Satisfices):
+        if isinstance(clause, syntax.Satisfices):
             for quality in clause.qualities:
                 _quality(quality.path, node, to)
         for requirement in requirements_at((clause,)):
-            if isinstance(requirement, ReqRef):
+            if isinstance(requirement, syntax.ReqRef):
                 _reference(requirement, node, to)
             else:
                 _requirement(requirement, node, True, to)
@@ -389,14 +364,14 @@ def _clauses(clauses: Iterable[NodeClause], node: Node | None, to: Listener) -> 
 # ---- requirements ----
 
 
-def _reference(reference: ReqRef, node: Node | None, to: Listener) -> None:
+def _reference(reference: syntax.ReqRef, node: syntax.Node | None, to: Listener) -> None:
     to.word(What.REQUIREMENT, reference.name, node=node)
     for argument in reference.arguments:
         to.word(What.PARAMETER, argument.name, owner=reference.name.text)
         _values(argument.value, None, to)
 
 
-def _requirement(requirement: Requirement, node: Node | None, attached: bool, to: Listener) -> None:
+def _requirement(requirement: syntax.Requirement, node: syntax.Node | None, attached: bool, to: Listener) -> None:
     refers = attached and requirement.is_reference
     to.word(What.REQUIREMENT, requirement.name, defines=not refers, node=node, owner=requirement)
     _quality(requirement.quality, node, to)
@@ -410,26 +385,28 @@ def _requirement(requirement: Requirement, node: Node | None, attached: bool, to
         _values(clause, requirement, to)
 
 
-def _quality(path: QualityPath | None, node: Node | None, to: Listener) -> None:
+def _quality(path: syntax.QualityPath | None, node: syntax.Node | None, to: Listener) -> None:
     if path is not None:
         to.words(What.QUALITY, path.names, path.span, node)
 
 
-def _values(part: Clause | Parameter | Argument | object, owner: Requirement | None, to: Listener) -> None:
+def _values(
+    part: syntax.Clause | syntax.Parameter | syntax.Argument | object, owner: syntax.Requirement | None, to: Listener
+) -> None:
     """The names and quantities in clauses, conditions and bounds."""
-    for found in walk(part):
-        if isinstance(found, (Operand, Amount)):
+    for found in syntax.walk(part):
+        if isinstance(found, (syntax.Operand, syntax.Amount)):
             if found.word.kind == NAME and found.word.raw not in ("true", "false"):
                 to.word(What.VALUE, found.word, owner=owner)
-        elif isinstance(found, Call):
+        elif isinstance(found, syntax.Call):
             to.word(What.VALUE, found.signal, owner=owner)
-        elif isinstance(found, Claim):
+        elif isinstance(found, syntax.Claim):
             to.word(What.VALUE, found.resource, owner=owner)
-        elif isinstance(found, Path):
+        elif isinstance(found, syntax.Path):
             _path(found, to)
-        elif isinstance(found, Every):
+        elif isinstance(found, syntax.Every):
             to.word(What.PLACE, found.name)
-        elif isinstance(found, Word):
+        elif isinstance(found, syntax.Word):
             if found.kind == QUANTITY:
                 to.word(What.QUANTITY, found)
             elif found.kind == NUMBER:
@@ -437,12 +414,12 @@ def _values(part: Clause | Parameter | Argument | object, owner: Requirement | N
 
 
 def _quantities(part: object, to: Listener) -> None:
-    for found in walk(part):
-        if isinstance(found, Word) and found.kind == QUANTITY:
+    for found in syntax.walk(part):
+        if isinstance(found, syntax.Word) and found.kind == QUANTITY:
             to.word(What.QUANTITY, found)
 
 
-def _path(path: Path | None, to: Listener) -> None:
+def _path(path: syntax.Path | None, to: Listener) -> None:
     for name in path.names if path is not None else ():
         to.word(What.PLACE, name)
 

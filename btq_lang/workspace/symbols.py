@@ -11,35 +11,16 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import NAME
-from btq_lang.syntax.tree import (
-    Apply,
-    Claim,
-    Context,
-    Item,
-    Model,
-    Models,
-    Node,
-    NodeClause,
-    QualityDecl,
-    QualityPath,
-    ReqRef,
-    Requirement,
-    Root,
-    Satisfices,
-    Satisfies,
-    Signal,
-    Tags,
-    Tree,
-    Word,
-    shape,
-)
 from btq_lang.util.record import Record, fields_of
 
 if TYPE_CHECKING:
     from btq_lang.util.text import Span
 
-Target: TypeAlias = Tree | Model | Requirement | Signal | Context | QualityDecl
+Target: TypeAlias = (
+    syntax.Tree | syntax.Model | syntax.Requirement | syntax.Signal | syntax.Context | syntax.QualityDecl
+)
 
 
 class Symbol(Record):
@@ -67,7 +48,7 @@ class Use(Record):
     kind: Kind
     name: str
     span: Span
-    node: Node | None = None
+    node: syntax.Node | None = None
 
 
 class Summary(Record):
@@ -80,60 +61,60 @@ class Summary(Record):
 NOTHING = Summary((), ())
 
 
-def summarize(item: Item) -> Summary:
+def summarize(item: syntax.Item) -> Summary:
     """The summary of an item."""
     names = _Names()
     names.add(item)
     return Summary(tuple(names.symbols), tuple(names.uses)) if names.symbols or names.uses else NOTHING
 
 
-def requirements_at(clauses: tuple[NodeClause, ...]) -> Iterator[Requirement | ReqRef]:
+def requirements_at(clauses: tuple[syntax.NodeClause, ...]) -> Iterator[syntax.Requirement | syntax.ReqRef]:
     """The requirements that clauses attach, defined in place or named."""
     for clause in clauses:
-        if isinstance(clause, Satisfies):
+        if isinstance(clause, syntax.Satisfies):
             yield from clause.uses
-        elif isinstance(clause, Satisfices):
+        elif isinstance(clause, syntax.Satisfices):
             for quality in clause.qualities:
                 yield from quality.requirements
 
 
-def asked_for(item: Item) -> frozenset[str]:
+def asked_for(item: syntax.Item) -> frozenset[str]:
     """The names in an item's conditions, bounds and arguments: those that may be signals or contexts."""
-    if isinstance(item, Context):
+    if isinstance(item, syntax.Context):
         return _words_in(item.condition)
-    if isinstance(item, Requirement):
+    if isinstance(item, syntax.Requirement):
         return _asked_by(item)
-    if isinstance(item, Apply):
+    if isinstance(item, syntax.Apply):
         return _words_in(tuple(use.arguments for use in item.uses))
-    if not isinstance(item, Tree):
+    if not isinstance(item, syntax.Tree):
         return frozenset()
     attached = [*requirements_at(item.clauses)]
     for node in item.walk():
         if node.clauses:
             attached += requirements_at(node.clauses)
     return frozenset().union(
-        *(_asked_by(each) if isinstance(each, Requirement) else _words_in(each.arguments) for each in attached)
+        *(_asked_by(each) if isinstance(each, syntax.Requirement) else _words_in(each.arguments) for each in attached)
     )
 
 
 def claiming(summary: Summary) -> frozenset[str]:
     """The requirements that an item defines whose claims may name their own subjects: in clauses, or in a text."""
     found = [(symbol.name, symbol.target) for symbol in summary.symbols if symbol.kind is Kind.REQUIREMENT]
-    return frozenset([name for name, target in found if isinstance(target, Requirement) and _may_claim(target)])
+    return frozenset([name for name, target in found if isinstance(target, syntax.Requirement) and _may_claim(target)])
 
 
-def _may_claim(requirement: Requirement) -> bool:
+def _may_claim(requirement: syntax.Requirement) -> bool:
     if not requirement.clauses:
         return requirement.text is not None and "if" in requirement.text.text.lower()
-    return any(isinstance(clause, Claim) and clause.subject is not None for clause in requirement.clauses)
+    return any(isinstance(clause, syntax.Claim) and clause.subject is not None for clause in requirement.clauses)
 
 
-def same_requirement(first: Requirement, second: Requirement) -> bool:
+def same_requirement(first: syntax.Requirement, second: syntax.Requirement) -> bool:
     """Whether two definitions are equivalent (docs/language.md): texts compare after folding blanks."""
     return _saying(first) == _saying(second)
 
 
-def _asked_by(requirement: Requirement) -> frozenset[str]:
+def _asked_by(requirement: syntax.Requirement) -> frozenset[str]:
     """The names in a requirement's clauses; without any, its text may hold some after `FailureIf`."""
     if requirement.clauses or requirement.text is None:
         return _words_in((requirement.parameters, requirement.clauses))
@@ -146,7 +127,7 @@ def _words_in(part: object) -> frozenset[str]:
     waiting = [part]
     while waiting:
         part = waiting.pop()
-        if isinstance(part, Word):
+        if isinstance(part, syntax.Word):
             if part.kind == NAME:
                 names.append(part.text)
         elif isinstance(part, tuple):
@@ -156,9 +137,14 @@ def _words_in(part: object) -> frozenset[str]:
     return frozenset([*names, *(side for name in names if "-" in name for side in name.split("-"))])
 
 
-def _saying(requirement: Requirement) -> object:
+def _saying(requirement: syntax.Requirement) -> object:
     text = " ".join(requirement.text.text.split()) if requirement.text else None
-    return text, shape(requirement.quality), shape(requirement.parameters), shape(requirement.clauses)
+    return (
+        text,
+        syntax.shape(requirement.quality),
+        syntax.shape(requirement.parameters),
+        syntax.shape(requirement.clauses),
+    )
 
 
 class _Names:
@@ -168,37 +154,37 @@ class _Names:
         self.symbols: list[Symbol] = []
         self.uses: list[Use] = []
 
-    def add(self, item: Item) -> None:
-        if isinstance(item, Model):
+    def add(self, item: syntax.Item) -> None:
+        if isinstance(item, syntax.Model):
             self._define(Kind.MODEL, item.name, item)
-        elif isinstance(item, Tree):
+        elif isinstance(item, syntax.Tree):
             self._define(Kind.TREE, item.name, item)
             self._add_clauses(item.clauses, None)
             for node in item.walk():
                 self._add_node(node)
-        elif isinstance(item, Models):
+        elif isinstance(item, syntax.Models):
             for model in item.models:
-                if isinstance(model, Model):
+                if isinstance(model, syntax.Model):
                     self._define(Kind.MODEL, model.name, model)
-        elif isinstance(item, Requirement):
+        elif isinstance(item, syntax.Requirement):
             self._add_requirement(item, None, attached=False)
-        elif isinstance(item, Signal):
+        elif isinstance(item, syntax.Signal):
             self._define(Kind.SIGNAL, item.name, item)
-        elif isinstance(item, Context):
+        elif isinstance(item, syntax.Context):
             self._define(Kind.CONTEXT, item.name, item)
-        elif isinstance(item, QualityDecl):
+        elif isinstance(item, syntax.QualityDecl):
             self._define(Kind.QUALITY, item.name, item)
             self._use_quality(item.parent, None)
-        elif isinstance(item, Apply):
+        elif isinstance(item, syntax.Apply):
             for reference in item.uses:
                 self._use(Kind.REQUIREMENT, reference.name, None)
-        elif isinstance(item, Root):
+        elif isinstance(item, syntax.Root):
             self._use(Kind.TREE, item.name, None)
             for pair in item.attributes:
                 if pair.key.text == "main_tree_to_execute":
                     self._use(Kind.TREE, pair.value, None)
 
-    def _add_node(self, node: Node) -> None:
+    def _add_node(self, node: syntax.Node) -> None:
         name, kind, category = node.id, node.kind, node.category
         if kind is not None and kind.raw == "SubTreePlus" and (tree := node.attribute("ID")) is not None:
             self._use(Kind.TREE, tree, node)  # version 3's name of SubTree
@@ -208,20 +194,20 @@ class _Names:
         if node.clauses:
             self._add_clauses(node.clauses, node)
 
-    def _add_clauses(self, clauses: tuple[NodeClause, ...], node: Node | None) -> None:
+    def _add_clauses(self, clauses: tuple[syntax.NodeClause, ...], node: syntax.Node | None) -> None:
         for clause in clauses:
-            if isinstance(clause, Tags):
+            if isinstance(clause, syntax.Tags):
                 continue
-            if isinstance(clause, Satisfices):
+            if isinstance(clause, syntax.Satisfices):
                 for quality in clause.qualities:
                     self._use_quality(quality.path, node)
             for requirement in requirements_at((clause,)):
-                if isinstance(requirement, ReqRef):
+                if isinstance(requirement, syntax.ReqRef):
                     self._use(Kind.REQUIREMENT, requirement.name, node)
                 else:
                     self._add_requirement(requirement, node, attached=True)
 
-    def _add_requirement(self, requirement: Requirement, node: Node | None, *, attached: bool) -> None:
+    def _add_requirement(self, requirement: syntax.Requirement, node: syntax.Node | None, *, attached: bool) -> None:
         """attached: it is in a `satisfies` or `satisfices`, so without a text it refers to another definition."""
         if attached and requirement.is_reference:
             self._use(Kind.REQUIREMENT, requirement.name, node)
@@ -229,16 +215,16 @@ class _Names:
             self._define(Kind.REQUIREMENT, requirement.name, requirement)
         self._use_quality(requirement.quality, node)
 
-    def _use_quality(self, path: QualityPath | None, node: Node | None) -> None:
+    def _use_quality(self, path: syntax.QualityPath | None, node: syntax.Node | None) -> None:
         if path is not None:
             name = ".".join([name.text for name in path.names])
             self.uses.append(Use(Kind.QUALITY, name, path.span, node))
 
-    def _define(self, kind: Kind, name: Word | None, target: Target) -> None:
+    def _define(self, kind: Kind, name: syntax.Word | None, target: Target) -> None:
         if name is not None:
             self.symbols.append(Symbol(kind, name.text, name.span, target))
 
-    def _use(self, kind: Kind, name: Word | None, node: Node | None) -> None:
+    def _use(self, kind: Kind, name: syntax.Word | None, node: syntax.Node | None) -> None:
         if name is not None:
             self.uses.append(Use(kind, name.text, name.span, node))
 

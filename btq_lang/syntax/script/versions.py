@@ -16,32 +16,18 @@ from typing import Final, TypeGuard
 from btq_lang.catalog.versions import NEW_SCRIPTS, SCRIPT_RANKS
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.script.tree import (
-    RANK,
-    Assign,
-    Binary,
-    Comparison,
-    Expression,
-    Group,
-    Name,
-    Number,
-    Script,
-    Ternary,
-    Text,
-    Unary,
-    children,
-)
+from btq_lang.syntax.script import tree
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
 
-def version_problems(script: Script, versions: Iterable[str]) -> list[Diagnostic]:
+def version_problems(script: tree.Script, versions: Iterable[str]) -> list[Diagnostic]:
     """The differences between `versions`, statement by statement."""
     targets = _targets(versions)
     if not targets.old:
         return []
     found: list[Diagnostic] = _separators(script, targets)
-    scopes: list[Expression] = list(reversed(script.statements))
+    scopes: list[tree.Expression] = list(reversed(script.statements))
     while scopes:
         members = _scope(scopes.pop(), scopes)
         found += _mixed(members, script.text, targets)
@@ -66,44 +52,44 @@ def _targets(versions: Iterable[str]) -> _Targets:
     return _Targets(early, tuple(version for version in old if SCRIPT_RANKS.holds(version)), old, len(given))
 
 
-def _node(node: Expression, parent: Expression | None, text: str, targets: _Targets) -> Iterable[Diagnostic]:
+def _node(node: tree.Expression, parent: tree.Expression | None, text: str, targets: _Targets) -> Iterable[Diagnostic]:
     """The problems of a single operator or name."""
-    if isinstance(node, Binary):
-        rank = RANK[node.operator]
-        if node.operator == "||" and isinstance(node.right, Binary) and node.right.operator == "&&":
+    if isinstance(node, tree.Binary):
+        rank = tree.RANK[node.operator]
+        if node.operator == "||" and isinstance(node.right, tree.Binary) and node.right.operator == "&&":
             yield _one_rank(node, node.right, text, targets)
-        elif rank >= RANK["+"] and not (_is_sum_or_product(parent, rank) and parent.left is node):
+        elif rank >= tree.RANK["+"] and not (_is_sum_or_product(parent, rank) and parent.left is node):
             yield from _chain(node, text, targets)
         if node.operator == "..":
             yield from _glued_number(node, text, targets)
-    elif isinstance(node, Ternary) and isinstance(parent, Ternary):
+    elif isinstance(node, tree.Ternary) and isinstance(parent, tree.Ternary):
         yield _refused(
             _brackets([node]), node, "a `?:` as the last part of another without brackets", targets.old, targets
         )
-    elif isinstance(node, Assign) and isinstance(parent, Assign):
+    elif isinstance(node, tree.Assign) and isinstance(parent, tree.Assign):
         yield _refused(_brackets([node]), node, "two assignments in one without brackets", targets.old, targets)
-    elif isinstance(node, Name) and node.name.startswith(("true", "false")):
+    elif isinstance(node, tree.Name) and node.name.startswith(("true", "false")):
         yield _refused(None, node, "a name that begins with `true` or `false`", targets.old, targets)
-    elif isinstance(node, Text) and not node.value.isascii():
+    elif isinstance(node, tree.Text) and not node.value.isascii():
         yield _refused(None, node, "a string with characters outside ASCII", targets.old, targets)
 
 
 # ---- operators with another precedence in older engines ----
 
 
-def _one_rank(node: Binary, conjunction: Binary, text: str, targets: _Targets) -> Diagnostic:
+def _one_rank(node: tree.Binary, conjunction: tree.Binary, text: str, targets: _Targets) -> Diagnostic:
     """`a || b && c`: the two have equal precedence up to 4.8, and are read from left to right."""
-    first: Expression = conjunction
-    while isinstance(first, Binary) and first.operator == "&&":
+    first: tree.Expression = conjunction
+    while isinstance(first, tree.Binary) and first.operator == "&&":
         first = first.left
     other = f"({text[node.start : first.end]}){text[first.end : node.end]}"
     return _misread(_brackets([conjunction]), node, other, targets.old, text)
 
 
-def _chain(top: Binary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
+def _chain(top: tree.Binary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
     """`a - b + c`, read from the right by 4.7 and 4.8; `a .. b + c`, where `..` binds less tightly up to 4.6."""
     chain = [top]
-    while _is_sum_or_product(left := chain[-1].left, RANK[top.operator]):
+    while _is_sum_or_product(left := chain[-1].left, tree.RANK[top.operator]):
         chain.append(left)
     chain.reverse()
     pairs = list(pairwise(chain))
@@ -120,8 +106,8 @@ def _chain(top: Binary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
         yield _misread(_brackets([left for left, _ in loose]), node, other, targets.early, text)
 
 
-def _is_sum_or_product(node: Expression | None, rank: int) -> TypeGuard[Binary]:
-    return isinstance(node, Binary) and RANK[node.operator] == rank
+def _is_sum_or_product(node: tree.Expression | None, rank: int) -> TypeGuard[tree.Binary]:
+    return isinstance(node, tree.Binary) and tree.RANK[node.operator] == rank
 
 
 # ---- operators that older engines do not mix ----
@@ -132,10 +118,10 @@ _GROUP: Final = {
     "..": _TEXT,
     **dict.fromkeys(("&", "|", "^", "~", "!"), _BITS),
 }
-_Members = list[tuple[Expression, Expression | None]]
+_Members = list[tuple[tree.Expression, tree.Expression | None]]
 
 
-def _scope(root: Expression, scopes: list[Expression]) -> _Members:
+def _scope(root: tree.Expression, scopes: list[tree.Expression]) -> _Members:
     """The expressions not separated by brackets, each with its parent; separated ones are added to `scopes`.
 
     The middle of `a ? b : c` is separate, as if it were in brackets.
@@ -144,12 +130,12 @@ def _scope(root: Expression, scopes: list[Expression]) -> _Members:
     stack: _Members = [(root, None)]
     while stack:
         node, parent = stack.pop()
-        if isinstance(node, Group):
+        if isinstance(node, tree.Group):
             scopes.append(node.inner)
             continue
         members.append((node, parent))
-        for child in reversed(children(node)):
-            if isinstance(node, Ternary) and child is node.then:
+        for child in reversed(tree.children(node)):
+            if isinstance(node, tree.Ternary) and child is node.then:
                 scopes.append(child)
             else:
                 stack.append((child, node))
@@ -175,13 +161,13 @@ def _mixed(members: _Members, text: str, targets: _Targets) -> Iterable[Diagnost
         yield _refused(_brackets(_to_separate(members)), members[0][0], what, refusing, targets)
 
 
-def _group(node: Expression | None) -> str | None:
-    if isinstance(node, Comparison):
+def _group(node: tree.Expression | None) -> str | None:
+    if isinstance(node, tree.Comparison):
         return _COMPARISON
-    return _GROUP.get(node.operator) if isinstance(node, Unary | Binary) else None
+    return _GROUP.get(node.operator) if isinstance(node, tree.Unary | tree.Binary) else None
 
 
-def _to_separate(members: _Members) -> list[Expression]:
+def _to_separate(members: _Members) -> list[tree.Expression]:
     """The operators to put in brackets so that one group is left: the comparisons, if there are any."""
     groups = [(node, group, _group(parent)) for node, parent in members if (group := _group(node))]
     outermost = {group for _, group, above in groups if not above}
@@ -189,21 +175,21 @@ def _to_separate(members: _Members) -> list[Expression]:
     return [node for node, group, above in groups if (group != above if above else group not in kept)]
 
 
-def _symbol(node: Expression) -> str:
-    if isinstance(node, Comparison):
+def _symbol(node: tree.Expression) -> str:
+    if isinstance(node, tree.Comparison):
         return node.operators[0]
-    return node.operator if isinstance(node, Unary | Binary) else ""
+    return node.operator if isinstance(node, tree.Unary | tree.Binary) else ""
 
 
-def _place(node: Expression) -> int:
+def _place(node: tree.Expression) -> int:
     """The approximate place of its operator: after its first operand."""
-    return node.start if isinstance(node, Unary) else children(node)[0].end
+    return node.start if isinstance(node, tree.Unary) else tree.children(node)[0].end
 
 
 # ---- between statements ----
 
 
-def _separators(script: Script, targets: _Targets) -> list[Diagnostic]:
+def _separators(script: tree.Script, targets: _Targets) -> list[Diagnostic]:
     """Check separators: up to 4.8, exactly one `;` between two statements and none after the last; later any number."""
     found: list[Diagnostic] = []
     text, statements = script.text, script.statements
@@ -224,12 +210,12 @@ def _separators(script: Script, targets: _Targets) -> list[Diagnostic]:
     return found
 
 
-def _glued_number(node: Binary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
+def _glued_number(node: tree.Binary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
     """`2..'x'`, which older engines read as an invalid number."""
     last = node.left
-    while not isinstance(last, Group) and (inside := children(last)):
+    while not isinstance(last, tree.Group) and (inside := tree.children(last)):
         last = inside[-1]
-    if isinstance(last, Number) and text.startswith("..", last.end) and last.raw[:2] not in ("0x", "0X"):
+    if isinstance(last, tree.Number) and text.startswith("..", last.end) and last.raw[:2] not in ("0x", "0X"):
         fix = Fix("Put a space between them", (Change(Place(Span(last.end, last.end)), " "),), safe=True)
         yield _refused(fix, last, "a number with `..` at its end", targets.old, targets)
 
@@ -238,7 +224,7 @@ def _glued_number(node: Binary, text: str, targets: _Targets) -> Iterable[Diagno
 
 
 def _refused(
-    fix: Fix | None, place: Expression | Span, what: str, refusing: tuple[str, ...], targets: _Targets
+    fix: Fix | None, place: tree.Expression | Span, what: str, refusing: tuple[str, ...], targets: _Targets
 ) -> Diagnostic:
     severity = Severity.ERROR if len(refusing) == targets.total else None  # no supported engine would load it
     message = f"{_listed(refusing)} {'refuses' if len(refusing) == 1 else 'refuse'} {what}"
@@ -246,14 +232,14 @@ def _refused(
     return Diagnostic("script-version", Span(place.start, place.end), message, fixes=fixes, severity=severity)
 
 
-def _misread(fix: Fix, node: Expression, other: str, misreading: tuple[str, ...], text: str) -> Diagnostic:
+def _misread(fix: Fix, node: tree.Expression, other: str, misreading: tuple[str, ...], text: str) -> Diagnostic:
     verb = "reads" if len(misreading) == 1 else "read"
     said = " ".join(text[node.start : node.end].split())
     message = f"{_listed(misreading)} {verb} `{said}` as `{' '.join(other.split())}`"
     return Diagnostic("script-version", Span(node.start, node.end), message, fixes=(fix,))
 
 
-def _brackets(nodes: Iterable[Expression]) -> Fix:
+def _brackets(nodes: Iterable[tree.Expression]) -> Fix:
     """Put each of these in brackets; they may be nested."""
     inserted: dict[int, str] = {}
     for node in nodes:
