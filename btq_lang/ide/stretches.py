@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.ide.looks import (
+from btq_lang.ide.appearance import (
     DEFINED,
     NEW_NODE,
     NEW_QUALITY,
@@ -21,8 +21,8 @@ from btq_lang.ide.looks import (
     USED,
     VALUE,
     WRITTEN,
-    look_of_node,
-    plain_look,
+    appearance_of_node,
+    plain_appearance,
 )
 from btq_lang.ide.meaning import match_of
 from btq_lang.lexer import pieces
@@ -99,12 +99,12 @@ def encoded(text: str, stretch: Stretch, known: Known, encoding: Encoding) -> En
     words.found.sort()
     made = _Encoder(text, encoding)
     at = 0
-    for start, end, look in words.found:
+    for start, end, appearance in words.found:
         if start < at:
             continue
         for begin, stop, of_between in _between(text[at:start]):
             made.add(begin + at, stop + at, of_between)
-        made.add(start, end, look)
+        made.add(start, end, appearance)
         at = end
     for begin, stop, of_between in _between(text[at:]):
         made.add(begin + at, stop + at, of_between)
@@ -133,13 +133,13 @@ class _Words(Listener):
         pair: Pair | None = None,
     ) -> None:
         if word is not None and word.raw:
-            look = (DEFINED if defines else USED).get(what)
-            self._add(word, look or self._look(what, word, word.text, defines, owner))
+            appearance = (DEFINED if defines else USED).get(what)
+            self._add(word, appearance or self._appearance(what, word, word.text, defines, owner))
 
     def words(self, what: What, words: tuple[Word, ...], span: Span, node: Node | None = None) -> None:
-        look = self._look(what, words[-1], ".".join([word.text for word in words]), False, None)
+        appearance = self._appearance(what, words[-1], ".".join([word.text for word in words]), False, None)
         for word in words:
-            self._add(word, look)
+            self._add(word, appearance)
 
     def value(self, word: Word) -> None:
         self._add(word, PLAIN.get(word.kind, TEXT))
@@ -149,28 +149,28 @@ class _Words(Listener):
         begin, end = mention.span.start + self.by, mention.span.end + self.by
         if begin == end:
             return
-        look = WRITTEN if mention.writes else (DEFINED if mention.defines else USED).get(mention.what)
-        if look is None:
-            look = self._look(mention.what, mention.word, mention.name, mention.defines, mention.owner)
+        appearance = WRITTEN if mention.writes else (DEFINED if mention.defines else USED).get(mention.what)
+        if appearance is None:
+            appearance = self._appearance(mention.what, mention.word, mention.name, mention.defines, mention.owner)
         found = self.found
         if found and found[-1][0] <= begin and end <= found[-1][1]:
             start, stop, around = found.pop()
             if start < begin:
                 found.append((start, begin, around))
-            found.append((begin, end, look))
+            found.append((begin, end, appearance))
             if end < stop:
                 found.append((end, stop, around))
         else:
-            found.append((begin, end, look))
+            found.append((begin, end, appearance))
 
-    def _add(self, word: Word, look: str) -> None:
+    def _add(self, word: Word, appearance: str) -> None:
         start = word.start + self.by
-        self.found.append((start, start + len(word.raw), look))
+        self.found.append((start, start + len(word.raw), appearance))
 
-    def _look(self, what: What, word: Word, name: str, defines: bool, owner: Owner) -> str:
+    def _appearance(self, what: What, word: Word, name: str, defines: bool, owner: Owner) -> str:
         """The appearance of a word that can be several things."""
         if what is What.NODE:
-            return NEW_NODE if defines and word.kind != SYMBOL else look_of_node(name, word.kind)
+            return NEW_NODE if defines and word.kind != SYMBOL else appearance_of_node(name, word.kind)
         if what is What.QUALITY:
             if defines:
                 return NEW_QUALITY
@@ -178,7 +178,7 @@ class _Words(Listener):
         if what is What.VALUE:
             is_own = isinstance(owner, Requirement) and any(one.name.text == name for one in owner.parameters)
             return USED[What.PARAMETER] if is_own else VALUE
-        assert what is What.PLACE, "a rule belongs to no item, and the look of all other words is known"
+        assert what is What.PLACE, "a rule belongs to no item, and the appearance of all other words is known"
         return USED[What.TREE] if self._known.is_tree(name) else OWN_NODE
 
 
@@ -193,9 +193,9 @@ def _between(text: str) -> list[Token]:
     found: list[Token] = []
     before = ""
     for kind, start, raw in pieces(text):
-        look = plain_look(kind, raw, before)
-        if look is not None:
-            found.append((start, start + len(raw), look))
+        appearance = plain_appearance(kind, raw, before)
+        if appearance is not None:
+            found.append((start, start + len(raw), appearance))
         if kind <= OPERATOR:
             before = raw
     return found
@@ -220,23 +220,23 @@ class _Encoder:
         self._at = self._begin = 0
         self._end = self._next_line(0)
 
-    def add(self, start: int, end: int, look: str) -> None:
+    def add(self, start: int, end: int, appearance: str) -> None:
         while self._end <= start:
             self._begin = self._end
             self._end = self._next_line(self._end)
             self._at += 1
         if end >= self._end:
             for begin, stop in _lines(self._text[start:end]):
-                self.add(start + begin, start + stop, look)
+                self.add(start + begin, start + stop, appearance)
             return
         column, length = start - self._begin, end - start
         if not self._is_plain:
             column = width_of(self._text[self._begin : start], self._encoding)
             length = width_of(self._text[start:end], self._encoding)
         if self._at == self.line:
-            self.tokens.append(f"0,{column - self._column},{length}{look}")
+            self.tokens.append(f"0,{column - self._column},{length}{appearance}")
         else:
-            self.tokens.append(f"{self._at - self.line},{column},{length}{look}")
+            self.tokens.append(f"{self._at - self.line},{column},{length}{appearance}")
             self.line = self._at
         self._column = column
 

@@ -31,7 +31,7 @@ from btq_lang.workspace.references import What
 
 
 @lru_cache(2_000)  # most kinds occur in a file many times
-def look_of_node(name: str, kind: int) -> str:
+def appearance_of_node(name: str, kind: int) -> str:
     """The appearance of a node's kind, by its name and the kind of its token."""
     if kind == SYMBOL:
         return _SIGN
@@ -41,7 +41,7 @@ def look_of_node(name: str, kind: int) -> str:
     return _ACTION if builtin.category in ("Action", "Condition") else _BUILTIN
 
 
-def plain_look(kind: int, raw: str, before: str) -> str | None:
+def plain_appearance(kind: int, raw: str, before: str) -> str | None:
     """The appearance of a token that names nothing, after another one; None if it has no colour."""
     if kind != NAME:
         return PLAIN.get(kind)
@@ -52,31 +52,31 @@ def plain_look(kind: int, raw: str, before: str) -> str | None:
     return _TYPE if before == ":" else None
 
 
-def _look(type_: str, modifier: str | None = None) -> str:
+def _appearance(type_: str, modifier: str | None = None) -> str:
     return f",{TYPES.index(type_)},{1 << MODIFIERS.index(modifier) if modifier is not None else 0}"
 
 
-_KEYWORD: Final = _look("keyword")
-_TYPE: Final = _look("type")
-TEXT: Final = _look("string")
+_KEYWORD: Final = _appearance("keyword")
+_TYPE: Final = _appearance("type")
+TEXT: Final = _appearance("string")
 PLAIN: Final = {
-    COMMENT: _look("comment"),
+    COMMENT: _appearance("comment"),
     STRING: TEXT,
-    NUMBER: _look("number"),
-    QUANTITY: _look("number"),
-    SYMBOL: _look("operator"),
-    BRACED: _look("variable"),
+    NUMBER: _appearance("number"),
+    QUANTITY: _appearance("number"),
+    SYMBOL: _appearance("operator"),
+    BRACED: _appearance("variable"),
 }
-_SIGN: Final = _look("operator", "defaultLibrary")
-_ACTION: Final = _look("function", "defaultLibrary")
-_BUILTIN: Final = _look("type", "defaultLibrary")
-OWN_NODE: Final = _look("function")
-NEW_NODE: Final = _look("function", "definition")
-STANDARD_QUALITY: Final = _look("enumMember", "defaultLibrary")
-OWN_QUALITY: Final = _look("enumMember")
-NEW_QUALITY: Final = _look("enumMember", "definition")
-VALUE: Final = _look("variable", "readonly")
-WRITTEN: Final = _look("variable", "modification")
+_SIGN: Final = _appearance("operator", "defaultLibrary")
+_ACTION: Final = _appearance("function", "defaultLibrary")
+_BUILTIN: Final = _appearance("type", "defaultLibrary")
+OWN_NODE: Final = _appearance("function")
+NEW_NODE: Final = _appearance("function", "definition")
+STANDARD_QUALITY: Final = _appearance("enumMember", "defaultLibrary")
+OWN_QUALITY: Final = _appearance("enumMember")
+NEW_QUALITY: Final = _appearance("enumMember", "definition")
+VALUE: Final = _appearance("variable", "readonly")
+WRITTEN: Final = _appearance("variable", "modification")
 _TYPES: Final = {
     What.TREE: "class",
     What.REQUIREMENT: "interface",
@@ -93,8 +93,8 @@ _TYPES: Final = {
     What.UNIT: "type",
     What.EDITION: "enumMember",
 }
-USED: Final = {what: _look(type_) for what, type_ in _TYPES.items()}
-DEFINED: Final = {what: _look(type_, "definition") for what, type_ in _TYPES.items()}
+USED: Final = {what: _appearance(type_) for what, type_ in _TYPES.items()}
+DEFINED: Final = {what: _appearance(type_, "definition") for what, type_ in _TYPES.items()}
 # Every word that the grammar knows by its place; a name that looks like one has the colour of what it names.
 KEYWORDS: Final = frozenset(
     {"BehaviorTree", "Root", "include", "signal", "context", "apply", "quality", "qualities", "QualityReq"}
