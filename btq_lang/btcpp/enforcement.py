@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
 
 
-class Held(Record):
+class ClauseEnforcement(Record):
     """How a clause is enforced.
 
     Attributes:
@@ -68,12 +68,12 @@ class Enforcement(Record):
     """A file's export with what its requirements add.
 
     Attributes:
-        held: for each of `requirements(…).applied`, in its order, its clauses.
+        clauses: for each of `requirements(…).applied`, in its order, its clauses.
         loose: `requirements(…).about_no_node()`.
     """
 
     export: Export
-    held: tuple[tuple[Held, ...], ...]
+    clauses: tuple[tuple[ClauseEnforcement, ...], ...]
     loose: tuple[tuple[Requirement, Claim], ...] = ()
 
 
@@ -88,9 +88,9 @@ class _Plan(Record):
         stops: the entries that halt it.
     """
 
-    held: tuple[tuple[Held, ...], ...]
+    clauses: tuple[tuple[ClauseEnforcement, ...], ...]
     wrappers: Mapping[int, tuple[Wrapper, ...]]
-    enforced: Mapping[object, Held]
+    enforced: Mapping[object, ClauseEnforcement]
     cells: Mapping[str, str]
     first: Mapping[str, str]
     stops: tuple[str, ...]
@@ -115,10 +115,12 @@ def enforced(workspace: Workspace, path: str, export: Export, bundled: bool = Fa
     if wrappers:
         _put(document, {id(export.elements[key]): each for key, each in wrappers.items()})
         document = Document([Comment(GUARDS_NOTE), *document.contents])
-    return Enforcement(replace(export, document=document), plan.held, found.about_no_node())
+    return Enforcement(replace(export, document=document), plan.clauses, found.about_no_node())
 
 
-def how_held(workspace: Workspace, path: str, bundled: bool = False) -> tuple[tuple[Held, ...], ...]:
+def clause_enforcements(
+    workspace: Workspace, path: str, bundled: bool = False
+) -> tuple[tuple[ClauseEnforcement, ...], ...]:
     """For each of `requirements(workspace, path).applied`, in its order, how its clauses are enforced in the build.
 
     Args:
@@ -130,7 +132,7 @@ def how_held(workspace: Workspace, path: str, bundled: bool = False) -> tuple[tu
     if not _has_requirements(workspace, path):
         return ()
     found = requirements(workspace, path)
-    return _plans(workspace, found, path, _written(workspace, path, bundled))[0].held
+    return _plans(workspace, found, path, _written(workspace, path, bundled))[0].clauses
 
 
 def unasked(method: str | None, action: str | None) -> tuple[Way, str] | None:
@@ -185,11 +187,11 @@ def _plan(
         others: the plans of the other files.
     """
     planner = _Planner(workspace, found, path, files, others)
-    held = tuple(
-        tuple([planner.held(applied, claim) for claim in applied.requirement.claims]) for applied in found.applied
+    clauses = tuple(
+        tuple([planner.enforce(applied, claim) for claim in applied.requirement.claims]) for applied in found.applied
     )
     wrappers = {key: tuple(each) for key, each in planner.wrappers.items()}
-    return _Plan(held, wrappers, planner.enforced, planner.cells, planner.first, tuple(planner.stops))
+    return _Plan(clauses, wrappers, planner.enforced, planner.cells, planner.first, tuple(planner.stops))
 
 
 class _Planner:
@@ -203,7 +205,7 @@ class _Planner:
         budgets: Budgets | None = None,
     ) -> None:
         self.wrappers: Final[dict[int, list[Wrapper]]] = {}
-        self.enforced: Final[dict[object, Held]] = {}
+        self.enforced: Final[dict[object, ClauseEnforcement]] = {}
         self.cells: Final[dict[str, str]] = {}
         self.first: Final[dict[str, str]] = {}
         self.stops: Final[dict[str, None]] = {}
@@ -218,12 +220,14 @@ class _Planner:
         view = _MissionView(found, self._budgets, _begins(workspace, found, path, files))
         self._judge: Final = Judge(view, files=files, is_shared=is_shared)
 
-    def held(self, applied: Applied, claim: Claim) -> Held:
+    def enforce(self, applied: Applied, claim: Claim) -> ClauseEnforcement:
         """How a clause is enforced; records the wrappers it needs."""
         requirement = applied.requirement
         if (known_way := unasked(requirement.method, requirement.action)) is not None:
-            return Held(requirement.name, claim.text, claim.place, applied.node, *known_way, subject=applied.shown)
-        held = Held(
+            return ClauseEnforcement(
+                requirement.name, claim.text, claim.place, applied.node, *known_way, subject=applied.shown
+            )
+        monitored = ClauseEnforcement(
             requirement.name, claim.text, claim.place, applied.node, "monitored", asked=True, subject=applied.shown
         )
         try:
@@ -235,15 +239,15 @@ class _Planner:
                 if known is None:
                     raise Elsewhere(node)
             if known is None:
-                known = replace(held, way="enforced", why=self._guard(requirement, claim, node))
+                known = replace(monitored, way="enforced", why=self._guard(requirement, claim, node))
                 self.enforced[identity] = known
         except Elsewhere as elsewhere:
-            bundled = self._bundled.held(applied, claim)
+            bundled = self._bundled.enforce(applied, claim)
             is_helped = bundled.way == "enforced"
             is_xml = self._workspace.files[elsewhere.node.path].origin is not None
-            return replace(held, why=where_else(elsewhere.node, is_xml=is_xml) if is_helped else bundled.why)
+            return replace(monitored, why=where_else(elsewhere.node, is_xml=is_xml) if is_helped else bundled.why)
         except NotEnforced as reason:
-            return replace(held, why=str(reason))
+            return replace(monitored, why=str(reason))
         return known
 
     @cached_property

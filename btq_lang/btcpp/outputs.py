@@ -162,4 +162,4 @@ def _side_text(
         )
     elements = {key: element for part in parts for key, element in part.elements.items()}
     documents = tuple(part.document for part in parts)
-    return side_file(workspace, Built(path, place, text, documents, elements, exports[path].held))
+    return side_file(workspace, Built(path, place, text, documents, elements, exports[path].clauses))

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final, TypeAlias
 
 from btq_lang.btcpp.document import Document, Element
-from btq_lang.btcpp.enforcement import Held
+from btq_lang.btcpp.enforcement import ClauseEnforcement
 from btq_lang.btcpp.instances import Instance, instances
 from btq_lang.btcpp.manual_edits import node_guards
 from btq_lang.btcpp.wrappers import MARK
@@ -45,7 +45,7 @@ class Built(Record):
         text: of the XML file.
         documents: the mission's and those of all that it includes, included ones first; a bundle has one.
         elements: of every node, by `id(node)`.
-        held: how the clauses of each applied requirement are enforced, in order; empty if enforcement is off.
+        clauses: how the clauses of each applied requirement are enforced, in order; empty if enforcement is off.
     """
 
     path: str
@@ -53,7 +53,7 @@ class Built(Record):
     text: str
     documents: tuple[Document, ...]
     elements: Mapping[int, Element]
-    held: tuple[tuple[Held, ...], ...] = ()
+    clauses: tuple[tuple[ClauseEnforcement, ...], ...] = ()
 
 
 def side_path(xml: str) -> str:
@@ -105,7 +105,7 @@ def side_file(workspace: Workspace, built: Built) -> str | None:
             ],
             "requirements": [_requirement(each, loose.get(each.name), place) for each in found.all.values()],
             "applied": [
-                _applied(each, built.held[index] if built.held else (), running, place)
+                _applied(each, built.clauses[index] if built.clauses else (), running, place)
                 for index, each in enumerate(found.applied)
             ],
             "traces": [
@@ -214,7 +214,7 @@ def _requirement(requirement: Requirement, loose: list[Json] | None, place: _Pla
     return {**plain, "clauses_without_nodes": loose} if loose else plain
 
 
-def _applied(applied: Applied, held: tuple[Held, ...], running: RunningTree, place: _Places) -> Json:
+def _applied(applied: Applied, clauses: tuple[ClauseEnforcement, ...], running: RunningTree, place: _Places) -> Json:
     subject = applied.subject
     found: dict[str, Json] = {"requirement": applied.requirement.name, "how": applied.how}
     if applied.arguments:
@@ -226,9 +226,9 @@ def _applied(applied: Applied, held: tuple[Held, ...], running: RunningTree, pla
         found["subject"] = _plain(subject, place)
         if applied.node is not None:
             found["nodes"] = running.uids(Target(applied.node))
-    if held:
+    if clauses:
         found["clauses"] = [
-            {"clause": each.clause, "held": each.way, **({"why": each.why} if each.why else {})} for each in held
+            {"clause": each.clause, "held": each.way, **({"why": each.why} if each.why else {})} for each in clauses
         ]
     return found
 

@@ -8,7 +8,7 @@ from argparse import Namespace
 from collections.abc import Iterator
 from typing import Final
 
-from btq_lang.btcpp.enforcement import Enforcement, Held
+from btq_lang.btcpp.enforcement import ClauseEnforcement, Enforcement
 from btq_lang.btcpp.export import Export, is_mission
 from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.outputs import Output, Places, outputs, sources, without_tree
@@ -184,20 +184,20 @@ def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: b
     """Print how the clauses of requirements are covered, with a line for each one demanded to be enforced that is not,
     or that has a remark.
     """
-    clauses: dict[object, Held] = {}
-    for held in (held for done in made for applied in done.held for held in applied):
-        key = held.requirement, held.clause, held.place.path, held.place.span, id(held.node and held.node.node)
-        if key not in clauses or held.way == "enforced":  # one file may enforce what another cannot
-            clauses[key] = held
-    for held in clauses.values():
-        if not verbose and (not held.asked or (held.way == "enforced" and not held.why)):
+    clauses: dict[object, ClauseEnforcement] = {}
+    for each in (each for done in made for applied in done.clauses for each in applied):
+        key = each.requirement, each.clause, each.place.path, each.place.span, id(each.node and each.node.node)
+        if key not in clauses or each.way == "enforced":  # one file may enforce what another cannot
+            clauses[key] = each
+    for each in clauses.values():
+        if not verbose and (not each.asked or (each.way == "enforced" and not each.why)):
             continue
-        where = f" at {held.subject}" if held.subject else ""
-        way = "not enforced, monitored" if held.asked and held.way == "monitored" else held.way
-        why = f": {held.why}" if held.why else ""
-        remark = Remark(*_absolute(held.place, groups), f"{held.requirement}, `{held.clause}`{where}{why}")
+        where = f" at {each.subject}" if each.subject else ""
+        way = "not enforced, monitored" if each.asked and each.way == "monitored" else each.way
+        why = f": {each.why}" if each.why else ""
+        remark = Remark(*_absolute(each.place, groups), f"{each.requirement}, `{each.clause}`{where}{why}")
         _tell((remark,), way, groups)
-    known = {(held.requirement, held.clause, held.place.path, held.place.span) for held in clauses.values()}
+    known = {(each.requirement, each.clause, each.place.path, each.place.span) for each in clauses.values()}
     loose = {
         (requirement.name, claim.text, claim.place.path, claim.place.span): claim.place
         for done in made
@@ -208,7 +208,7 @@ def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: b
         remark = Remark(*_absolute(place, groups), f"{requirement}, `{clause}` applies to no node")
         _tell((remark,), "not checked", groups)
     if clauses:
-        ways = [held.way for held in clauses.values()]
+        ways = [each.way for each in clauses.values()]
         counted = [f"{ways.count(way)} {way}" for way in ("enforced", "monitored", "reviewed") if way in ways]
         counted += [f"{len(loose)} without a node"] if loose else []
         print(f"clauses of requirements: {', '.join(counted)}", file=sys.stderr)

@@ -106,9 +106,9 @@ def requirement(workspace: Workspace, path: str, found: Definition) -> str:
         )
     attached = used(workspace, Subject(What.REQUIREMENT, found.symbol.name, home_of(found)), "Attached to")
     if item.clauses or item.text is not None:
-        from btq_lang.ide.held import held  # most hovers need no plan of a build
+        from btq_lang.ide.clause_enforcement import enforcement_lines  # most hovers need no plan of a build
 
-        said = held(workspace, path, found, is_attached=bool(attached))
+        said = enforcement_lines(workspace, path, found, is_attached=bool(attached))
         lines.append(f"Enforcement by `btq build`:\n{said}" if said else "")
     return "\n\n".join(filter(None, (*lines, attached)))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.ide import describe
-from btq_lang.ide.held import missions_of
+from btq_lang.ide.clause_enforcement import missions_of
 from btq_lang.ide.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
 from btq_lang.ide.outline import requirement_detail
 from btq_lang.ide.ports import ports_of
@@ -95,7 +95,9 @@ def code_lenses(workspace: Workspace, path: str) -> tuple[Lens, ...]:
         nodes: tuple[tuple[str, Span], ...] = ()
         if _names_its_subject(place):
             missions = missions_of(workspace, path)
-            nodes = tuple(dict.fromkeys(at for one in missions[:_MOST_MISSIONS] for at in _held(workspace, one, place)))
+            nodes = tuple(
+                dict.fromkeys(at for one in missions[:_MOST_MISSIONS] for at in _subjects(workspace, one, place))
+            )
             more = " or more" if len(missions) > _MOST_MISSIONS else ""
             holds = [f"holds for {_counted(len(nodes), 'node')}{more}"] if nodes else []
             titles = [*(titles if uses or not nodes else ()), *holds]
@@ -119,7 +121,7 @@ def _names_its_subject(found: Definition) -> bool:
     )
 
 
-def _held(workspace: Workspace, mission: str, found: Definition) -> tuple[tuple[str, Span], ...]:
+def _subjects(workspace: Workspace, mission: str, found: Definition) -> tuple[tuple[str, Span], ...]:
     """The nodes that the claims of a requirement name."""
     return workspace.store.ask(_by_subject, mission).get((found.symbol.name, found.path), ())
 
@@ -127,13 +129,13 @@ def _held(workspace: Workspace, mission: str, found: Definition) -> tuple[tuple[
 def _by_subject(store: Store[Workspace], mission: str) -> dict[tuple[str, str], tuple[tuple[str, Span], ...]]:
     """The same for all requirements of a mission, which are resolved together."""
     workspace = everything(store, mission)
-    held: dict[tuple[str, str], dict[tuple[str, Span], None]] = {}
+    found: dict[tuple[str, str], dict[tuple[str, Span], None]] = {}
     for applied in requirements(workspace, mission).applied:
         if applied.how == "subject":
             defined_in = applied.requirement.place.path
             assert defined_in is not None, "a definition is in a file"
-            nodes = held.setdefault((applied.requirement.name, defined_in), {})
+            nodes = found.setdefault((applied.requirement.name, defined_in), {})
             for source in applied.nodes:
                 word = source.node.head
                 nodes[source.path, word.span.shifted(workspace.files[source.path].start_of(source.item))] = None
-    return {key: tuple(nodes) for key, nodes in held.items()}
+    return {key: tuple(nodes) for key, nodes in found.items()}

@@ -93,13 +93,13 @@ def built_ways(
 ) -> Sequence[Sequence[Clause]]:
     """How clauses are covered in the output of `btq build`, or as declared if the mission cannot be built."""
     declared = declared_ways(workspace, path, found)
-    held = as_xml(workspace, path, bundled=bundled).held
-    if not held:
+    enforced = as_xml(workspace, path, bundled=bundled).clauses
+    if not enforced:
         return declared
     # A requirement without measurable clauses has nothing to cover.
     return [
         tuple(Clause(each.clause, each.way, each.why, each.asked) for each in clauses) or said
-        for clauses, said in zip(held, declared, strict=True)
+        for clauses, said in zip(enforced, declared, strict=True)
     ]
 
 

@@ -18,7 +18,7 @@ from missions import mission
 from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.conditions import NoScript, condition_script, real
 from btq_lang.btcpp.document import write
-from btq_lang.btcpp.enforcement import enforced, how_held
+from btq_lang.btcpp.enforcement import clause_enforcements, enforced
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.keys import Keys
@@ -41,8 +41,12 @@ def xml_of(workspace: Workspace, path: str, bundled: bool = False) -> str:
 
 
 def states(workspace: Workspace, path: str, bundled: bool = False) -> list[str]:
-    held = how_held(workspace, path, bundled)
-    return [f"{each.requirement}: {each.way}{f': {each.why}' if each.why else ''}" for part in held for each in part]
+    applied = clause_enforcements(workspace, path, bundled)
+    return [
+        f"{each.requirement}: {each.way}{f': {each.why}' if each.why else ''}"
+        for clauses in applied
+        for each in clauses
+    ]
 
 
 # ---- the way back ----
@@ -363,8 +367,8 @@ def test_a_build_tells_what_is_about_no_node(btq: Btq) -> None:
     )
     side: Any = json.loads(btq.read("mission.qreq.json"))
     assert [each.get("clauses_without_nodes") for each in side["requirements"]] == [["never force >= 50 N"], None]
-    held = [(clause["clause"], clause["held"]) for applied in side["applied"] for clause in applied["clauses"]]
-    assert held == [("Move takes at most 5 s", "enforced"), ("Rest takes at most 2 s", "monitored")]
+    ways = [(clause["clause"], clause["held"]) for applied in side["applied"] for clause in applied["clauses"]]
+    assert ways == [("Move takes at most 5 s", "enforced"), ("Rest takes at most 2 s", "monitored")]
 
 
 def test_what_one_mission_leaves_about_no_node_another_may_attach(btq: Btq) -> None:

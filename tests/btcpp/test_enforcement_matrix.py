@@ -129,7 +129,7 @@ def outcome(clause: str, qualifier: str, action: str) -> str:
     workspace = Workspace.of({"m.btq": text})
     assert workspace.files["m.btq"].problems == ()
     enforcement = enforced(workspace, "m.btq", export(workspace, "m.btq"))
-    found = [each for applied in enforcement.held for each in applied if each.asked]
+    found = [each for applied in enforcement.clauses for each in applied if each.asked]
     if not found:
         return "nothing"
     ways = {(each.way, each.why) for each in found}

@@ -40,7 +40,7 @@ def test_a_file_is_written_as_its_golden_file(path: Path, update: bool) -> None:
     ]
     remarks += [
         f"{each.requirement}: {each.way}: {each.clause}{f': {each.why}' if each.why else ''}"
-        for applied in enforcement.held
+        for applied in enforcement.clauses
         for each in applied
         if each.asked
     ]

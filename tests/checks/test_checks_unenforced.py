@@ -9,7 +9,7 @@ from check_asserts import findings, problems
 from hypothesis import given
 from mission_strategies import missions
 
-from btq_lang.btcpp.enforcement import how_held
+from btq_lang.btcpp.enforcement import clause_enforcements
 from btq_lang.checks import check
 from btq_lang.requirements.resolve import requirements
 from btq_lang.workspace.workspace import Workspace
@@ -143,7 +143,7 @@ def test_nodes_of_included_files(main: str) -> None:
     why = f"{what}: `A` is in an included file, which other missions may include; "
     assert [each.message for each in found.pop("main.btq")] == ([] if is_here else [f"{why}--bundle enforces it"])
     assert list(found.values()) == [[], []]
-    ways = [held.way for clauses in how_held(workspace, "main.btq") for held in clauses]
+    ways = [each.way for clauses in clause_enforcements(workspace, "main.btq") for each in clauses]
     assert ways == ["enforced" if is_here else "monitored"]
 
 
@@ -174,10 +174,10 @@ def assert_same(workspace: Workspace, path: str) -> None:
     reasons = {each.message.partition(": ")[2] for each in found if each.rule == RULE and each.severity is None}
     known = requirements(workspace, path)
     missing = {
-        held.why
-        for applied, clauses in zip(known.applied, how_held(workspace, path, bundled=True), strict=True)
-        for held in clauses
-        if held.asked and held.way != "enforced" and (held.place.path == path or applied.place.path == path)
+        each.why
+        for applied, clauses in zip(known.applied, clause_enforcements(workspace, path, bundled=True), strict=True)
+        for each in clauses
+        if each.asked and each.way != "enforced" and (each.place.path == path or applied.place.path == path)
     }
     unsaid = {each for each in missing - reasons if "the main tree is unknown" not in each}
     assert not unsaid or any(each.rule in OTHERWISE for each in found)

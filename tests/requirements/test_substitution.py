@@ -178,7 +178,7 @@ def test_what_forty_contexts_need_is_counted() -> None:
         xml = write(made.export.document)
         document = (made.export.document,)
         return side_file(
-            workspace, Built(MAIN, "main.xml", xml, document, made.export.elements, made.held)
+            workspace, Built(MAIN, "main.xml", xml, document, made.export.elements, made.clauses)
         ), import_xml(xml)
 
     built(Workspace.of({MAIN: contexts(2)}))

@@ -5,7 +5,7 @@ One invariant: it reports the plan of the build itself, in its words.
 
 from __future__ import annotations
 
-from btq_lang.btcpp.enforcement import Held, how_held, unasked
+from btq_lang.btcpp.enforcement import ClauseEnforcement, clause_enforcements, unasked
 from btq_lang.requirements.constraints import constraints
 from btq_lang.syntax.tree import Claim, How, OnViolation, Requirement
 from btq_lang.workspace.file import Definition, is_btq
@@ -17,7 +17,7 @@ _MOST_MISSIONS = 4  # planning one takes as long as checking it
 _MOST_NODES = 4
 
 
-def held(workspace: Workspace, path: str, found: Definition, *, is_attached: bool) -> str:
+def enforcement_lines(workspace: Workspace, path: str, found: Definition, *, is_attached: bool) -> str:
     """A line for each clause: enforced, monitored or reviewed, with the node if that differs between nodes, and why;
     empty if the requirement applies to nothing.
 
@@ -71,13 +71,13 @@ def missions_of(workspace: Workspace, path: str) -> tuple[str, ...]:
     return tuple(one for one in missions if path in workspace.closure(one))
 
 
-def _plan(store: Store[Workspace], mission: str) -> tuple[Held, ...]:
+def _plan(store: Store[Workspace], mission: str) -> tuple[ClauseEnforcement, ...]:
     workspace = everything(store, mission)
-    return tuple([each for clauses in how_held(workspace, mission) for each in clauses])
+    return tuple([each for clauses in clause_enforcements(workspace, mission) for each in clauses])
 
 
-def _way(held: Held) -> str:
-    return "not enforced, monitored" if held.asked and held.way == "monitored" else held.way
+def _way(clause: ClauseEnforcement) -> str:
+    return "not enforced, monitored" if clause.asked and clause.way == "monitored" else clause.way
 
 
 def _lines(ways: dict[str, dict[tuple[str, str], dict[str, None]]]) -> str:
