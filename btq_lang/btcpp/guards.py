@@ -235,7 +235,7 @@ def _limit(draft: _Draft, bound: Limit, when: str | None) -> None:
         _milliseconds(value) if not isinstance(value, Table) else table_script(value, _milliseconds, draft.stored)
     )
     if isinstance(value, Table) or when is not None:
-        chosen = milliseconds if when is None else f"({when} ? {milliseconds} : 0)"  # for the engine, 0 is no limit
+        chosen = milliseconds if when is None else f"({when} ? {milliseconds} : 0)"  # 0 means no limit for the engine
         milliseconds = f"{{{draft.at_start('ms', chosen)}}}"
     attributes: tuple[tuple[str, str], ...] = (("msec", milliseconds),)
     if not draft.halts:
@@ -366,7 +366,7 @@ def _condition(draft: _Draft) -> Condition:
 
 
 def _is_above(node: ResolvedNode, below: ResolvedNode) -> bool:
-    """Whether a node stands above another one in its tree."""
+    """Whether a node is above another one in its tree."""
     at = below.parent
     while at is not None and at is not node:
         at = at.parent

@@ -114,13 +114,13 @@ class _Reader:
         top: list[Content] = []
         contents = top  # of the innermost open element
         pieces = chain.from_iterable(_pieces(text))
-        behind = 1 if text.startswith("\ufeff") else 0  # the end of what was read last
+        last_end = 1 if text.startswith("\ufeff") else 0  # the end of what was read last
         following = len(next(pieces))  # the offset of the next `<`
-        self.characters(behind, following, contents)
+        self.characters(last_end, following, contents)
         for piece in pieces:
             start = following
             following += len(piece) + 1
-            if start < behind:  # this `<` is in a comment, or in a value
+            if start < last_end:  # this `<` is in a comment, or in a value
                 continue
             said = piece.rstrip(_BLANKS)
             tag = known.get(said)
@@ -128,33 +128,33 @@ class _Reader:
                 end = start + 1 + len(said)
                 match = _TAG(text, start)
                 if match is None:
-                    behind = self.other(start, behind, contents, is_first=not top)
-                    if behind != end:
-                        self.characters(behind, text.find("<", behind), contents)
+                    last_end = self.other(start, last_end, contents, is_first=not top)
+                    if last_end != end:
+                        self.characters(last_end, text.find("<", last_end), contents)
                     continue
                 tag = self.tag(match, start, end)
                 if match.end() <= end:
                     known[said] = tag
             name, attributes, is_leaf, length, has_text = tag
-            behind = start + length
+            last_end = start + length
             if attributes is None:
                 if not opened:  # the engine stops reading here
                     return top
                 element = opened.pop()
                 if name != element.tag:
-                    self.mismatched(element, Span(start, behind), name)
-                element.close = behind
+                    self.mismatched(element, Span(start, last_end), name)
+                element.close = last_end
                 contents = opened[-1].children if opened else top
             else:
-                element = Element(name, attributes, None, text, start, behind)
+                element = Element(name, attributes, None, text, start, last_end)
                 contents.append(element)
                 if not is_leaf:
                     opened.append(element)
                     contents = element.children
                     if len(opened) > MAX_DEPTH:
-                        raise _Broken(Diagnostic("nested-too-deep", Span(start, behind), _TOO_DEEP))
+                        raise _Broken(Diagnostic("nested-too-deep", Span(start, last_end), _TOO_DEEP))
             if has_text:
-                self.characters(behind, text.find("<", behind), contents)
+                self.characters(last_end, text.find("<", last_end), contents)
         if opened:
             self.unclosed(opened[-1])
         return top
@@ -177,16 +177,16 @@ class _Reader:
             self.twice(name, Span(start, end))
         return name, attributes, slash == "/", end - start, has_text
 
-    def other(self, start: int, behind: int, contents: list[Content], is_first: bool) -> int:
+    def other(self, start: int, last_end: int, contents: list[Content], is_first: bool) -> int:
         """Read what begins with `<` but is not a tag; return where it ends.
 
         Args:
-            behind: the end of what was read last.
+            last_end: the end of what was read last.
             is_first: whether nothing precedes it.
         """
         text = self.text
         if text.startswith("<!--", start):
-            return self.comment(start, behind, contents)
+            return self.comment(start, last_end, contents)
         if text.startswith("<!", start):
             return self.marked(start, contents)
         if text.startswith("<?", start):
@@ -217,12 +217,12 @@ class _Reader:
         message = f"expected </{element.tag}>, found </{closing}>"
         raise _Broken(Diagnostic(RULE, span, message, related, (note,)))
 
-    def comment(self, start: int, behind: int, contents: list[Content]) -> int:
-        """ "<!--" … "-->"; behind: the end of what was read last"""
+    def comment(self, start: int, last_end: int, contents: list[Content]) -> int:
+        """ "<!--" … "-->"; last_end: the end of what was read last"""
         text = self.text
         end = self.closing("-->", start + 4, start, "missing --> for this comment")
-        between = text[behind:start]
-        beside = behind > 0 and "\n" not in between and "\r" not in between
+        between = text[last_end:start]
+        beside = last_end > 0 and "\n" not in between and "\r" not in between
         contents.append(Comment(_line_ends(text[start + 4 : end]), beside, start))
         return end + 3
 

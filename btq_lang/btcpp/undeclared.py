@@ -1,7 +1,7 @@
 """Models of nodes that are used and nowhere declared: Groot opens no tree with a node that it does not know.
 
-One invariant: such a model says what the uses suggest and no more, so it can be told from one that a user wrote; it is
-the same in all files of a mission, and omitted if a file that includes this one declares the node.
+One invariant: such a model says what the uses suggest and no more, so it differs from one that a user wrote; it is the
+same in all files of a mission, and omitted if a file that includes this one declares the node.
 """
 
 from __future__ import annotations

@@ -80,7 +80,7 @@ class Calls:
             (self._called, self._meant, [*self._called]) == (other._called, other._meant, [*other._called])
         )
 
-    __hash__ = None  # type: ignore[assignment]  # nobody looks for one
+    __hash__ = None  # type: ignore[assignment]  # it is never hashed
 
     def called_by(self, name: str) -> tuple[str, ...]:
         """The trees that a tree runs, in the order of their SubTrees; empty for an unknown tree."""

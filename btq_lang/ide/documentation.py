@@ -51,7 +51,7 @@ def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str 
 
 
 def include_edits(workspace: Workspace, path: str, other: str) -> tuple[Edit, ...]:
-    """The edits that bring a proposal into the file's scope.
+    """The edits that add a proposal to the file's scope.
 
     Args:
         other: the file that defines it; empty if it is in scope.

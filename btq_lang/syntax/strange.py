@@ -92,7 +92,7 @@ class StrangeCharacters(Indentation):
         """Handle the brace or bracket of a block, at the end of a line or alone on it; the pair is one mistake.
 
         Returns:
-            Where it ends, or `start` if it is none.
+            Where it ends, or `start` if it is not one.
         """
         behind = blanks_end(self.text, start + 1, self.size)
         ends_line = behind == self.size or self.text[behind] in "\r\n"

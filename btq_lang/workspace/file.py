@@ -1,8 +1,7 @@
 """One file as a value: its text, and cached results about it.
 
 One invariant: a file is a function of its path and texts; one reached by an edit equals a new one, and shares with its
-predecessor all that the edit does not touch.  It knows no other files: it knows the paths of its includes, but not
-their contents.
+predecessor all that the edit does not touch.  It knows the paths of its includes, but not their contents.
 """
 
 from __future__ import annotations

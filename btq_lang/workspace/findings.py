@@ -45,7 +45,7 @@ class Reported:
             self.diagnostics == other.diagnostics and all(map(_is_same, self.items, other.items))
         )
 
-    __hash__ = None  # type: ignore[assignment]  # nobody looks for one
+    __hash__ = None  # type: ignore[assignment]  # it is never hashed
 
     def starts(self, workspace: Workspace) -> list[int]:
         """The starts of the items."""
