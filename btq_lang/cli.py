@@ -119,8 +119,8 @@ def _internal_error(error: Exception) -> int:
         from traceback import print_exception
 
         print_exception(error)
-    said = internal_error(error, f"in `{' '.join(['btq', *sys.argv[1:]])}`")
-    print(f"btq: {said}; BTQ_TRACEBACK=1 shows the traceback", file=sys.stderr)
+    message = internal_error(error, f"in `{' '.join(['btq', *sys.argv[1:]])}`")
+    print(f"btq: {message}; BTQ_TRACEBACK=1 shows the traceback", file=sys.stderr)
     return TROUBLE
 
 

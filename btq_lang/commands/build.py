@@ -15,8 +15,8 @@ from btq_lang.btcpp.outputs import Output, Places, outputs, sources, without_tre
 from btq_lang.btcpp.side_file import is_side_file, side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.commands.building import errors, for_target
-from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem
-from btq_lang.commands.left_over import left_over
+from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
+from btq_lang.commands.stale_outputs import stale_outputs
 from btq_lang.diagnostics.model import Place
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
@@ -60,9 +60,9 @@ def run(options: Namespace) -> int:
     files = Files()
     built = build(options, files)
     if options.watch:
-        from btq_lang.commands.again import run_again
+        from btq_lang.commands.watch_mode import run_on_changes
 
-        run_again(lambda: build(options, files).watched, options.paths, built.watched)
+        run_on_changes(lambda: build(options, files).watched, options.paths, built.watched)
     return built.code
 
 
@@ -90,9 +90,9 @@ def build(options: Namespace, files: Files) -> Outcome:
     )
     for problem in problems:
         print(f"btq: {problem}", file=sys.stderr)
-    if nothing := nothing_below(options.paths, groups):
-        print(f"btq build: {nothing}", file=sys.stderr)
-    if problems or nothing:  # an unreadable file may be part of any other
+    if usage := no_mission_below(options.paths, groups):
+        print(f"btq build: {usage}", file=sys.stderr)
+    if problems or usage:  # an unreadable file may be part of any other
         return Outcome(2, watched)
     if _has_errors(groups, options):
         return Outcome(1, watched)
@@ -105,27 +105,27 @@ def build(options: Namespace, files: Files) -> Outcome:
     built = dict.fromkeys(path for group in groups for path in sources(group.workspace, group.given))
     places = Places(absolute(options.output) if options.output else None, tuple(built))
     made = [output for group in groups for output in _outputs(group, places, options)]
-    told = 0
+    printed = 0
     for output in made:
-        told += _tell(output.done.export.problems, "error", groups)
+        printed += _print_remarks(output.done.export.problems, "error", groups)
     for twice in _same_place(made):
         print(f"btq build: {twice}", file=sys.stderr)
-        told += 1
-    if told:
+        printed += 1
+    if printed:
         print("nothing was written", file=sys.stderr)
         return Outcome(1, watched)
     for output in made:
-        _tell(output.done.export.repairs, "repaired", groups)
-    _tell_clauses([output.done for output in made], groups, options.verbose)
+        _print_remarks(output.done.export.repairs, "repaired", groups)
+    _print_clauses([output.done for output in made], groups, options.verbose)
     if not options.check:
-        _tell_guessed([output.done.export for output in made])
+        _print_guesses([output.done.export for output in made])
     if STDIN in options.paths:
         for output in made:
             if output.path == files.stdin:
                 sys.stdout.write(output.text)
         return Outcome(0, watched)
     targets = [target for output in made for target in _targets(output)]
-    gone = () if options.output else left_over(os.path.dirname(path) for path in built)
+    gone = () if options.output else stale_outputs(os.path.dirname(path) for path in built)
     for path in gone:
         print(f"stale: {shown(path)}", file=sys.stdout if options.check else sys.stderr)
     code = _compare(targets, bool(gone)) if options.check else _write(targets, options)
@@ -170,7 +170,7 @@ def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
     return True
 
 
-def _tell(remarks: tuple[Remark, ...], word: str, groups: tuple[Group, ...]) -> int:
+def _print_remarks(remarks: tuple[Remark, ...], word: str, groups: tuple[Group, ...]) -> int:
     """Print an export's remarks; returns how many."""
     for remark in remarks:
         file = next(group.workspace.files[remark.path] for group in groups if remark.path in group.workspace.files)
@@ -180,7 +180,7 @@ def _tell(remarks: tuple[Remark, ...], word: str, groups: tuple[Group, ...]) -> 
     return len(remarks)
 
 
-def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: bool) -> None:
+def _print_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: bool) -> None:
     """Print how the clauses of requirements are covered, with a line for each one demanded to be enforced that is not,
     or that has a remark.
     """
@@ -196,7 +196,7 @@ def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: b
         way = "not enforced, monitored" if each.asked and each.way == "monitored" else each.way
         why = f": {each.why}" if each.why else ""
         remark = Remark(*_absolute(each.place, groups), f"{each.requirement}, `{each.clause}`{where}{why}")
-        _tell((remark,), way, groups)
+        _print_remarks((remark,), way, groups)
     known = {(each.requirement, each.clause, each.place.path, each.place.span) for each in clauses.values()}
     loose = {
         (requirement.name, claim.text, claim.place.path, claim.place.span): claim.place
@@ -206,7 +206,7 @@ def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: b
     loose = {key: place for key, place in loose.items() if key not in known}  # another file may have its node
     for (requirement, clause, *_), place in loose.items():
         remark = Remark(*_absolute(place, groups), f"{requirement}, `{clause}` applies to no node")
-        _tell((remark,), "not checked", groups)
+        _print_remarks((remark,), "not checked", groups)
     if clauses:
         ways = [each.way for each in clauses.values()]
         counted = [f"{ways.count(way)} {way}" for way in ("enforced", "monitored", "reviewed") if way in ways]
@@ -214,7 +214,7 @@ def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: b
         print(f"clauses of requirements: {', '.join(counted)}", file=sys.stderr)
 
 
-def _tell_guessed(exports: list[Export]) -> None:
+def _print_guesses(exports: list[Export]) -> None:
     """Print which nodes got a guessed category in the models, because the mission does not declare it."""
     guessed = {name: category for each in exports for name, category in each.guessed.items()}
     shown = [f"{name} ({category})" for name, category in sorted(guessed.items())[:_GUESSES_SHOWN]]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.checks import check, check_each
 from btq_lang.checks.includes import is_reported_beside
-from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem, write_stdout
+from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem, write_stdout
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.render import Finding, Report, Trouble, render, with_paths
 from btq_lang.render.colour import wants_colour
@@ -35,9 +35,9 @@ def run(options: CheckOptions) -> int:
     files = Files()
     code, watched = _check(options, files)
     if options.watch:
-        from btq_lang.commands.again import run_again
+        from btq_lang.commands.watch_mode import run_on_changes
 
-        run_again(lambda: _check(options, files)[1], options.paths, watched)
+        run_on_changes(lambda: _check(options, files)[1], options.paths, watched)
     return code
 
 
@@ -72,15 +72,15 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
                 found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
             findings += [Finding(path, text, diagnostic) for diagnostic in found if _is_wanted(diagnostic, options)]
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
-    nothing = nothing_below(options.paths, groups)
-    report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), nothing)
+    empty = no_mission_below(options.paths, groups)
+    report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), empty)
     _print(with_paths(report, shown), options, mended)
-    if nothing and options.output_format not in ("full", "concise"):  # formats for people have it in their summary
-        print(f"btq check: {nothing}", file=sys.stderr)
+    if empty and options.output_format not in ("full", "concise"):  # formats for people have it in their summary
+        print(f"btq check: {empty}", file=sys.stderr)
     watched = tuple(
         path for group in groups for path in (*group.workspace.files, *group.absent, group.project_file) if path
     )
-    if problems or nothing:
+    if problems or empty:
         return 2, watched
     return int(any(finding.diagnostic.effective_severity in _FAILS for finding in findings)), watched
 

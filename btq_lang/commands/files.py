@@ -42,7 +42,7 @@ def usage_problem(paths: Iterable[str]) -> str | None:
     return "empty path; `.` is this folder" if "" in paths else None
 
 
-def nothing_below(paths: Iterable[str], groups: Iterable[Group]) -> str | None:
+def no_mission_below(paths: Iterable[str], groups: Iterable[Group]) -> str | None:
     """The message if folders were requested and none contains a mission."""
     folders = [path.rstrip("/") + "/" for path in paths if os.path.isdir(path)]
     if not folders or any(group.given for group in groups):

@@ -21,7 +21,7 @@ def run(options: Namespace) -> int:
     files = Files()
     groups, problems = files.groups(options.paths, options.stdin_filename)
     trouble = list(problems)
-    only_tell = options.check or options.diff
+    is_dry_run = options.check or options.diff
     changed = count = refused = 0
     for group in groups:
         for path in group.given:
@@ -56,14 +56,14 @@ def run(options: Namespace) -> int:
                         trouble.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
                         changed -= 1
                         refused += 1
-            if from_stdin and not only_tell and path not in group.damaged:
+            if from_stdin and not is_dry_run and path not in group.damaged:
                 write_stdout(done.text)
     for problem in trouble:
         print(f"btq: {problem}", file=sys.stderr)
-    _sum_up(count, changed, refused, only_tell)
+    _sum_up(count, changed, refused, is_dry_run)
     if trouble:
         return 2
-    return int(refused > 0 or (only_tell and changed > 0))
+    return int(refused > 0 or (is_dry_run and changed > 0))
 
 
 def _show_diff(path: str, old: str, new: str, options: Namespace) -> None:
@@ -75,11 +75,11 @@ def _show_diff(path: str, old: str, new: str, options: Namespace) -> None:
         print(paint(line[:1], line) if line[:1] in "+-" else line)
 
 
-def _sum_up(count: int, changed: int, refused: int, only_tell: bool) -> None:
+def _sum_up(count: int, changed: int, refused: int, is_dry_run: bool) -> None:
     def files(number: int) -> str:
         return f"{number} file{'' if number == 1 else 's'}"
 
-    verb = "would be formatted" if only_tell else "formatted"
+    verb = "would be formatted" if is_dry_run else "formatted"
     parts = [f"{files(changed)} {verb}"] if changed else []
     if refused:
         parts.append(f"{files(refused)} not formatted")

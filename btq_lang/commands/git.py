@@ -155,11 +155,11 @@ class Commit:
         return self._known.workspace(self._commit, path, known)
 
 
-def revisions(asked: str, path: str) -> Revisions:
+def revisions(spec: str, path: str) -> Revisions:
     """Resolve `REV`, `REV..REV` and `REV...REV` for a file or folder (gitrevisions(7)).
 
     Args:
-        asked: a single revision is compared with the working tree; `A..B` means these two, `A...B` their merge base and
+        spec: a single revision is compared with the working tree; `A..B` means these two, `A...B` their merge base and
             B.
 
     Raises:
@@ -169,7 +169,7 @@ def revisions(asked: str, path: str) -> Revisions:
     while not os.path.isdir(folder) and os.path.dirname(folder) != folder:  # a revision may contain it
         folder = os.path.dirname(folder)
     root = absolute(_git(folder, "rev-parse", "--show-toplevel").rstrip("\n"))
-    first, dots, second = asked.partition("..." if "..." in asked else "..")
+    first, dots, second = spec.partition("..." if "..." in spec else "..")
     first, second = first or "HEAD", second or "HEAD"
     old = _commit(root, first)
     if not dots:
@@ -195,8 +195,8 @@ def _git(folder: str, *arguments: str) -> str:
 def _git_bytes(folder: str, *arguments: str) -> bytes:
     run = _run(folder, *arguments)
     if run.returncode != 0:
-        said = os.fsdecode(run.stderr).strip().removeprefix("fatal: ")
-        raise GitTrouble(f"git: {said}")
+        message = os.fsdecode(run.stderr).strip().removeprefix("fatal: ")
+        raise GitTrouble(f"git: {message}")
     return run.stdout
 
 

@@ -6,7 +6,7 @@ import sys
 from argparse import Namespace
 
 from btq_lang.checks import check
-from btq_lang.commands.files import Files, nothing_below, usage_problem
+from btq_lang.commands.files import Files, no_mission_below, usage_problem
 from btq_lang.commands.output import form_of, form_problem, write_output
 from btq_lang.diagnostics.rules import UNREADABLE
 from btq_lang.graph import FORMATS, draw
@@ -26,8 +26,8 @@ def run(options: Namespace) -> int:
         problems += (LoadProblem(given[1][1], "expected one file to draw, found more"),)
     for each in problems:
         print(f"btq: {each}", file=sys.stderr)
-    if nothing := nothing_below(options.paths, groups):
-        print(f"btq graph: {nothing}", file=sys.stderr)
+    if empty := no_mission_below(options.paths, groups):
+        print(f"btq graph: {empty}", file=sys.stderr)
     if problems or not given:
         return 2
     ((workspace, path),) = given

@@ -220,9 +220,9 @@ def _sum_up(written: list[_Job], refused: int) -> None:
         return f"{number} file{'' if number == 1 else 's'}"
 
     changes = sum(len(job.done.changes) for job in written)
-    told = f" with {changes} change{'' if changes == 1 else 's'}" if changes else ""
+    with_changes = f" with {changes} change{'' if changes == 1 else 's'}" if changes else ""
     others = sum(len(job.others) for job in written)
-    parts = [f"{files(len(written) + others)} imported{told}"]
+    parts = [f"{files(len(written) + others)} imported{with_changes}"]
     if refused:
         parts.append(f"{files(refused)} not imported")
     print(", ".join(parts), file=sys.stderr)

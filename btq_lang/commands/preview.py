@@ -28,7 +28,7 @@ def run(options: Namespace) -> int:
         return 2
     mission = _Mission(absolute(options.file), shlex.split(options.on_click or ""))
     try:
-        preview = Preview(options.port, mission.drawn, mission.went)
+        preview = Preview(options.port, mission.drawn, mission.reveal)
     except (OSError, OverflowError) as error:
         print(f"btq preview: port {options.port}: {error}", file=sys.stderr)
         return 2
@@ -69,18 +69,18 @@ def _no_file(path: str) -> str | None:
 def _follow(mission: _Mission, preview: Preview, ended: Event) -> None:
     """Follow an editor's messages on standard input, a JSON object a line: the `line` of its cursor, and its `text`."""
     try:
-        for told in sys.stdin.buffer:
+        for line_read in sys.stdin.buffer:
             try:
-                said = json.loads(told)
-                text, line = said.get("text"), said.get("line")
+                message = json.loads(line_read)
+                text, line = message.get("text"), message.get("line")
             except (ValueError, AttributeError):
-                print(f"btq preview: expected a JSON object, found {told!r}", file=sys.stderr)
+                print(f"btq preview: expected a JSON object, found {line_read!r}", file=sys.stderr)
                 continue
             if isinstance(text, str):
                 mission.typed(text)
                 preview.changed()
             if isinstance(line, int):
-                preview.here(line)
+                preview.mark_line(line)
     finally:
         ended.set()
 
@@ -106,7 +106,7 @@ class _Mission:
         lines = {key: self._position(workspace, span)[0] for key, span in found.places.items()}
         return {"title": title, "svg": found.svg, "lines": lines}
 
-    def went(self, key: str) -> dict[str, object]:
+    def reveal(self, key: str) -> dict[str, object]:
         """Print the place of a node, which terminals turn into a link, and open it in the user's editor."""
         workspace = self._read()
         span = None if isinstance(workspace, str) else places(workspace, self.path).get(key)

@@ -6,7 +6,7 @@ import os
 import sys
 from argparse import Namespace
 
-from btq_lang.commands.files import Files, nothing_below, usage_problem
+from btq_lang.commands.files import Files, no_mission_below, usage_problem
 from btq_lang.commands.output import form_of, form_problem, terminal_width, write_output
 from btq_lang.render.colour import wants_colour
 from btq_lang.trace import FORMATS
@@ -21,9 +21,9 @@ def run(options: Namespace) -> int:
     groups, problems = Files().groups(options.paths, options.stdin_filename)
     for each in problems:
         print(f"btq: {each}", file=sys.stderr)
-    if nothing := nothing_below(options.paths, groups):
-        print(f"btq trace: {nothing}", file=sys.stderr)
-    if problems or nothing:
+    if empty := no_mission_below(options.paths, groups):
+        print(f"btq trace: {empty}", file=sys.stderr)
+    if problems or empty:
         return 2
     table = trace_tables([(group.workspace, group.given) for group in groups], options.bundle)
     to_terminal = options.output is None and sys.stdout.isatty()

@@ -38,4 +38,4 @@ def write(
     found = report.missions
     files = {mission.file for mission in found}
     parts = [(each.workspace, [each.path]) for each in missions if each.path in files]
-    return page(trace_tables(parts, said_of=outcomes(found)).overview, found)
+    return page(trace_tables(parts, details_of=outcomes(found)).overview, found)

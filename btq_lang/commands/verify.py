@@ -53,7 +53,7 @@ def run(options: Namespace) -> int:
                 of_files,
                 options.mission,
                 with_timelines=form == "html",
-                told=lambda files, runs: progress.reached(files, f", {runs} run{'' if runs == 1 else 's'} judged"),
+                progress=lambda files, runs: progress.reached(files, f", {runs} run{'' if runs == 1 else 's'} judged"),
             )
         report = found.report
         problems += found.problems
@@ -81,16 +81,16 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
         return (), (), {}
     home = find_project(".")
     project = home.project
-    asked = options.logs or _logs_of(project)
-    if not asked:
+    requested = options.logs or _logs_of(project)
+    if not requested:
         untold = "no log given; name one, or set `logs` in [evidence] of btq.toml"
         problems += map(str, home.problems) if home.problems else [untold]
         return (), (), {}
-    files, unreachable = collect(asked, project, (*SUFFIXES, METADATA))
+    files, unreachable = collect(requested, project, (*SUFFIXES, METADATA))
     logs = whole_bags(files)
     problems += map(str, unreachable)
     if not logs and not unreachable:
-        problems.append(no_logs(asked))
+        problems.append(no_logs(requested))
     special = [path for path in (*logs, *filter(None, [options.signals])) if is_special(path)]
     problems += [f"{shown(path)}: {IS_SPECIAL}" for path in special]
     samples: dict[str, Series] = {}
@@ -113,21 +113,23 @@ def _logs_of(project: Project) -> Sequence[str]:
     return found
 
 
-def _missions(asked: Sequence[str], logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
+def _missions(requested: Sequence[str], logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
     """The missions that logs may belong to: the requested ones, else those of side files beside the logs and of this
     folder's project.
     """
     sides = {side.mission: side for side in side_files_beside(logs)}
     there = [mission for mission in sides if os.path.isfile(mission)]
-    found = [] if asked else [each for side in sides.values() if side.mission not in there for each in _restored(side)]
-    groups, unreadable = Files().groups(asked or [*there, find_project(".").project.root])
+    found = (
+        [] if requested else [each for side in sides.values() if side.mission not in there for each in _restored(side)]
+    )
+    groups, unreadable = Files().groups(requested or [*there, find_project(".").project.root])
     problems += map(str, unreadable)
     for group in groups:
         for path in group.given:
             side = sides.get(path) or side_file_at(side_path(xml_name(path)))
             if path.endswith(".xml") and side is not None and (built := [*_restored(side)]):
                 found += built
-            elif asked or path not in group.workspace.included_files:
+            elif requested or path not in group.workspace.included_files:
                 nodes = side.nodes if side is not None and side.mission == path else None
                 found.append(Candidate(group.workspace, path, _name(path), nodes))
     if not found and not problems:

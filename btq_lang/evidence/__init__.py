@@ -47,7 +47,7 @@ def verify(
     of_files: Mapping[str, Series] | None = None,
     *,
     with_timelines: bool = False,
-    told: Callable[[int, int], None] = lambda files, runs: None,
+    progress: Callable[[int, int], None] = lambda files, runs: None,
 ) -> Report:
     """Judge missions by logs.
 
@@ -57,7 +57,7 @@ def verify(
         shown: gives a path as people read it.
         sources: where further samples come from, with lower priority; topics are read from the bags among the logs.
         of_files: the samples of those sources that are files.
-        told: is given after each run how many logs have been read, and how many runs have been judged.
+        progress: called after each run with how many logs have been read, and how many runs have been judged.
         with_timelines: include the run of the worst violation of each clause.
     """
     from btq_lang.evidence.evaluate import MissionEvaluation
@@ -70,7 +70,7 @@ def verify(
 
     files = 0
     evaluations = {
-        mission.path: MissionEvaluation(mission, with_timelines, lambda number: told(files, number))
+        mission.path: MissionEvaluation(mission, with_timelines, lambda number: progress(files, number))
         for mission in missions
     }
     foreign: dict[tuple[str, str], int] = {}

@@ -117,8 +117,8 @@ class JudgedClause:
         self._has_run = True
         self._waits = self._waits or activation.first != activation.last
         if guard is not None and self._is_own(guard):
-            said = f"stopped by its own guard after {duration(activation.seconds)}"
-            self._add(Judgement(False, activation.end, said), path, activation.end)
+            sentence = f"stopped by its own guard after {duration(activation.seconds)}"
+            self._add(Judgement(False, activation.end, sentence), path, activation.end)
         elif self._judge is not None and self._running:
             self._waiting.append((activation, observed, path))
         elif self._judge is not None:
@@ -283,12 +283,12 @@ class JudgedClause:
         goal = self.requirement.goal
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
         is_once_a_run = isinstance(self._subject, Total) or (is_of_run and len(self._paths) == 1)
-        said = [self.claim.text, *(scope.text for scope in self.requirement.scopes)]
-        said += [self.requirement.odds.text] if self.requirement.odds is not None else []
-        said += [self.requirement.window.text] if self.requirement.window is not None else []
-        said += [f"goal {goal.text}"] if goal is not None else []
+        parts = [self.claim.text, *(scope.text for scope in self.requirement.scopes)]
+        parts += [self.requirement.odds.text] if self.requirement.odds is not None else []
+        parts += [self.requirement.window.text] if self.requirement.window is not None else []
+        parts += [f"goal {goal.text}"] if goal is not None else []
         return ClauseVerdict(
-            text=" ".join(said),
+            text=" ".join(parts),
             path=", ".join(self._paths),
             of=self.claim.text.partition(f" {self.claim.verb} ")[0] if isinstance(self._subject, Span | Total) else "",
             verdict=verdict,

@@ -213,10 +213,10 @@ def _without_number(path: str) -> str:
 
 
 def _unique(pairs: list[tuple[tuple[str, str], int]]) -> dict[tuple[str, str], int]:
-    seen: dict[tuple[str, str], list[int]] = {}
+    numbers_of: dict[tuple[str, str], list[int]] = {}
     for key, number in pairs:
-        seen.setdefault(key, []).append(number)
-    return {key: numbers[0] for key, numbers in seen.items() if len(numbers) == 1}
+        numbers_of.setdefault(key, []).append(number)
+    return {key: numbers[0] for key, numbers in numbers_of.items() if len(numbers) == 1}
 
 
 _EXPLICIT: Final = frozenset(("Action", "Condition", "Control", "Decorator", "SubTree"))

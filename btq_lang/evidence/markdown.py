@@ -42,7 +42,7 @@ def _lines(mission: MissionVerdicts) -> Iterator[str]:
         for requirement, clause in clauses
     ]
     yield from table(("Verdict", "Requirement", "Clause", "Result"), rows)
-    looks = [headline(clause, mission.medians) for _, clause in clauses if clause.verdict == WORST_FIRST[0]]
-    if looks:
+    headlines = [headline(clause, mission.medians) for _, clause in clauses if clause.verdict == WORST_FIRST[0]]
+    if headlines:
         yield from ("", "What to look at:", "")
-        yield from (f"* {escaped(line)}" for line in looks)
+        yield from (f"* {escaped(line)}" for line in headlines)

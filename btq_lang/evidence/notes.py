@@ -67,21 +67,21 @@ def missions_with_errors(report: Report, missions: Sequence[Candidate]) -> Itera
                 yield f"{shown(mission.path)} has errors, so clauses may be missing; run btq check"
 
 
-def missing_verdicts(report: Report, asked: Sequence[str]) -> Iterator[str]:
-    """Explains why there are no verdicts at all; `asked`: the missions on the command line."""
+def missing_verdicts(report: Report, requested: Sequence[str]) -> Iterator[str]:
+    """Explains why there are no verdicts at all; `requested`: the missions on the command line."""
     if not report.missions and not report.problems:
-        differences = dict.fromkeys(each.difference for each in report.foreign if asked and each.difference)
+        differences = dict.fromkeys(each.difference for each in report.foreign if requested and each.difference)
         if differences:
-            yield from (f"no log matches {', '.join(asked)}: {each}" for each in differences)
+            yield from (f"no log matches {', '.join(requested)}: {each}" for each in differences)
         else:
             yield "no log matches a known mission; name the mission with --mission FILE"
     elif report.missions and not any(mission.runs for mission in report.missions):
         yield "no run in any log, so there is nothing to judge"
 
 
-def no_logs(asked: Iterable[str]) -> str:
+def no_logs(requested: Iterable[str]) -> str:
     """The message if no log was found."""
-    return f"no {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} below {', '.join(asked)}"
+    return f"no {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} below {', '.join(requested)}"
 
 
 def foreign_runs(report: Report) -> Iterator[str]:

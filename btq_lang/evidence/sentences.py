@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 def result(clause: ClauseVerdict) -> str:
     """The counts, and how far the worst measure is from its bound."""
-    said = [_counted(clause)]
+    parts = [_counted(clause)]
     if clause.worst is not None and clause.interval is None and clause.verdict != UNKNOWN:
-        said.append(f"worst {clause.worst.text} in run {clause.worst.run}")
+        parts.append(f"worst {clause.worst.text} in run {clause.worst.run}")
     if clause.cut_off and clause.verdict != NEVER:
-        said.append(f"{clause.cut_off} cut off by the end of a log")
-    return ", ".join(said)
+        parts.append(f"{clause.cut_off} cut off by the end of a log")
+    return ", ".join(parts)
 
 
 def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:

@@ -80,9 +80,9 @@ class Signals:
         if not times:
             is_sampled = series is not None and series.times
             return Unknown(f"no sample of `{signal.name}` meanwhile" if is_sampled else _none_of(signal))
-        asked = [*times, *self.changes(signal, times[0], end)] if signal.fresh is not None else times
+        checked = [*times, *self.changes(signal, times[0], end)] if signal.fresh is not None else times
         found: list[float] = []
-        for time in asked:
+        for time in checked:
             value = self.reading(signal, time)
             if isinstance(value, Unknown):
                 return value

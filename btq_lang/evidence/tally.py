@@ -67,7 +67,7 @@ class Tally:
         """
         if judgement.holds is None:
             self._unclear += 1
-            self.why = self.why or judgement.said
+            self.why = self.why or judgement.sentence
             return
         if judgement.holds:
             self._kept += 1
@@ -162,7 +162,7 @@ def _violation(judgement: Judgement, path: str, chain: tuple[Link, ...], run: Ru
     value = measured(measure.si, measure.unit, measure.bound) if measure is not None else ""
     bound = measure.bound_text if measure is not None else ""
     at = (judgement.at - run.begin) / 1e6
-    why = judgement.said.replace("{}", value)
+    why = judgement.sentence.replace("{}", value)
     return Violation(run.number, run.source, path, run.begin, at, value, bound, why, chain)
 
 

@@ -108,22 +108,22 @@ def judged(
     samples: tuple[str, Mapping[str, Series]],
     sources: Sequence[SignalSource],
     of_files: Mapping[str, Series],
-    asked: Sequence[str],
+    requested: Sequence[str],
     *,
     with_timelines: bool = False,
-    told: Callable[[int, int], None] = lambda files, runs: None,
+    progress: Callable[[int, int], None] = lambda files, runs: None,
 ) -> Verification:
     """Judge missions, and add notes on what limits the verdicts.
 
     Args:
         samples: the file that they are from, and the samples by signal or entry.
-        asked: the missions as the command line names them; none: all that are known.
-        sources, of_files, with_timelines, told: as of `verify`.
+        requested: the missions as the command line names them; none: all that are known.
+        sources, of_files, with_timelines, progress: as in `verify`.
     """
     file, series = samples
-    report = verify(logs, missions, series, shown, sources, of_files, with_timelines=with_timelines, told=told)
+    report = verify(logs, missions, series, shown, sources, of_files, with_timelines=with_timelines, progress=progress)
     read_from = [(file, each) for each in series.values()]
     read_from += [(source.file, of_files[source.signal]) for source in sources if source.signal in of_files]
     report = replace(report, remarks=(*ignored_columns(file, series, missions), *other_times(read_from, report)))
-    problems = (*report.problems, *missing_verdicts(report, asked), *missions_with_errors(report, missions))
+    problems = (*report.problems, *missing_verdicts(report, requested), *missions_with_errors(report, missions))
     return Verification(report, problems)

@@ -133,7 +133,7 @@ def clauses_of(node: ResolvedNode) -> tuple[NodeClause, ...]:
     return node.node.clauses
 
 
-def said(applied: Applied) -> tuple[str, ...]:
+def clauses_in_words(applied: Applied) -> tuple[str, ...]:
     """The clauses that hold for a subject, as typed but without the subject; the title of a requirement without
     clauses.
     """
@@ -149,8 +149,8 @@ def said(applied: Applied) -> tuple[str, ...]:
 
 def _predicate(claim: Claim) -> str:
     """`takes at most 30 s` of `BatteryCheck/MoveBase takes at most 30 s`."""
-    _, verb, behind = f" {claim.text} ".partition(f" {claim.verb} ")
-    return (verb + behind).strip() if claim.subject is not None and verb else claim.text
+    _, verb, after = f" {claim.text} ".partition(f" {claim.verb} ")
+    return (verb + after).strip() if claim.subject is not None and verb else claim.text
 
 
 def arguments(applied: Applied) -> str:
@@ -166,7 +166,7 @@ def _notes(found: Requirements) -> dict[int, tuple[Note, ...]]:
             notes.setdefault(id(node), []).append(Note("quality", name, name, text=f"satisfices {name}"))
     for applied in found.applied:
         if applied.node is not None:
-            lines, name = said(applied), applied.requirement.name
+            lines, name = clauses_in_words(applied), applied.requirement.name
             note = Note("requirement", name, name + arguments(applied), lines, "; ".join((name, *lines)))
             notes.setdefault(id(applied.node), []).append(note)
     for trace in found.traces:

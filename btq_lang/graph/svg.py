@@ -116,11 +116,11 @@ def _box(placed: PlacedBox, above: str) -> Iterator[str]:
     box, at = placed.box, placed.at
     x = at.middle[0]
     names = " ".join(dict.fromkeys(note.note.key for note in placed.notes))
-    told = f' data-notes="{escape(names)}"' if names else ""
+    data = f' data-notes="{escape(names)}"' if names else ""
     if box.name:  # a page folds by it
-        told += f' data-name="{escape(box.name)}" data-parent="{escape(above)}" data-hidden="{box.hidden}"'
+        data += f' data-name="{escape(box.name)}" data-parent="{escape(above)}" data-hidden="{box.hidden}"'
     state = f" {box.state}" if box.state else ""
-    yield f'<g class="box {box.outline}{state}" id="{escape(box.key)}"{told}>'
+    yield f'<g class="box {box.outline}{state}" id="{escape(box.key)}"{data}>'
     yield f"<title>{escape(box.text or box.title)}</title>"
     yield from _opened(box.link)
     yield _outline(box.outline, at)

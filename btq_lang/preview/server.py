@@ -59,7 +59,7 @@ class Preview:
             self._now = (self._now[0] + 1, self._now[1])
             self._changed.notify_all()
 
-    def here(self, line: int) -> None:
+    def mark_line(self, line: int) -> None:
         """Make every page mark the node at the line, counted from 1."""
         with self._changed:
             self._now = (self._now[0], line)
@@ -87,7 +87,7 @@ class _Handler(BaseHTTPRequestHandler):
         elif self.path == "/":
             self._answer("text/html; charset=utf-8", page(secrets.token_hex(16)).encode())
         elif self.path == "/events":
-            self._tell()
+            self._send_events()
         else:
             self._refuse(HTTPStatus.NOT_FOUND)
 
@@ -98,11 +98,11 @@ class _Handler(BaseHTTPRequestHandler):
         if not length.isdigit() or int(length) > _LONGEST:
             return self._refuse(HTTPStatus.BAD_REQUEST)
         try:
-            asked = json.loads(self.rfile.read(int(length)))
+            request = json.loads(self.rfile.read(int(length)))
             if self.path == "/picture":
-                answer = self.draw_([str(name) for name in asked["folded"]])
+                answer = self.draw_([str(name) for name in request["folded"]])
             elif self.path == "/go":
-                answer = self.go_(str(asked["key"]))
+                answer = self.go_(str(request["key"]))
             else:
                 return self._refuse(HTTPStatus.NOT_FOUND)
         except (ValueError, KeyError, TypeError):
@@ -125,7 +125,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.end_headers()
         self.wfile.write(body)
 
-    def _tell(self) -> None:
+    def _send_events(self) -> None:
         """Send events until the page is gone; the format:
         https://html.spec.whatwg.org/multipage/server-sent-events.html
         """
@@ -137,9 +137,9 @@ class _Handler(BaseHTTPRequestHandler):
         try:
             while True:
                 now = self.preview.wait((changes, line))
-                said = b"data: changed\n\n" if now[0] != changes else b""
-                said += b"event: here\ndata: %d\n\n" % now[1] if now[1] != line else b""
-                self.wfile.write(said or b": still here\n\n")
+                events = b"data: changed\n\n" if now[0] != changes else b""
+                events += b"event: here\ndata: %d\n\n" % now[1] if now[1] != line else b""
+                self.wfile.write(events or b": still here\n\n")
                 self.wfile.flush()
                 changes, line = now
         except OSError:

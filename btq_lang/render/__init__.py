@@ -83,5 +83,5 @@ def with_paths(report: Report, shown: Callable[[str], str]) -> Report:
         {shown(path): text for path, text in report.texts.items()},
         tuple(map(shown, report.checked)),
         tuple(replace(trouble, path=shown(trouble.path)) for trouble in report.troubles),
-        report.nothing,
+        report.why_empty,
     )

@@ -48,4 +48,4 @@ class Report(Record):
     texts: Mapping[str, str]
     checked: tuple[str, ...] = ()
     troubles: tuple[Trouble, ...] = ()
-    nothing: str | None = None
+    why_empty: str | None = None

@@ -21,7 +21,7 @@ _WORDS = {
 def summary(report: Report) -> str:
     """`Found 3 errors, 1 warning (2 fixable with --fix)`, or that nothing was found."""
     if not report.findings and not report.checked:
-        return f"No files were checked: {report.nothing}" if report.nothing else "No files were checked"
+        return f"No files were checked: {report.why_empty}" if report.why_empty else "No files were checked"
     if not report.findings and report.troubles:
         return "Found nothing, but not every file could be read or written"
     if not report.findings:

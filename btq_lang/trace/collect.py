@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from btq_lang.catalog.qualities import get, qualities
 from btq_lang.diagnostics.model import Place
 from btq_lang.graph.figure import Box, Note
-from btq_lang.graph.missions import arguments, by_tree, concerns, figure, said
+from btq_lang.graph.missions import arguments, by_tree, clauses_in_words, concerns, figure
 from btq_lang.requirements.model import Applied, Mission, Requirement, Span, Target, Total
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
@@ -42,14 +42,14 @@ if TYPE_CHECKING:
     from btq_lang.trace.overview import Carries
     from btq_lang.trace.ways import Ways
 
-    SaidOf: TypeAlias = Callable[[ResolvedNode], tuple[tuple[str, ...], str]]
+    BoxDetails: TypeAlias = Callable[[ResolvedNode], tuple[tuple[str, ...], str]]
 
 
 def collect(
     parts: Sequence[tuple[Workspace, Sequence[str]]],
     ways: Ways = declared_ways,
     shown: Callable[[str], str] = str,
-    said_of: SaidOf | None = None,
+    details_of: BoxDetails | None = None,
 ) -> Overview:
     """The overview of missions.
 
@@ -58,9 +58,9 @@ def collect(
             mission.
         ways: determines how clauses are covered.
         shown: gives a path as people read it.
-        said_of: gives further lines for the box of a node, and its class in the drawing.
+        details_of: gives further lines for the box of a node, and its class in the drawing.
     """
-    collector = _Collector(ways, shown, said_of)
+    collector = _Collector(ways, shown, details_of)
     files: list[str] = []
     for workspace, given in parts:
         included = {path for each in given for path in workspace.closure(each) if path != each}
@@ -73,9 +73,9 @@ def collect(
 class _Collector:
     """The rows so far, by what they represent."""
 
-    def __init__(self, ways: Ways, shown: Callable[[str], str], said_of: SaidOf | None) -> None:
+    def __init__(self, ways: Ways, shown: Callable[[str], str], details_of: BoxDetails | None) -> None:
         self._ways = ways
-        self._said_of = said_of
+        self._details_of = details_of
         self._shown = shown
         self._edition: Edition | None = None
         self._nodes: dict[int, _Node] = {}  # by `id` of the syntax, which all missions share
@@ -209,13 +209,13 @@ class _Collector:
             rows = [self._nodes[id(source.node)] for source in group]
             is_bare = all(row.carries != "own" for row in rows)
             drawn = figure(group, keys, notes, links)
-            if self._said_of is not None:
-                drawn = replace(drawn, boxes=tuple(map(_said_in, drawn.boxes, map(self._said_of, group))))
+            if self._details_of is not None:
+                drawn = replace(drawn, boxes=tuple(map(_with_details, drawn.boxes, map(self._details_of, group))))
             yield TreeRow(group[0].tree or "", rows[0].tree, tuple(row.key for row in rows), is_bare, drawn)
 
 
-def _said_in(box: Box, said: tuple[tuple[str, ...], str]) -> Box:
-    lines, state = said
+def _with_details(box: Box, clauses_in_words: tuple[tuple[str, ...], str]) -> Box:
+    lines, state = clauses_in_words
     return replace(box, lines=(*box.lines, *lines), text="; ".join((box.text, *lines)), state=state)
 
 
@@ -262,7 +262,7 @@ class _Requirement:
             " ".join((each.title or "").split()),
             each.quality,
             quality_key,
-            tuple(_said(each)),
+            tuple(_stated(each)),
             self.at,
             tuple(self.uses),
             tuple(self.loose or ()),
@@ -370,14 +370,14 @@ def _note(row: _Requirement, applied: Applied, use: Use) -> Note:
     name = row.requirement.name
     found = {clause.way for clause in use.clauses}
     state = next((way for way in ("reviewed", "monitored", "enforced") if way in found), "")
-    lines = said(applied)
+    lines = clauses_in_words(applied)
     if isinstance(applied.subject, Span | Total):
         lines = (applied.requirement.claims[0].text, *lines[1:])
     text = "; ".join((f"{name}{use.arguments}", *lines, *([state] if state else [])))
     return Note("requirement", row.key, name + use.arguments, lines, text, state, f"#{row.key}")
 
 
-def _said(requirement: Requirement) -> Iterator[str]:
+def _stated(requirement: Requirement) -> Iterator[str]:
     yield from (claim.text for claim in requirement.claims)
     yield from (scope.text for scope in requirement.scopes)
     if requirement.odds is not None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from btq_lang.render.gfm import code, escaped, table
 from btq_lang.trace.overview import Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, shown_quality, summary, told
+from btq_lang.trace.wording import GAPS, remarks, shown_quality, summary
 
 
 def markdown(overview: Overview) -> str:
@@ -44,15 +44,15 @@ def _lines(overview: Overview) -> Iterator[str]:
 
 
 def _requirement(each: RequirementRow) -> tuple[str, ...]:
-    said = [f"**{escaped(each.name)}**", *([escaped(each.title)] if each.title else [])]
-    said += [code(clause) for clause in each.clauses]
+    cell = [f"**{escaped(each.name)}**", *([escaped(each.title)] if each.title else [])]
+    cell += [code(clause) for clause in each.clauses]
     subjects = []
     for use in each.uses:
-        how = told(each, use)
+        how = remarks(each, use)
         subjects.append(_node(use.subject + use.arguments, use.at) + (f", {how}" if how else ""))
     how = "<br>".join((each.way, *each.whys))
     return (
-        "<br>".join(said),
+        "<br>".join(cell),
         escaped(each.quality or ""),
         "<br>".join(subjects) or "nothing",
         how,

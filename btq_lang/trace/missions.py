@@ -19,7 +19,7 @@ from btq_lang.workspace.loader import shown
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.trace.collect import SaidOf
+    from btq_lang.trace.collect import BoxDetails
 
 
 class TraceTable(Record):
@@ -67,14 +67,14 @@ def trace_table(workspace: Workspace, *paths: str, bundle: bool = False) -> Trac
 
 
 def trace_tables(
-    parts: Sequence[tuple[Workspace, Sequence[str]]], bundled: bool = False, said_of: SaidOf | None = None
+    parts: Sequence[tuple[Workspace, Sequence[str]]], bundled: bool = False, details_of: BoxDetails | None = None
 ) -> TraceTable:
     """The table of missions of several workspaces.
 
     Args:
         parts: workspaces, each with the requested paths in it.
         bundled: they are built with all their includes.
-        said_of: as in `collect`.
+        details_of: as in `collect`.
     """
     errors = {path: number for workspace, given in parts for path, number in _errors(workspace, given)}
     broken = frozenset(path for path, number in errors.items() if number)
@@ -85,7 +85,7 @@ def trace_tables(
         is_built = is_mission(workspace, path)
         return built_ways(workspace, path, found, bundled) if is_built else declared_ways(workspace, path, found)
 
-    return TraceTable(collect(parts, ways, shown, said_of), sum(errors.values()))
+    return TraceTable(collect(parts, ways, shown, details_of), sum(errors.values()))
 
 
 def built_ways(
@@ -98,8 +98,8 @@ def built_ways(
         return declared
     # A requirement without measurable clauses has nothing to cover.
     return [
-        tuple(Clause(each.clause, each.way, each.why, each.asked) for each in clauses) or said
-        for clauses, said in zip(enforced, declared, strict=True)
+        tuple(Clause(each.clause, each.way, each.why, each.asked) for each in clauses) or otherwise
+        for clauses, otherwise in zip(enforced, declared, strict=True)
     ]
 
 

@@ -36,13 +36,13 @@ class Clause(Record):
 
     Attributes:
         why: why it is not covered better; empty if there is nothing to explain.
-        asked: the mission demands that the engine enforces it.
+        is_demanded: the mission demands that the engine enforces it.
     """
 
     text: str
     way: Way
     why: str = ""
-    asked: bool = False
+    is_demanded: bool = False
 
 
 class Use(Record):
@@ -212,7 +212,9 @@ class Overview(Record):
             requirement
             for requirement in self.requirements
             if (requirement.is_hard and requirement.loose)
-            or any(clause.asked and clause.way == "monitored" for use in requirement.uses for clause in use.clauses)
+            or any(
+                clause.is_demanded and clause.way == "monitored" for use in requirement.uses for clause in use.clauses
+            )
         )
 
     @property

@@ -17,7 +17,7 @@ from btq_lang.graph.svg import STYLE, colours, part
 from btq_lang.trace.overview import At, NodeRow, Overview, RequirementRow, TreeRow
 from btq_lang.trace.page_parts import PAGE_STYLE, SCRIPT
 from btq_lang.trace.verdicts import VERDICT_STYLE, verdicts
-from btq_lang.trace.wording import GAPS, counted, shown_quality, summary, told
+from btq_lang.trace.wording import GAPS, counted, remarks, shown_quality, summary
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import MissionVerdicts
@@ -132,7 +132,7 @@ def _subjects(each: RequirementRow) -> str:
         name = escape(use.subject)
         shown = f'<a href="#{use.nodes[0]}">{name}</a>' if use.nodes else name
         given = f' <code class="given">{escape(use.arguments)}</code>' if use.arguments else ""
-        how = f" <small>{escape(said)}</small>" if (said := told(each, use)) else ""
+        how = f" <small>{escape(text)}</small>" if (text := remarks(each, use)) else ""
         lines.append(f"<li>{shown}{given}{how} {_at(use.at)}</li>")
     return f"<ul>{''.join(lines)}</ul>"
 
@@ -146,11 +146,11 @@ def _ways(each: RequirementRow) -> str:
     lines = []
     for way, why in found:
         code = _CODE.sub(r"<code>\1</code>", escape(why))
-        said = f" <small>{code}</small>" if why else ""
-        lines.append(f'<li><span class="way {way}">{way}</span>{said}</li>')
+        text = f" <small>{code}</small>" if why else ""
+        lines.append(f'<li><span class="way {way}">{way}</span>{text}</li>')
     for clause in each.loose:
-        said = f"<small><code>{escape(clause)}</code> applies to no node</small>"
-        lines.append(f'<li><span class="way none">not attached</span> {said}</li>')
+        text = f"<small><code>{escape(clause)}</code> applies to no node</small>"
+        lines.append(f'<li><span class="way none">not attached</span> {text}</li>')
     return f"<ul>{''.join(lines)}</ul>"
 
 

@@ -13,7 +13,7 @@ from btq_lang.render.cells import cut, printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.render.columns import broken, cells_of, narrowed
 from btq_lang.trace.overview import At, Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, shown_quality, summary, told
+from btq_lang.trace.wording import GAPS, remarks, shown_quality, summary
 
 
 def table(overview: Overview, colour: bool = False, width: int = 120) -> str:
@@ -89,12 +89,12 @@ def _at(at: At, folder: str) -> str:
 def _requirement(each: RequirementRow, folder: str) -> tuple[Sequence[str], ...]:
     subjects = []
     for use in each.uses:
-        how = told(each, use)
+        how = remarks(each, use)
         subjects.append(f"{use.subject}{use.arguments}, {_at(use.at, folder)}" + (f", {how}" if how else ""))
-    said = [f"{each.name}, {_at(each.at, folder)}", *([each.title] if each.title else []), *each.clauses]
-    said += [f"for {each.quality}"] if each.quality else []
-    said[1:] = [f"  {line}" for line in said[1:]]
-    return said, subjects or ("nothing",), (*each.way.split(", "), *each.whys)
+    lines = [f"{each.name}, {_at(each.at, folder)}", *([each.title] if each.title else []), *each.clauses]
+    lines += [f"for {each.quality}"] if each.quality else []
+    lines[1:] = [f"  {line}" for line in lines[1:]]
+    return lines, subjects or ("nothing",), (*each.way.split(", "), *each.whys)
 
 
 def _table(

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
         RequirementVerdict,
         Timeline,
     )
-    from btq_lang.trace.collect import SaidOf
+    from btq_lang.trace.collect import BoxDetails
 
 
 def verdicts(missions: Sequence[MissionVerdicts], keys: Mapping[str, str]) -> Iterator[str]:
@@ -38,7 +38,7 @@ def verdicts(missions: Sequence[MissionVerdicts], keys: Mapping[str, str]) -> It
     yield "</section>"
 
 
-def outcomes(missions: Sequence[MissionVerdicts]) -> SaidOf:
+def outcomes(missions: Sequence[MissionVerdicts]) -> BoxDetails:
     """Further lines for the boxes of nodes about their instances in the logs, and the classes of the boxes."""
     found: dict[int, list[NodeSummary]] = {}
     for mission in missions:
@@ -157,8 +157,8 @@ def _timeline(timeline: Timeline) -> Iterator[str]:
         yield f'<tr><th scope="row" style="padding-left: {inset:g}rem">{escape(path)}</th><td>'
         for bar in bars:
             at = f"left: {bar.begin / length:.3%}; width: {(bar.end - bar.begin) / length:.3%}"
-            said = f"{_CAME_TO[bar.outcome]}, {duration(bar.end - bar.begin)} from {duration(bar.begin)} on"
-            yield f'<span class="bar {bar.outcome}" style="{at}" title="{said}"></span>'
+            title = f"{_CAME_TO[bar.outcome]}, {duration(bar.end - bar.begin)} from {duration(bar.begin)} on"
+            yield f'<span class="bar {bar.outcome}" style="{at}" title="{title}"></span>'
         yield "</td></tr>"
     yield '</tbody><tfoot><tr><td></td><td class="ends">'
     yield f"<span>0</span><span>{duration(length)}</span></td></tr></tfoot></table></div></figure>"

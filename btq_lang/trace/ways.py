@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.graph.missions import said
+from btq_lang.graph.missions import clauses_in_words
 from btq_lang.requirements.model import Applied, Requirement
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.trace.overview import Clause
@@ -38,13 +38,13 @@ def is_hard(requirement: Requirement) -> bool:
 def _clauses(applied: Applied, because: str) -> tuple[Clause, ...]:
     requirement = applied.requirement
     if not requirement.claims:
-        return tuple(Clause(text, "reviewed", "it is not measurable") for text in said(applied)[:1])
+        return tuple(Clause(text, "reviewed", "it is not measurable") for text in clauses_in_words(applied)[:1])
     if requirement.method in _BY_PEOPLE:
         why = f"verified by {requirement.method}"
         return tuple(Clause(claim.text, "reviewed", why) for claim in requirement.claims)
-    asked = is_hard(requirement)
-    why = because or f"nothing enforces `on violation {requirement.action}`" if asked else ""
-    return tuple(Clause(claim.text, "monitored", why, asked) for claim in requirement.claims)
+    is_demanded = is_hard(requirement)
+    why = because or f"nothing enforces `on violation {requirement.action}`" if is_demanded else ""
+    return tuple(Clause(claim.text, "monitored", why, is_demanded) for claim in requirement.claims)
 
 
 _BY_PEOPLE: Final = ("review", "analysis", "test")

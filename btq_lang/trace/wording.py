@@ -12,15 +12,15 @@ def summary(overview: Overview) -> str:
     ways = {way: sum(getattr(total, way) for total in overview.totals) for way in ("enforced", "monitored", "reviewed")}
     ways["without a node"] = len(overview.loose)
     held = ", ".join(f"{number} {way}" for way, number in ways.items() if number)
-    said = f"{counted(len(overview.requirements), 'requirement')}"
-    said += f" ({counted(sum(ways.values()), 'clause')}: {held})" if held else ""
+    sentence = f"{counted(len(overview.requirements), 'requirement')}"
+    sentence += f" ({counted(sum(ways.values()), 'clause')}: {held})" if held else ""
     if hard := len(overview.unenforced):
-        said += f", {hard} of them hard (on violation fail or halt) and not enforced everywhere"
-    said += f", {counted(len(overview.qualities), 'quality', 'qualities')}"
+        sentence += f", {hard} of them hard (on violation fail or halt) and not enforced everywhere"
+    sentence += f", {counted(len(overview.qualities), 'quality', 'qualities')}"
     skills = overview.coverage()
     if not sum(skills.values()):
-        return f"{said}."
-    of = f"{said}; of {counted(sum(skills.values()), 'custom leaf node')}, {skills['own']}"
+        return f"{sentence}."
+    of = f"{sentence}; of {counted(sum(skills.values()), 'custom leaf node')}, {skills['own']}"
     of += " carries" if skills["own"] == 1 else " carry"
     return f"{of} a quality or a requirement, {skills['above']} only through a node above, {skills['none']} not at all."
 
@@ -36,7 +36,7 @@ def shown_quality(quality: QualityRow) -> str:
     return quality.name if known is None or known.endswith(quality.name) else f"{quality.name} ({known})"
 
 
-def told(requirement: RequirementRow, use: Use) -> str:
+def remarks(requirement: RequirementRow, use: Use) -> str:
     """The remarks on a subject: how its requirement is attached, unless by `satisfies`, and how it is covered, unless
     that is the same for all.
     """

@@ -62,7 +62,7 @@ class Bag:
                     break
                 except Exception as error:  # `rosbags` does not wrap what its parts raise
                     self.remarks.append(
-                        f"the bag is damaged, and what comes after the damage is left out: {_said(error)}"
+                        f"the bag is damaged, and what comes after the damage is left out: {_message(error)}"
                     )
                     break
                 try:
@@ -117,8 +117,8 @@ def _folder(path: str, remarks: list[str]) -> list[Any]:
     except Exception as error:  # whatever the metadata's fault is
         files = sorted(each for each in os.listdir(path) if each.endswith((".mcap", ".db3")))
         if not files:
-            raise NotALog(f"the bag cannot be read: {_said(error)}") from error
-        remarks.append(f"its files are read without {METADATA}: {_said(error)}")
+            raise NotALog(f"the bag cannot be read: {_message(error)}") from error
+        remarks.append(f"its files are read without {METADATA}: {_message(error)}")
         return [_file(os.path.join(path, each), remarks) for each in files]
     return [storage]
 
@@ -155,7 +155,7 @@ def _file(path: str, remarks: list[str]) -> Any:
     except (OSError, NotALog):
         raise
     except Exception as error:  # `rosbags` does not wrap what its parts raise
-        raise NotALog(f"the bag cannot be read: {_said(error)}") from error
+        raise NotALog(f"the bag cannot be read: {_message(error)}") from error
     return storage
 
 
@@ -173,7 +173,7 @@ def files_in(folder: str) -> tuple[str, ...]:
     return metadata, *(os.path.join(folder, name) for name in names if name in text)
 
 
-def _said(error: Exception) -> str:
+def _message(error: Exception) -> str:
     return " ".join(str(error).split()) or type(error).__name__
 
 
@@ -196,7 +196,7 @@ def _decoder(connection: Connection) -> Callable[[bytes], Any]:
             return _either(*(_decoder_of(name, "MSG", text) for text in texts))
         return _decoder_of(name, definition.format.name, definition.data)
     except Exception as error:  # a definition may contain anything
-        raise NotALog(f"the bag has no usable definition of {name}: {_said(error)}") from error
+        raise NotALog(f"the bag has no usable definition of {name}: {_message(error)}") from error
 
 
 @lru_cache(64)

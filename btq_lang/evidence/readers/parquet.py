@@ -32,18 +32,18 @@ def read(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
     try:
         columns = database.execute("DESCRIBE SELECT * FROM read_parquet(?)", [path]).fetchall()
     except duckdb.Error as error:
-        raise NotParquet(_said(error)) from error
+        raise NotParquet(_message(error)) from error
     names = [str(name) for name, *_ in columns]
-    asked = ", ".join(_asked(str(name), str(kind)) for name, kind, *_ in columns)
+    expressions = ", ".join(_expression(str(name), str(kind)) for name, kind, *_ in columns)
 
     def rows() -> Iterator[tuple[Any, ...]]:
         try:
-            found = database.execute(f"SELECT {asked} FROM read_parquet(?)", [path])
+            found = database.execute(f"SELECT {expressions} FROM read_parquet(?)", [path])
             while block := found.fetchmany(_ROWS_AT_ONCE):
                 for row in block:
                     yield tuple(float(value) if isinstance(value, Decimal) else value for value in row)
         except duckdb.Error as error:
-            raise NotParquet(_said(error)) from error
+            raise NotParquet(_message(error)) from error
         finally:
             database.close()
 
@@ -58,12 +58,12 @@ def _engine() -> Any:
     return duckdb.connect(config={"threads": 1})
 
 
-def _asked(name: str, kind: str) -> str:
+def _expression(name: str, kind: str) -> str:
     quoted = '"' + name.replace('"', '""') + '"'
     return f"epoch_us({quoted}) / 1e6" if kind.startswith(("TIMESTAMP", "DATE")) else quoted
 
 
-def _said(error: Exception) -> str:
+def _message(error: Exception) -> str:
     return " ".join(str(error).split())
 
 

@@ -135,7 +135,7 @@ class _Field:
         for step in self._path:
             if isinstance(step, int):
                 if not hasattr(value, "__len__"):
-                    raise NotALog(self._said(f"`{self.source.field}` needs a list"))
+                    raise NotALog(self._about(f"`{self.source.field}` needs a list"))
                 if step >= len(value):
                     return
                 value = value[step]
@@ -143,7 +143,7 @@ class _Field:
                 value = self._attribute(value, step)
         value = value.item() if hasattr(value, "item") and getattr(value, "ndim", 0) == 0 else value
         if not isinstance(value, bool | int | float | str):
-            raise NotALog(self._said(f"`{self.source.field}` is not a number, a bool or a text"))
+            raise NotALog(self._about(f"`{self.source.field}` is not a number, a bool or a text"))
         if not is_sample(value):
             return
         self._received.append(received // 1000)
@@ -170,14 +170,14 @@ class _Field:
         placed = None if len(received) > 1 and received.min() == received.max() else clock.of_reception(received)
         if 0 in self._stamped:  # there is no header
             if placed is None:
-                raise NotALog(self._said("has no stamps on the clock of the tree's log, and no times of reception"))
+                raise NotALog(self._about("has no stamps on the clock of the tree's log, and no times of reception"))
             if not clock.is_of_the_bag:
-                remarks.append(self._said(f"the bag is {_OTHER_CLOCK}"))
+                remarks.append(self._about(f"the bag is {_OTHER_CLOCK}"))
             return placed
         if placed is None:
             if not clock.overlaps(stamped):
                 raise NotALog(
-                    self._said(
+                    self._about(
                         "its stamps are on another clock than the tree's log, and there are no times of"
                         " reception to join them by"
                     )
@@ -187,17 +187,17 @@ class _Field:
         drift = abs((placed[-1] - placed[0]) - lasted)
         if float(median(abs(placed - stamped))) < _FAR_APART and drift <= max(_DRIFT, abs(lasted) * _DRIFT_RATE):
             return stamped
-        remarks.append(self._said(f"its stamps are {_OTHER_CLOCK}"))
+        remarks.append(self._about(f"its stamps are {_OTHER_CLOCK}"))
         return placed
 
     def _attribute(self, value: Any, name: str) -> Any:
         fields = [each for each in getattr(value, "__dataclass_fields__", ()) if each != "__msgtype__"]
         if name not in fields:
             names = did_you_mean(near(name, fields, 1)) or (f"; it has {', '.join(fields)}" if fields else "")
-            raise NotALog(self._said(f"no field `{name}` for `{self.source.signal}`{names}"))
+            raise NotALog(self._about(f"no field `{name}` for `{self.source.signal}`{names}"))
         return getattr(value, name)
 
-    def _said(self, what: str) -> str:
+    def _about(self, what: str) -> str:
         return f"{self._topic}: {what}"
 
 

@@ -50,14 +50,14 @@ class Judgement(Record):
     Attributes:
         holds: None: unknown.
         at: when that was decided.
-        said: a sentence in which `{}` is the measure; if `holds` is None, the reason.
+        sentence: a sentence in which `{}` is the measure; if `holds` is None, the reason.
         since: for a clause judged over a run, when the judged time began.
         starts: for such a clause, the activations that it counts or adds up.
     """
 
     holds: bool | None
     at: int
-    said: str
+    sentence: str
     measure: Measure | None = None
     since: int | None = None
     starts: Sequence[Activation] = ()

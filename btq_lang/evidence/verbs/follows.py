@@ -34,5 +34,5 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
         elif unclear:
             yield Judgement(None, start.begin, unclear)
         else:
-            said = f"followed `{name}`" if is_sure else f"`{name}` did not happen {since}"
-            yield Judgement(is_sure, start.begin, VERBS["follows"].said.replace("{}", said))
+            sentence = f"followed `{name}`" if is_sure else f"`{name}` did not happen {since}"
+            yield Judgement(is_sure, start.begin, VERBS["follows"].said.replace("{}", sentence))

@@ -9,7 +9,7 @@ from btq_lang.evidence.conditions import Reading
 from btq_lang.evidence.observed import parts_in
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
-from btq_lang.evidence.verbs.leaves import judged, seen_at
+from btq_lang.evidence.verbs.leaves import judged, result_at
 from btq_lang.requirements.model import Aggregate
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement
     return judged_all_along(claim.condition, activation, observed, VERBS["keeps"].said)
 
 
-def judged_all_along(condition: Condition, activation: Activation, observed: Observed, said: str) -> Judgement:
+def judged_all_along(condition: Condition, activation: Activation, observed: Observed, sentence: str) -> Judgement:
     """Judge a condition at every moment of an activation: the first violation decides, else a moment at which it is
     unknown, else the moment closest to a violation.
     """
@@ -32,18 +32,18 @@ def judged_all_along(condition: Condition, activation: Activation, observed: Obs
     closest: tuple[Reading | bool, Moment] | None = None
     most = float("-inf")
     for moment in observed.moments(condition):
-        seen = seen_at(condition, moment, observed)
-        if isinstance(seen, Unknown):
-            unknown = unknown or (seen, moment)
-        elif seen is False or (isinstance(seen, Reading) and not seen.holds):
+        found = result_at(condition, moment, observed)
+        if isinstance(found, Unknown):
+            unknown = unknown or (found, moment)
+        elif found is False or (isinstance(found, Reading) and not found.holds):
             if activation.timing != "exact" and moment != observed.begin:
                 return Judgement(None, moment[0], "the log does not say whether it was still running")
             is_of_all = any(isinstance(each, Aggregate) for each in parts_in(condition))  # known only at the end
-            return judged(seen, activation.end if is_of_all else moment[0], said)
+            return judged(found, activation.end if is_of_all else moment[0], sentence)
         else:
-            excess = seen.excess if isinstance(seen, Reading) else most
+            excess = found.excess if isinstance(found, Reading) else most
             if closest is None or excess > most:
-                closest, most = (seen, moment), excess
+                closest, most = (found, moment), excess
     result = unknown or closest
     assert result is not None, "the start is one of the moments"
-    return judged(result[0], result[1][0], said)
+    return judged(result[0], result[1][0], sentence)

@@ -23,30 +23,30 @@ def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement
     return judged_at(claim.condition, activation.ended, observed, VERBS["leaves"].said)
 
 
-def judged_at(condition: Condition, moment: Moment, observed: Observed, said: str) -> Judgement:
+def judged_at(condition: Condition, moment: Moment, observed: Observed, sentence: str) -> Judgement:
     """Judge a condition at a moment.
 
     Args:
-        said: the sentence, in which `{}` is the measure.
+        sentence: the sentence, in which `{}` is the measure.
     """
-    return judged(seen_at(condition, moment, observed), moment[0], said)
+    return judged(result_at(condition, moment, observed), moment[0], sentence)
 
 
-def seen_at(condition: Condition, moment: Moment, observed: Observed) -> Reading | bool | Unknown:
+def result_at(condition: Condition, moment: Moment, observed: Observed) -> Reading | bool | Unknown:
     """Whether a condition holds at a moment, as a reading if it compares a signal with a bound."""
     reading = reading_of(condition, observed, moment)
     return reading if reading is not None else truth(condition, observed, moment)
 
 
-def judged(seen: Reading | bool | Unknown, time: int, said: str) -> Judgement:
+def judged(result: Reading | bool | Unknown, time: int, sentence: str) -> Judgement:
     """The judgement of a condition evaluated at a time.
 
     Args:
-        said: as in `judged_at`.
+        sentence: as in `judged_at`.
     """
-    if isinstance(seen, Reading):
-        measure = Measure(seen.si, seen.unit, seen.bound.si, seen.bound.text, seen.excess)
-        return Judgement(seen.holds, time, said.replace("{}", f"`{seen.name}` was {{}}"), measure)
-    if isinstance(seen, Unknown):
-        return Judgement(None, time, seen.why)
-    return Judgement(seen, time, said.replace("{}", f"the condition {'holds' if seen else 'does not hold'}"))
+    if isinstance(result, Reading):
+        measure = Measure(result.si, result.unit, result.bound.si, result.bound.text, result.excess)
+        return Judgement(result.holds, time, sentence.replace("{}", f"`{result.name}` was {{}}"), measure)
+    if isinstance(result, Unknown):
+        return Judgement(None, time, result.why)
+    return Judgement(result, time, sentence.replace("{}", f"the condition {'holds' if result else 'does not hold'}"))

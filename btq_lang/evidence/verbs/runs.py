@@ -50,8 +50,10 @@ def _between(
             yield Judgement(None, until, found.why)
             continue
         holds = found.measure.excess <= 0
-        said = "had not run again after {}" if is_last else VERBS["runs"].said.replace("{}", "{} after its last start")
-        yield None if is_last and is_open and holds else Judgement(holds, until, said, found.measure, start.begin)
+        sentence = (
+            "had not run again after {}" if is_last else VERBS["runs"].said.replace("{}", "{} after its last start")
+        )
+        yield None if is_last and is_open and holds else Judgement(holds, until, sentence, found.measure, start.begin)
 
 
 def _in_windows(
@@ -78,10 +80,10 @@ def _in_windows(
         if isinstance(found, Unknown):
             yield Judgement(None, stretch.begin[0], found.why)
             return
-        said = VERBS["runs"].said.replace("{}", f"{counted(number(window), 'time')} in {claim.per.text}")
+        sentence = VERBS["runs"].said.replace("{}", f"{counted(number(window), 'time')} in {claim.per.text}")
         measure = replace(found.measure, unit=None)
         inside = starts[bisect_left(times, window) : bisect_left(times, window + length)]
-        judgements.append(Judgement(measure.excess <= 0, window + length, said, measure, window, inside))
+        judgements.append(Judgement(measure.excess <= 0, window + length, sentence, measure, window, inside))
     worst = max(judgements, key=lambda each: each.measure.excess if each.measure is not None else 0.0)
     if not worst.holds:
         yield worst

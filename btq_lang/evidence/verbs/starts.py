@@ -28,13 +28,13 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
 
 
 def judged(
-    claim: Claim, run: OverRun, event: Happening, answer: Happening | None, said: str, never: str
+    claim: Claim, run: OverRun, event: Happening, answer: Happening | None, sentence: str, never: str
 ) -> Iterator[Judgement | None]:
     """The judgement of an event and its answer, if they count; None: the log ends before the deadline.
 
     Args:
         answer: None: there is none in the run.
-        said, never: the sentence for an answer, and for its absence.
+        sentence, never: those for an answer, and for its absence.
     """
     assert claim.limit is not None, "an answer has a time"
     until = answer.until if answer is not None else run.root.ended
@@ -57,7 +57,7 @@ def judged(
     elif answer is not None and answer.why and is_late:
         yield Judgement(None, time, answer.why)
     elif answer is not None:
-        yield Judgement(not is_late, until[0], said, found.measure, event.at[0])
+        yield Judgement(not is_late, until[0], sentence, found.measure, event.at[0])
     elif is_late:
         yield Judgement(False, time, never, found.measure, event.at[0])
     else:

@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
     """Judge whether an activation succeeds in time; if it is halted or cut off before, it does not count."""
-    said = VERBS["succeeds"].said
+    sentence = VERBS["succeeds"].said
     if claim.limit is None:
         if activation.outcome in ("S", "F"):
             holds = activation.outcome == "S"
-            return Judgement(holds, activation.end, said.replace("{}", "succeeded" if holds else "failed"))
+            return Judgement(holds, activation.end, sentence.replace("{}", "succeeded" if holds else "failed"))
         return None
     if activation.outcome == "F":
-        return Judgement(False, activation.end, said.replace("{}", "failed"))
+        return Judgement(False, activation.end, sentence.replace("{}", "failed"))
     found = duration(claim.limit, activation, observed)
     if isinstance(found, Unknown):
         return Judgement(None, activation.end, found.why)
@@ -33,7 +33,7 @@ def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement
         if activation.timing == "latest":
             return Judgement(None, activation.end, UNKNOWN_END)
         how = "succeeded after {}" if activation.outcome == "S" else "had not succeeded after {}"
-        return Judgement(False, activation.end, said.replace("{}", how), found.measure)
+        return Judgement(False, activation.end, sentence.replace("{}", how), found.measure)
     if activation.outcome == "S":
-        return Judgement(True, activation.end, said.replace("{}", "succeeded after {}"), found.measure)
+        return Judgement(True, activation.end, sentence.replace("{}", "succeeded after {}"), found.measure)
     return None

@@ -38,14 +38,14 @@ def is_left_out(limit: Limit, activation: Activation) -> bool:
     return limit.relation in (">=", ">") and activation.outcome not in ("S", "F")
 
 
-def judged(found: Compared, activation: Activation, said: str) -> Judgement | None:
+def judged(found: Compared, activation: Activation, sentence: str) -> Judgement | None:
     """The judgement of a measure that grows during an activation: if it was halted, only a violation by then counts."""
     holds = found.kept(activation.outcome in ("S", "F"))
     if holds is None:
         return None
     if not holds and activation.timing == "latest":
         return Judgement(None, activation.end, UNKNOWN_END)
-    return Judgement(holds, activation.end, said, found.measure)
+    return Judgement(holds, activation.end, sentence, found.measure)
 
 
 def duration(limit: Limit, activation: Activation, observed: Observed) -> Compared | Unknown:

@@ -40,7 +40,7 @@ def _judged(claim: Claim, run: OverRun, starts: Sequence[Activation]) -> Judgeme
     if isinstance(found, Unknown):
         return Judgement(None, run.root.end, found.why)
     holds = found.kept(not run.is_cut_off)
-    said = VERBS["takes"].said.replace("{}", "{} together")
+    sentence = VERBS["takes"].said.replace("{}", "{} together")
     if holds is None:
         return None
-    return Judgement(holds, run.root.end, said, found.measure, run.root.begin, starts)
+    return Judgement(holds, run.root.end, sentence, found.measure, run.root.begin, starts)

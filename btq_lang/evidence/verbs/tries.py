@@ -55,5 +55,5 @@ def _judged(claim: Claim, run: OverRun, period: Activation, starts: Sequence[Act
     if holds is False and found.is_upper:
         bound = found.measure.bound
         at = starts[max(floor(bound) if claim.limit.relation != "<" else ceil(bound) - 1, 0)].begin
-    said = VERBS["tries"].said.replace("{}", counted(number, "time"))
-    return Judgement(holds is not False, at, said, replace(found.measure, unit=None), period.begin, starts)
+    sentence = VERBS["tries"].said.replace("{}", counted(number, "time"))
+    return Judgement(holds is not False, at, sentence, replace(found.measure, unit=None), period.begin, starts)

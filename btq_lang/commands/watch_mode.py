@@ -10,7 +10,7 @@ from btq_lang.workspace.loader import absolute, collect, find_project, shown, st
 from btq_lang.workspace.watcher import watch
 
 
-def run_again(run: Callable[[], tuple[str, ...]], paths: Sequence[str], watched: tuple[str, ...]) -> None:
+def run_on_changes(run: Callable[[], tuple[str, ...]], paths: Sequence[str], watched: tuple[str, ...]) -> None:
     """Run on every change, until Ctrl+C.
 
     Args:

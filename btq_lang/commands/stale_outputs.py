@@ -12,7 +12,7 @@ from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import read
 
 
-def left_over(folders: Iterable[str]) -> list[str]:
+def stale_outputs(folders: Iterable[str]) -> list[str]:
     """The files in some folders that a build made and whose mission is no longer beside them.
 
     Subfolders are not searched, nor are targets of `-o`, which have no missions beside them.
