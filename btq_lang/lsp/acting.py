@@ -43,14 +43,14 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_ON_TYPE_FORMATTING, types.DocumentOnTypeFormattingOptions("\n", [")"]))
     def typed(params: types.DocumentOnTypeFormattingParams) -> list[types.TextEdit]:
-        asked = server.ask(
+        answer = server.ask(
             params.text_document, params.position, lambda *at: features.typed(at[0], at[1], at[2], params.ch)
         )
-        return convert.edits(*asked) if asked else []
+        return convert.edits(*answer) if answer else []
 
     @server.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
     def linked(params: types.LinkedEditingRangeParams) -> types.LinkedEditingRanges | None:
-        asked = server.ask(params.text_document, params.position, features.linked_ranges)
-        if asked is None or not asked[2]:
+        answer = server.ask(params.text_document, params.position, features.linked_ranges)
+        if answer is None or not answer[2]:
             return None
-        return types.LinkedEditingRanges([convert.range(asked[0], asked[1], span) for span in asked[2]])
+        return types.LinkedEditingRanges([convert.range(answer[0], answer[1], span) for span in answer[2]])

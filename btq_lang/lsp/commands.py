@@ -29,8 +29,8 @@ def register(server: Server) -> None:
     @server.command(NODE_PATH)
     def path_of_node(place: types.TextDocumentPositionParams) -> str | None:
         """The path of the node at a position."""
-        asked = server.ask(place.text_document, place.position, features.path_of_node)
-        return asked[2] if asked else None
+        answer = server.ask(place.text_document, place.position, features.path_of_node)
+        return answer[2] if answer else None
 
     def mission(document: types.TextDocumentIdentifier) -> tuple[Workspace, str]:
         place = server.at(document)
@@ -76,10 +76,10 @@ def register(server: Server) -> None:
             raise Refused("save this document to a file first")
         from btq_lang.commands.for_editors import build_open  # as above
 
-        code, files, said = build_open(path, session.open)
+        code, files, output = build_open(path, session.open)
         if code:
-            raise Refused(said)
-        return {"files": [convert.uri(file) for file in files], "said": said}
+            raise Refused(output)
+        return {"files": [convert.uri(file) for file in files], "said": output}
 
     @server.command(USES)
     def uses(places: list[types.Location]) -> None:

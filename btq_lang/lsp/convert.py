@@ -194,7 +194,7 @@ class Converter:
                 else:
                     numbers += files[place.path].source_lines.ends(place.span, encoding)
                     related.append((self.uri(place.path), each.message))
-            written.append(_said(one.rule, one.message, one.notes, one.severity, one.tags, tuple(related)))
+            written.append(_template(one.rule, one.message, one.notes, one.severity, one.tags, tuple(related)))
         return ", ".join(written) % tuple(numbers)
 
     def _range_as_json(self, lines: LineIndex, span: Span) -> str:
@@ -283,7 +283,7 @@ class Converter:
 
 
 @lru_cache(_MOST_KEPT)
-def _said(
+def _template(
     rule: str,
     message: str,
     notes: tuple[str, ...],
@@ -306,11 +306,11 @@ def _said(
         "tags": [_TAGS[tag] for tag in tags],
     }
     information = [
-        f'{{"location": {{"uri": {_literal(as_json(uri))}, "range": {_RANGE}}}, "message": {_literal(as_json(said))}}}'
-        for uri, said in related
+        f'{{"location": {{"uri": {_literal(as_json(uri))}, "range": {_RANGE}}}, "message": {_literal(as_json(note))}}}'
+        for uri, note in related
     ]
-    said = _literal(json.dumps(members)[1:-1])
-    return f'{{"range": {_RANGE}, {said}, "relatedInformation": [{", ".join(information)}]}}'
+    own = _literal(json.dumps(members)[1:-1])
+    return f'{{"range": {_RANGE}, {own}, "relatedInformation": [{", ".join(information)}]}}'
 
 
 def _literal(text: str) -> str:

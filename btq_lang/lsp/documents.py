@@ -7,7 +7,7 @@ import json
 
 from lsprotocol import types
 
-from btq_lang.lsp.editor import NOTHING, Server
+from btq_lang.lsp.editor import EMPTY_REPORT, Server
 from btq_lang.lsp.progress import checking
 from btq_lang.lsp.protocol import Json
 
@@ -30,7 +30,7 @@ def register(server: Server) -> None:
         path = convert.path(params.text_document.uri)
         server.versions[path] = params.text_document.version
         server.check_soon(session.edit(path, convert.changed(session.lines(path), params.content_changes)))
-        server.last_key = asyncio.get_running_loop().time()  # now: handling the edit may have taken long
+        server.last_keystroke = asyncio.get_running_loop().time()  # now: handling the edit may have taken long
 
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     def did_close(params: types.DidCloseTextDocumentParams) -> None:
@@ -55,27 +55,31 @@ def _diagnostics(server: Server) -> None:
     @server.feature(types.WORKSPACE_DIAGNOSTIC)
     async def workspace_diagnostic(params: types.WorkspaceDiagnosticParams) -> Json:
         known = {convert.path(one.uri): one.value for one in params.previous_result_ids}
-        if not server.asks_for_all:
-            server.asks_for_all = True
+        if not server.pulls_all:
+            server.pulls_all = True
             server.publish_projects()
         await server.scanned.wait()
         paths = session.paths() if session.setting("checkClosedFiles", True) else ()
         # Diagnostics of files that are deleted, or no longer wanted, disappear only after an empty report, also for
         # files whose result id the editor has forgotten, as VS Code does when a document is closed.
         gone = (known.keys() | server.shown) - set(paths) - session.open.keys()
-        items = [_about(convert.uri(path), None, NOTHING) for path in sorted(gone)]
+        items = [_about(convert.uri(path), None, EMPTY_REPORT) for path in sorted(gone)]
         spelt = [one.uri for one in params.previous_result_ids if convert.uri(convert.path(one.uri)) != one.uri]
-        items += [_about(uri, None, NOTHING) for uri in spelt]  # the file's URI has changed since then
-        async with checking(server, 0 if known else len(paths)) as told:  # an editor with results asks for changes only
+        items += [_about(uri, None, EMPTY_REPORT) for uri in spelt]  # the file's URI has changed since then
+        async with checking(
+            server, 0 if known else len(paths)
+        ) as report_done:  # an editor with results asks for changes only
             for done, path in enumerate(paths, 1):
                 report = server.report(path, known.get(path))
                 items.append(_about(convert.uri(path), server.versions.get(path), report))
                 session.let_go()
-                if done % A_PART == 0:
-                    told(done)
+                if done % BATCH == 0:
+                    report_done(done)
                     if params.partial_result_token is not None:
                         token = json.dumps(params.partial_result_token)
-                        server.protocol.tell(types.PROGRESS, Json(f'{{"token": {token}, "value": {_all(items)}}}'))
+                        server.protocol.notify_plain(
+                            types.PROGRESS, Json(f'{{"token": {token}, "value": {_all(items)}}}')
+                        )
                         items = []
                 await asyncio.sleep(0)  # the editor may have cancelled, or changed something
         return _all(items)
@@ -90,4 +94,4 @@ def _all(items: list[str]) -> Json:
     return Json(f'{{"items": [{", ".join(items)}]}}')
 
 
-A_PART = 20  # files reported together
+BATCH = 20  # files reported together

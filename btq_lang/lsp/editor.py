@@ -48,13 +48,13 @@ class Refused(JsonRpcException):
 
 NOT_JSON = json.JSONDecodeError, UnicodeDecodeError
 NO_ITEMS = Json("[]")
-NOTHING = Json('{"kind": "full", "items": []}')
-TO_ASK = 0.01  # seconds, within which an editor sends requests about published diagnostics
-A_PAUSE = 0.1  # seconds, less than between most keystrokes
+EMPTY_REPORT = Json('{"kind": "full", "items": []}')
+REQUEST_WINDOW = 0.01  # seconds, within which an editor sends requests about published diagnostics
+PAUSE = 0.1  # seconds, less than between most keystrokes
 UNNOTICED = 0.05  # seconds, for which an answer may wait for a check
-MOST_REST = 0.5  # seconds, for which the check of a slow file is delayed after a keystroke
-A_LOOK = 5  # seconds between checks that the editor's process still runs
-MOST_DETAILS = 500  # a parameter may contain a whole text
+MAX_REST = 0.5  # seconds, for which the check of a slow file is delayed after a keystroke
+POLL = 5  # seconds between checks that the editor's process still runs
+MAX_DETAILS = 500  # a parameter may contain a whole text
 
 
 class Traced(logging.Handler):
@@ -63,13 +63,13 @@ class Traced(logging.Handler):
     def __init__(self, server: Server) -> None:
         super().__init__(logging.WARNING)  # at lower levels pygls logs what it sends, including this
         self._server = server
-        self._is_telling = False
+        self._is_sending = False
 
     def emit(self, record: logging.LogRecord) -> None:
-        if not self._is_telling:  # errors while sending are logged, too
-            self._is_telling = True
+        if not self._is_sending:  # errors while sending are logged, too
+            self._is_sending = True
             self._server.trace(record.getMessage(), self.format(record))
-            self._is_telling = False
+            self._is_sending = False
 
 
 class Server(LanguageServer):
@@ -83,12 +83,12 @@ class Server(LanguageServer):
         self.convert = Converter()
         self.versions: dict[str, int] = {}
         self.published: dict[str, tuple[int | None, int | None]] = {}  # hashes of what was published, and versions
-        self.asks_for_all = False  # the editor pulls workspace diagnostics
+        self.pulls_all = False  # the editor pulls workspace diagnostics
         self.shown: set[str] = set()  # the files of which a pulling editor may still show diagnostics
         self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
         self.waiting: dict[str, None] = {}
-        self.last_key = -MOST_REST  # the time of the last keystroke
+        self.last_keystroke = -MAX_REST  # the time of the last keystroke
         self._pause: asyncio.TimerHandle | None = None
         self._preparing: asyncio.Task[None] | None = None
         self.answering = 0  # how many requests are being answered in steps
@@ -106,7 +106,7 @@ class Server(LanguageServer):
         self._stop_event = Event()
         self.protocol.set_writer(StdoutWriter(stdout or sys.stdout.buffer))
         reader = Messages(stdin or sys.stdin.buffer)
-        self.is_outdated = lambda: reader.bring_edit
+        self.is_outdated = lambda: reader.has_pending_edit
         report = self.report_server_error
         try:
             asyncio.run(run_async(self._stop_event, reader, self.protocol, error_handler=report))
@@ -137,7 +137,7 @@ class Server(LanguageServer):
 
     async def _end_with(self, process: int) -> None:
         while _is_running(process):
-            await asyncio.sleep(A_LOOK)
+            await asyncio.sleep(POLL)
         try:
             logging.getLogger(__name__).error("the editor's process %d has ended", process)
         finally:  # the log may have no reader
@@ -168,7 +168,7 @@ class Server(LanguageServer):
 
         def say(begin: float, arguments: tuple[Any, ...]) -> None:
             if self.protocol.trace is not types.TraceValue.Off:
-                self.trace(f"{name}: {1000 * (perf_counter() - begin):.1f} ms", repr(arguments)[:MOST_DETAILS])
+                self.trace(f"{name}: {1000 * (perf_counter() - begin):.1f} ms", repr(arguments)[:MAX_DETAILS])
 
         @functools.wraps(handler)
         def answer(*arguments: Any) -> Any:
@@ -194,12 +194,12 @@ class Server(LanguageServer):
         Returns:
             Its message, and whether it is a new one.
         """
-        said, where = failures.internal_error(error), failures.place(error)
+        message, where = failures.internal_error(error), failures.place(error)
         is_new = where not in self._failures
         self._failures.add(where)
         if is_new:
-            logging.getLogger(__name__).error(said, exc_info=error)
-        return said, is_new
+            logging.getLogger(__name__).error(message, exc_info=error)
+        return message, is_new
 
     # ---- capabilities ----
 
@@ -284,7 +284,7 @@ class Server(LanguageServer):
         is_strange = any(one.rule == "xml-root" for one in found.diagnostics)
         return Findings([]) if is_strange else found
 
-    def told(self, path: str) -> Json | None:
+    def diagnostics_of(self, path: str) -> Json | None:
         """All diagnostics of a file, a mission or a project file, as JSON; None: the file is unknown."""
         if path in self.session.projects:
             return self.convert.problems(*self.session.projects[path])
@@ -303,8 +303,8 @@ class Server(LanguageServer):
     async def rest(self, path: str) -> None:
         """Let requests go first: wait after the last keystroke as long as checking a large file takes."""
         clock = asyncio.get_running_loop().time
-        while (took := self.session.took.get(path, 0)) > UNNOTICED:
-            rest = self.last_key + min(took, MOST_REST) - clock()
+        while (check_seconds := self.session.check_seconds.get(path, 0)) > UNNOTICED:
+            rest = self.last_keystroke + min(check_seconds, MAX_REST) - clock()
             if rest <= 0:
                 break
             await asyncio.sleep(rest)
@@ -330,12 +330,12 @@ class Server(LanguageServer):
             if self.can_refresh("diagnostics"):
                 self.workspace_diagnostic_refresh(None)
         loop = asyncio.get_running_loop()
-        told = -TO_ASK
+        published_at = -REQUEST_WINDOW
         while self.waiting:
             path = next(iter(self.waiting))
             is_open = path in self.session.open
-            if not is_open and (self.answering or loop.time() < told + TO_ASK):
-                await asyncio.sleep(TO_ASK / 10)
+            if not is_open and (self.answering or loop.time() < published_at + REQUEST_WINDOW):
+                await asyncio.sleep(REQUEST_WINDOW / 10)
                 continue
             await self.rest(path)
             if path != next(iter(self.waiting)):  # another file was edited meanwhile
@@ -351,7 +351,7 @@ class Server(LanguageServer):
             except Exception as error:  # a file that cannot be checked must not block the others
                 self.log_failure(error)
             self.session.let_go()
-            told = loop.time() if is_open else told
+            published_at = loop.time() if is_open else published_at
             await asyncio.sleep(0)
         for path in [path for path in self.published if not self.session.knows(path)]:
             self.publish(path)
@@ -360,7 +360,7 @@ class Server(LanguageServer):
     def _await_pause(self) -> None:
         if self._pause is not None:
             self._pause.cancel()
-        self._pause = asyncio.get_running_loop().call_later(A_PAUSE, self._use_pause)
+        self._pause = asyncio.get_running_loop().call_later(PAUSE, self._use_pause)
 
     def _use_pause(self) -> None:
         """Do pending maintenance while the editor is idle."""
@@ -380,28 +380,32 @@ class Server(LanguageServer):
             if place is not None:
                 tokens = features.making(*place, self.convert.encoding) if self.asks_for_tokens else ()
                 for _ in chain(self.protocol.getting_ready(), tokens, features.getting_ready(*place)):
-                    await asyncio.sleep(A_PAUSE if self.answering else 0)
+                    await asyncio.sleep(PAUSE if self.answering else 0)
             self._ready.add(path)
 
     def publish(self, path: str) -> None:
         """Publish the diagnostics of a file, unless they are already published."""
         version = self.versions.get(path)
-        told = self.told(path) if path in self.session.open or self.session.setting("checkClosedFiles", True) else None
-        if told is None:
+        found = (
+            self.diagnostics_of(path)
+            if path in self.session.open or self.session.setting("checkClosedFiles", True)
+            else None
+        )
+        if found is None:
             self.withdraw(path)
             self.session.forget(path)
             return
         known = self.published.get(path)
-        now = self.published[path] = hash(told) if told != NO_ITEMS else None, version
-        if now != known and (told != NO_ITEMS or known is not None or path in self.session.open):
+        now = self.published[path] = hash(found) if found != NO_ITEMS else None, version
+        if now != known and (found != NO_ITEMS or known is not None or path in self.session.open):
             name = json.dumps({"uri": self.convert.uri(path), **({"version": version} if version is not None else {})})
-            params = Json(f'{name[:-1]}, "diagnostics": {told}}}')
-            self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
+            params = Json(f'{name[:-1]}, "diagnostics": {found}}}')
+            self.protocol.notify_plain(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
 
     def publish_projects(self) -> None:
         """Publish the diagnostics of project files to an editor that pulls those of open files only."""
         for path in {*self.session.projects, *self.published}:
-            if self.asks_for_all or path in self.session.open:
+            if self.pulls_all or path in self.session.open:
                 self.withdraw(path)
             else:
                 self.publish(path)
@@ -410,13 +414,13 @@ class Server(LanguageServer):
         """Publish an empty list for a file, if something was published for its URI."""
         if self.published.pop(path, (None, None))[0] is not None:
             gone = {"uri": self.convert.uri(path), "diagnostics": []}
-            self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, gone)
+            self.protocol.notify_plain(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, gone)
 
     def report(self, path: str, previous: str | None) -> Json:
         """The diagnostic report of a file for an editor that pulls: full or unchanged."""
-        items = self.told(path)
+        items = self.diagnostics_of(path)
         if items is None:
-            return NOTHING
+            return EMPTY_REPORT
         if items != NO_ITEMS:
             self.shown.add(path)
         result = f"{path in self.session.open}:{hash(items):x}"

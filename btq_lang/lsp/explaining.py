@@ -17,16 +17,16 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     def show(params: types.HoverParams) -> Json | None:
-        asked = server.ask(params.text_document, params.position, features.explain, reads=True)
-        return convert.hover(asked[0], asked[1], asked[2]) if asked and asked[2] else None
+        answer = server.ask(params.text_document, params.position, features.explain, reads=True)
+        return convert.hover(answer[0], answer[1], answer[2]) if answer and answer[2] else None
 
     @server.feature(
         types.TEXT_DOCUMENT_SIGNATURE_HELP,
         types.SignatureHelpOptions(trigger_characters=["("], retrigger_characters=["=", " ", ","]),
     )
     def signature(params: types.SignatureHelpParams) -> types.SignatureHelp | None:
-        asked = server.ask(params.text_document, params.position, features.signature_help)
-        return convert.signature(asked[2]) if asked and asked[2] else None
+        answer = server.ask(params.text_document, params.position, features.signature_help)
+        return convert.signature(answer[2]) if answer and answer[2] else None
 
     @server.feature(
         types.TEXT_DOCUMENT_COMPLETION,

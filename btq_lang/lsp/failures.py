@@ -22,8 +22,8 @@ def internal_error(error: BaseException, otherwise: str = "") -> str:
     """
     from btq_lang.workspace.loader import shown  # a server imports this module at its start, and seldom needs that one
 
-    said = " ".join(str(error).split())
-    what = f"{type(error).__name__}: {said}" if said else type(error).__name__
+    message = " ".join(str(error).split())
+    what = f"{type(error).__name__}: {message}" if message else type(error).__name__
     path = next(_files(error), None)
     doing = f"while reading {shown(path)}" if path is not None else otherwise
     return f"internal error: {what}{f' {doing}' if doing else ''}; {WHERE}"

@@ -31,37 +31,37 @@ def register(server: Server) -> None:
             data={"path": tree.path, "span": [*tree.span], "name": [*tree.name_span]},
         )
 
-    def tree_of(asked: types.CallHierarchyItem) -> tuple[Workspace, features.TreeItem] | None:
-        data = asked.data if isinstance(asked.data, dict) else {}
+    def tree_of(given: types.CallHierarchyItem) -> tuple[Workspace, features.TreeItem] | None:
+        data = given.data if isinstance(given.data, dict) else {}
         workspace = session.workspace_of(str(data.get("path")))
         if workspace is None:
             return None
-        return workspace, features.TreeItem(asked.name, data["path"], Span(*data["span"]), Span(*data["name"]))
+        return workspace, features.TreeItem(given.name, data["path"], Span(*data["span"]), Span(*data["name"]))
 
     def places(workspace: Workspace, call: features.Call) -> list[types.Range]:
         return [convert.range(workspace, call.path, span) for span in call.places]
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
     def prepare(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem] | None:
-        asked = server.ask(params.text_document, params.position, features.prepare_calls, reads=True)
-        return [item(asked[0], asked[2])] if asked and asked[2] else None
+        answer = server.ask(params.text_document, params.position, features.prepare_calls, reads=True)
+        return [item(answer[0], answer[2])] if answer and answer[2] else None
 
     @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
     def incoming(params: types.CallHierarchyIncomingCallsParams) -> list[types.CallHierarchyIncomingCall]:
-        asked = tree_of(params.item)
+        answer = tree_of(params.item)
         return [
-            types.CallHierarchyIncomingCall(item(asked[0], call.tree), places(asked[0], call))
-            for call in (features.callers(*asked) if asked else ())
-            if asked
+            types.CallHierarchyIncomingCall(item(answer[0], call.tree), places(answer[0], call))
+            for call in (features.callers(*answer) if answer else ())
+            if answer
         ]
 
     @server.feature(types.CALL_HIERARCHY_OUTGOING_CALLS)
     def outgoing(params: types.CallHierarchyOutgoingCallsParams) -> list[types.CallHierarchyOutgoingCall]:
-        asked = tree_of(params.item)
+        answer = tree_of(params.item)
         return [
-            types.CallHierarchyOutgoingCall(item(asked[0], call.tree), places(asked[0], call))
-            for call in (features.called(*asked) if asked else ())
-            if asked
+            types.CallHierarchyOutgoingCall(item(answer[0], call.tree), places(answer[0], call))
+            for call in (features.called(*answer) if answer else ())
+            if answer
         ]
 
     @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)

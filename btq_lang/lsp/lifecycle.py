@@ -109,10 +109,10 @@ async def _first_check(server: Server) -> None:
     if server.pulls:
         server.check_soon(paths)
         return
-    async with checking(server, len(paths)) as told:
+    async with checking(server, len(paths)) as report_done:
         server.check_soon(paths)
         while server.task is not None and not server.task.done():
-            told(len(paths) - len(server.waiting))
+            report_done(len(paths) - len(server.waiting))
             await asyncio.wait((server.task,), timeout=0.2)
 
 

@@ -23,10 +23,10 @@ def register(server: Server) -> None:
         position: types.Position,
         feature: Callable[[Workspace, str, int], tuple[features.Target, ...]],
     ) -> list[types.LocationLink] | list[types.Location]:
-        asked = server.ask(document, position, feature, reads=True)
-        if asked is None:
+        answer = server.ask(document, position, feature, reads=True)
+        if answer is None:
             return []
-        workspace, path, targets = asked
+        workspace, path, targets = answer
         if not server.takes_links:
             return [convert.location(workspace, target.path, target.name) for target in targets]
         return [
@@ -58,46 +58,46 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     def references(params: types.ReferenceParams) -> list[types.Location]:
         wanted = params.context.include_declaration
-        asked = server.ask(
+        answer = server.ask(
             params.text_document,
             params.position,
             lambda *at: features.find_references(at[0], at[1], at[2], wanted),
             reads=True,
         )
-        return [convert.location(asked[0], path, span) for path, span in asked[2]] if asked else []
+        return [convert.location(answer[0], path, span) for path, span in answer[2]] if answer else []
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
     def highlight(params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
-        asked = server.ask(params.text_document, params.position, features.highlights, reads=True)
+        answer = server.ask(params.text_document, params.position, features.highlights, reads=True)
         kinds = {True: types.DocumentHighlightKind.Write, False: types.DocumentHighlightKind.Read}
         return [
-            types.DocumentHighlight(convert.range(asked[0], asked[1], each.span), kinds[each.writes])
-            for each in (asked[2] if asked else ())
-            if asked
+            types.DocumentHighlight(convert.range(answer[0], answer[1], each.span), kinds[each.writes])
+            for each in (answer[2] if answer else ())
+            if answer
         ]
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
     def prepare(params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
-        asked = server.ask(params.text_document, params.position, features.prepare_rename, reads=True)
-        if asked is None:
+        answer = server.ask(params.text_document, params.position, features.prepare_rename, reads=True)
+        if answer is None:
             return None
-        if isinstance(asked[2], features.Refusal):
-            raise Refused(asked[2].reason)
-        return types.PrepareRenamePlaceholder(convert.range(asked[0], asked[1], asked[2].span), asked[2].name)
+        if isinstance(answer[2], features.Refusal):
+            raise Refused(answer[2].reason)
+        return types.PrepareRenamePlaceholder(convert.range(answer[0], answer[1], answer[2].span), answer[2].name)
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     def rename_all(params: types.RenameParams) -> types.WorkspaceEdit | None:
-        asked = server.ask(
+        answer = server.ask(
             params.text_document,
             params.position,
             lambda *at: features.renamed(at[0], at[1], at[2], params.new_name),
             reads=True,
         )
-        if asked is None:
+        if answer is None:
             return None
-        if isinstance(asked[2], features.Refusal):
-            raise Refused(asked[2].reason)
-        return convert.workspace_edit(asked[0], asked[2].edits, server.versions_for_edits())
+        if isinstance(answer[2], features.Refusal):
+            raise Refused(answer[2].reason)
+        return convert.workspace_edit(answer[0], answer[2].edits, server.versions_for_edits())
 
     @server.feature(types.WORKSPACE_SYMBOL)
     def symbols(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:

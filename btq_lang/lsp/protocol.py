@@ -53,9 +53,9 @@ class Protocol(LanguageServerProtocol):
         if failed is None:
             super()._check_handler_result(future)
             return
-        said, is_new = self.log_failure(failed)
+        message_text, is_new = self.log_failure(failed)
         if is_new:
-            self._server.window_show_message(types.ShowMessageParams(types.MessageType.Error, said))
+            self._server.window_show_message(types.ShowMessageParams(types.MessageType.Error, message_text))
 
     def _send_handler_result(self, future: Future[Any], *, msg_id: int | str) -> None:
         failed = _failure(future)
@@ -63,8 +63,8 @@ class Protocol(LanguageServerProtocol):
             super()._send_handler_result(future, msg_id=msg_id)
             return
         self._request_futures.pop(msg_id, None)
-        said, _ = self.log_failure(failed)
-        self._send_response(msg_id, error=types.ResponseError(types.ErrorCodes.InternalError, said))
+        message_text, _ = self.log_failure(failed)
+        self._send_response(msg_id, error=types.ResponseError(types.ErrorCodes.InternalError, message_text))
 
     def _send_response(self, msg_id: int | str, result: Any = None, error: types.ResponseError | None = None) -> None:
         if error is not None:
@@ -125,7 +125,7 @@ class Protocol(LanguageServerProtocol):
             self.structure_message({"jsonrpc": self.VERSION, "id": 0, "method": method, "params": place})
             yield
 
-    def tell(self, method: str, params: Plain | Json) -> None:
+    def notify_plain(self, method: str, params: Plain | Json) -> None:
         """Send a notification with plain data or JSON as parameters."""
         if isinstance(params, Json):
             self._write(f'{{"jsonrpc": "2.0", "method": "{method}", "params": {params}}}')
@@ -172,7 +172,7 @@ class Messages:
         return self._body
 
     @property
-    def bring_edit(self) -> bool:
+    def has_pending_edit(self) -> bool:
         """Whether an edit has arrived that is not yet handled."""
         return not self._is_taken and _CHANGE in self._body
 

@@ -33,7 +33,7 @@ class Session:
         open: the texts of open files, by path.
         settings: what the editor's user has set.
         projects: the project files that are open or have problems: their texts and problems.
-        took: the duration of the last check of an open file, in seconds, by path.
+        check_seconds: the duration of the last check of an open file, by path.
     """
 
     def __init__(self) -> None:
@@ -41,7 +41,7 @@ class Session:
         self.settings: dict[str, object] = {}
         self.open: dict[str, str] = {}
         self.projects: dict[str, tuple[str, tuple[LoadProblem, ...]]] = {}
-        self.took: dict[str, float] = {}
+        self.check_seconds: dict[str, float] = {}
         self._files: Files | None = None
         self._read_for: tuple[tuple[str, ...], dict[str, object]] | None = None  # which folders and settings
         self._workspaces: list[Workspace] = []  # their caches are for open files
@@ -72,7 +72,7 @@ class Session:
             return (path, *self.reload())
         linked = set(after.linked(path))  # uses are known in both directions
         if renamed := old.defined_names ^ new.defined_names:
-            linked.update(other for other in after.files if other != path and _misses(after, other, renamed))
+            linked.update(other for other in after.files if other != path and _lacks_definition(after, other, renamed))
         return self._in_order(path, linked)
 
     def close(self, path: str) -> tuple[str, ...]:
@@ -84,7 +84,7 @@ class Session:
             from btq_lang.checks import forget
 
             forget(workspace, path)
-        self.took.pop(path, None)
+        self.check_seconds.pop(path, None)
         self._checked.pop(path, None)  # its offsets count from items that are no longer kept
         is_of_folder = any(path.startswith(f"{folder}/") for folder in self.folders)
         if is_of_folder and text is not None and read(path)[0] == text:
@@ -166,15 +166,15 @@ class Session:
 
         for workspace in self._workspaces:
             let_go(workspace)
-        worked_in = self._worked_in()
+        active = self._active_files()
         for workspace in self.workspaces():
             held = [path for path, file in workspace.files.items() if file.is_parsed]
-            idle = [path for path in held if path not in worked_in]
+            idle = [path for path in held if path not in active]
             if sum([len(workspace.files[path].text) for path in idle]) > _MOST_IDLE:
                 for each in self.workspaces():  # each of these keeps the replaced objects alive
                     each.let_go(idle[:_AT_ONCE])
 
-    def _worked_in(self) -> set[str]:
+    def _active_files(self) -> set[str]:
         """The open files and those linked with them, in any workspace: workspaces may share files."""
         found: set[str] = set()
         for workspace in self.workspaces():
@@ -182,7 +182,7 @@ class Session:
             found.update([path for path, mission in workspace.missions.items() if mission in missions])
         return found
 
-    # ---- what is asked ----
+    # ---- queries ----
 
     def lines(self, path: str) -> LineIndex:
         """The line index of an open file."""
@@ -247,7 +247,7 @@ class Session:
             begin = perf_counter()
             keep(workspace, path)
             found = findings(workspace.store, path)
-            self.took[path] = perf_counter() - begin
+            self.check_seconds[path] = perf_counter() - begin
         else:  # placed: offsets that count from items would keep these alive
             found = Findings.placed(check(workspace, path))
         self._checked[path] = ref(workspace), found
@@ -267,7 +267,7 @@ class Session:
         return value if isinstance(value, bool) else default
 
 
-def _misses(workspace: Workspace, path: str, names: Set[Name]) -> bool:
+def _lacks_definition(workspace: Workspace, path: str, names: Set[Name]) -> bool:
     """Whether a file uses one of the names without a definition, so that its diagnostics name definitions elsewhere."""
     missed = names & workspace.files[path].used_names
     return bool(missed) and not missed <= _names_in_scope(workspace, path)

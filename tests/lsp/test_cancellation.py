@@ -63,10 +63,10 @@ def test_messages_tell_of_an_edit_that_is_not_yet_handled() -> None:
         said = []
         for _ in bodies:
             await reader.readline()
-            said.append(reader.bring_edit)
+            said.append(reader.has_pending_edit)
             await reader.readline()
             await reader.readexactly(0)
-            said.append(reader.bring_edit)
+            said.append(reader.has_pending_edit)
         return said
 
     assert asyncio.run(read()) == [False, False, True, False]

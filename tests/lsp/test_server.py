@@ -594,7 +594,7 @@ def test_semantic_tokens(editor: Editor) -> None:
 
 
 def test_an_edit_ends_what_is_made_ready_in_a_pause(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btq_lang.lsp.editor.A_PAUSE", 0)
+    monkeypatch.setattr("btq_lang.lsp.editor.PAUSE", 0)
     path = str(tmp_path / "main.btq")
     steps: list[str] = []
 
@@ -622,7 +622,7 @@ def test_an_edit_ends_what_is_made_ready_in_a_pause(tmp_path: Path, monkeypatch:
 
 
 def test_nothing_is_made_ready_while_somebody_waits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btq_lang.lsp.editor.A_PAUSE", 0.05)
+    monkeypatch.setattr("btq_lang.lsp.editor.PAUSE", 0.05)
     steps: list[int] = []
 
     def making(*_: object) -> Iterator[None]:
@@ -656,7 +656,7 @@ def test_nothing_is_made_ready_while_somebody_waits(tmp_path: Path, monkeypatch:
 def test_tokens_are_made_in_a_pause_for_an_editor_that_asks_for_them(
     asks: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("btq_lang.lsp.editor.A_PAUSE", 0)
+    monkeypatch.setattr("btq_lang.lsp.editor.PAUSE", 0)
     path = str(tmp_path / "main.btq")
     made: list[str] = []
 
@@ -1235,7 +1235,7 @@ def test_a_key_does_not_wait_for_what_an_editor_may_ask_about_the_key_before(mon
         assert server.told == ["open"] * 4
         server.task.cancel()
 
-    monkeypatch.setattr("btq_lang.lsp.editor.TO_ASK", 2)
+    monkeypatch.setattr("btq_lang.lsp.editor.REQUEST_WINDOW", 2)
     asyncio.run(asyncio.wait_for(press(), 4))  # seconds; less than three keys would wait
 
 
@@ -1245,12 +1245,12 @@ import sys
 from btq_lang.lsp import editor
 from btq_lang.lsp import session
 from btq_lang import ide as features
-editor.MOST_REST = 60
+editor.MAX_REST = 60
 check, complete = session.Session.findings, features.complete
 def slow(self, path):
     print(f"check of {len(self.open[path])} characters", file=sys.stderr)
     found = check(self, path)
-    self.took = {path: 60}
+    self.check_seconds = {path: 60}
     return found
 def say(*place, **wanted):
     print("completion", file=sys.stderr)

@@ -134,13 +134,13 @@ def test_it_ends_after_the_process_of_its_editor(tmp_path: Path) -> None:
 
 
 def test_it_lives_as_long_as_the_process_of_its_editor(tmp_path: Path) -> None:
-    program = "import btq_lang.lsp.editor as editor; editor.A_LOOK = 0; from btq_lang.server import main; main([])"
+    program = "import btq_lang.lsp.editor as editor; editor.POLL = 0; from btq_lang.server import main; main([])"
     editor = Editor(tmp_path, program=program, processId=os.getpid())
     for number in range(20):
         editor.open(f"main{number}.btq", "")
         assert editor.diagnostics(f"main{number}.btq") == []
     assert editor.close() == ""
-    assert 0 < btq_editor.A_LOOK <= 10
+    assert 0 < btq_editor.POLL <= 10
 
 
 @pytest.mark.parametrize("port", ["99999", "-1", "port", "example.invalid:5007", ""])
