@@ -86,19 +86,19 @@ def tokens(text: str) -> tuple[Token, ...]:
     lexer = Lexer(text)
     comments = lexer.comments
     found: list[Token] = []
-    end = level = told = 0
+    end = level = added = 0
     while lexer.open_line():
         lexer.scan()
-        told = _fill(found, text, end, lexer.starts[0], comments, told)
+        added = _fill(found, text, end, lexer.starts[0], comments, added)
         end = lexer.starts[0]
         step = INDENT if lexer.level > level else DEDENT
         found += [Token(step, end, "")] * abs(lexer.level - level)
         level = lexer.level
         for kind, start, raw in zip(lexer.kinds, lexer.starts, lexer.raws, strict=True):
-            told = _fill(found, text, end, start, comments, told)
+            added = _fill(found, text, end, start, comments, added)
             found.append(Token(kind, start, raw))
             end = start + len(raw)
-    _fill(found, text, end, len(text), comments, told)
+    _fill(found, text, end, len(text), comments, added)
     found += [Token(DEDENT, len(text), "")] * level
     return tuple(found)
 
@@ -110,16 +110,16 @@ def pieces(text: str) -> list[tuple[int, int, str]]:
     lexer = Lexer(text)
     comments = lexer.comments
     found: list[tuple[int, int, str]] = []
-    told = 0
+    added = 0
     while lexer.open_line():
         lexer.scan()
         of_line = [*zip(lexer.kinds, lexer.starts, lexer.raws, strict=True)]
-        if told < len(comments):
-            of_line += [(COMMENT, start, text[start:end]) for start, end in comments[told:]]
+        if added < len(comments):
+            of_line += [(COMMENT, start, text[start:end]) for start, end in comments[added:]]
             of_line.sort(key=_start_of)
-            told = len(comments)
+            added = len(comments)
         found += [piece for piece in of_line if piece[0] not in _SILENT]
-    found += [(COMMENT, start, text[start:end]) for start, end in comments[told:]]
+    found += [(COMMENT, start, text[start:end]) for start, end in comments[added:]]
     return found
 
 
@@ -158,9 +158,9 @@ class Lexer(StrangeCharacters):
             end = self._comment(position)
             if end == position:
                 break
-            start_behind, position = line_opening(text, self.ink, end)
-            if start_behind > end:
-                start = start_behind
+            start_after, position = line_opening(text, self.ink, end)
+            if start_after > end:
+                start = start_after
                 blanks = text[start:position]
         self.position = position
         if position == size:
@@ -288,11 +288,11 @@ class Lexer(StrangeCharacters):
             return start + 1
         text = self.text
         if character == "#" or character == "/":
-            behind = self._comment(start)
-            if behind > start:
-                return behind
+            after = self._comment(start)
+            if after > start:
+                return after
         if character == ")":
-            return self._close_nothing(start)
+            return self._stray_closing(start)
         if (end := symbol_end(text, start)) > start:
             return self._add(SYMBOL, start, end)
         if (
@@ -310,7 +310,7 @@ class Lexer(StrangeCharacters):
             return self._add(OPERATOR, start, start + 2 if two in _TWO else start + 1)
         if character == "!" or text.startswith("&&", start):  # the parser decides whether it is a condition
             return self._add(ERROR, start, start + (1 if character == "!" else 2))
-        return self._nothing(start, character)
+        return self._invalid_character(start, character)
 
     def _after_operand(self, position: int) -> bool:
         """Whether a `-` here subtracts: it does after an operand on the same line (docs/language.md, NUMBER)."""
@@ -447,7 +447,7 @@ class Lexer(StrangeCharacters):
 
     # ---- brackets ----
 
-    def _close_nothing(self, position: i64) -> i64:
+    def _stray_closing(self, position: i64) -> i64:
         """Handle a `)` without an open bracket."""
         if self.ended_early:  # it closes brackets that ended early
             self.ended_early -= 1
@@ -538,24 +538,24 @@ def _start_of(piece: tuple[int, int, str]) -> int:
     return piece[1]
 
 
-def _fill(found: list[Token], text: str, end: int, start: int, comments: list[tuple[int, int]], told: int) -> int:
+def _fill(found: list[Token], text: str, end: int, start: int, comments: list[tuple[int, int]], added: int) -> int:
     """Add what the lexer skipped between two tokens: blanks, comments and invalid characters.
 
     Args:
-        told: how many comments were added before.
+        added: how many comments were added before.
 
     Returns:
         How many are added now.  (Not nested in `tokens`: a compiled closure would retain all of these until garbage
         collection.)
     """
-    while told < len(comments) and comments[told][0] < start:
-        comment, behind = comments[told]
+    while added < len(comments) and comments[added][0] < start:
+        comment, after = comments[added]
         found += _gaps(text, end, comment)
-        found.append(Token(COMMENT, comment, text[comment:behind]))
-        end = behind
-        told += 1
+        found.append(Token(COMMENT, comment, text[comment:after]))
+        end = after
+        added += 1
     found += _gaps(text, end, start)
-    return told
+    return added
 
 
 def _gaps(text: str, start: int, end: int) -> list[Token]:

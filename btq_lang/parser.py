@@ -122,7 +122,7 @@ def reparse(before: Parsed, text: str, change: Span | None = None) -> Parsed:
     first = _first_touched(before, change.start)
     by = len(text) - len(before.text)
     old = before.entries
-    behind = {
+    after = {
         old[index].start + by: index
         for index in range(bisect_left(old, change.end, first, key=lambda entry: entry.start), len(old))
         if before.starts[index] is not None
@@ -131,10 +131,10 @@ def reparse(before: Parsed, text: str, change: Span | None = None) -> Parsed:
         parser = Parser(text)
         if first:
             parser.begin_at(old[first].start, before.starts[first])
-        entries = parser.file({start: before.starts[index] for start, index in behind.items()})
+        entries = parser.file({start: before.starts[index] for start, index in after.items()})
     if not parser.has_met:
         return Parsed(text, old[:first] + entries, (*before.starts[:first], *parser.begun))
-    last = behind[parser.lexer.line_start]
+    last = after[parser.lexer.line_start]
     moved = tuple([entry if by == 0 else moved_by(entry, by) for entry in old[last:]])
     return Parsed(text, old[:first] + entries + moved, (*before.starts[:first], *parser.begun, *before.starts[last:]))
 

@@ -44,8 +44,8 @@ def sections(lines: Sequence[Line], marks: Marks, options: FormatOptions) -> Ite
                 index += 1
         start, middle, end = head.start, head.end, block[-1].end if block else head.end
         if clauses is not None and _is_too_long(head, clauses, marks, options):
-            head, behind = _parted(head, clauses)
-            yield Section(Span(start, end), (head, *_arranged([behind, *block], clauses)))
+            head, trailing = _parted(head, clauses)
+            yield Section(Span(start, end), (head, *_arranged([trailing, *block], clauses)))
         else:
             yield Section(Span(start, middle), (head,))
             if clauses is not None and block:
@@ -76,9 +76,9 @@ def _parted(head: Line, clauses: Clauses) -> tuple[Line, Line]:
     end = pieces.index(head.words[-1]) + 1
     short = Line(head.level, head.blanks, head.blank, [*pieces[:begin], *pieces[end:]])
     short.lead = head.lead
-    behind = Line(head.level + 1, head.blanks, False, pieces[begin:end])
-    behind.tail = head.tail
-    return short, behind
+    trailing = Line(head.level + 1, head.blanks, False, pieces[begin:end])
+    trailing.tail = head.tail
+    return short, trailing
 
 
 def _arranged(block: Sequence[Line], clauses: Clauses) -> tuple[Line, ...]:

@@ -119,8 +119,8 @@ class AttributeParser(RequirementParser):
         if at != 2 or self.kind != NAME or self.raws[0] not in CATEGORIES or self.kinds[at + 1] != CLOSE:
             return ()
         before = Span(self.starts[0] + len(self.raws[0]), self.here().start)
-        behind = Span(self.here().end, self.starts[at + 1] + len(self.raws[at + 1]))
-        return (Fix("Remove the brackets", (Change(Place(before), " "), Change(Place(behind), ""))),)
+        after = Span(self.here().end, self.starts[at + 1] + len(self.raws[at + 1]))
+        return (Fix("Remove the brackets", (Change(Place(before), " "), Change(Place(after), ""))),)
 
     def classic_quality(self, clauses: list[NodeClause]) -> tuple[Fix, ...]:
         """The fix for `satisfices performance (QualityReq …)`, which lacks `Quality =` before the quality."""

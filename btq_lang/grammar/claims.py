@@ -259,8 +259,8 @@ class ClaimParser(ConditionParser):
         relation = None
         if self.kind == NAME and self.kinds[self.index + 1] == NAME:
             relation = RELATIONS.get((self.raw, self.raws[self.index + 1]))
-        if said := self.bound_in_other_words():
-            relation = said
+        if sign := self.bound_in_other_words():
+            relation = sign
         elif relation is None:
             meant = _INSTEAD_OF_BOUNDS.get(self.raw) if self.kind in (NAME, OPERATOR) else None
             if meant is None:

@@ -178,9 +178,9 @@ class ClauseParser(ClaimParser):
         self.advance()
         text = self.take() if self.kind == STRING else None
         if text is None:
-            said = self.here().start
-            rest = self.text[said : line_end(self.text, said)].partition(" #")[0].rstrip()
-            fix = replace_fix("Put quotes around it", Span(said, said + len(rest)), quote(rest))
+            begin = self.here().start
+            rest = self.text[begin : line_end(self.text, begin)].partition(" #")[0].rstrip()
+            fix = replace_fix("Put quotes around it", Span(begin, begin + len(rest)), quote(rest))
             self.expected("the reason in quotes", (), (fix,) if rest and not self.group else ())
         return Because(start, self.last_end(), text)
 

@@ -52,7 +52,7 @@ class Cursor:
         self._silent_from = self._silent_to = -1  # the last physical line with a diagnostic
         self.known = 0
         self._line_start = 0  # of the logical line
-        self._said: list[int] | None = None  # the mistakes that the lexer found in it
+        self._lexer_mistakes: list[int] | None = None  # the mistakes that the lexer found in it
         self._in_wake = self._would_complain = False  # the line follows brackets that ended early; it has a mistake
         self._ends_early = False  # it ends brackets early itself
         self._unclosed = len(text)  # the first of its brackets that is not closed
@@ -75,7 +75,7 @@ class Cursor:
         self.index = 0
         self.kind = self.kinds[0]
         self.raw = self.raws[0]
-        self._said = None
+        self._lexer_mistakes = None
 
     def is_in_wake(self) -> bool:
         """Whether a mistake on the line just read may hide one on the next."""
@@ -97,7 +97,7 @@ class Cursor:
 
     def no_end(self, notes: tuple[str, ...], fixes: tuple[Fix, ...]) -> None:
         """Report what is left of the line."""
-        if not notes and self.at_name() and self.is_behind_name():
+        if not notes and self.at_name() and self.is_after_name():
             notes = (_QUOTES,)
         if not notes and self.at(".") and self.kinds[self.index + 1] == NAME and self.adjacent(self.index + 1):
             notes = ("a name that contains a point goes in quotes",)
@@ -163,7 +163,7 @@ class Cursor:
         """Whether the next tokens are `key =`."""
         return (self.kind == NAME or self.kind == STRING) and self.raws[self.index + 1] == "="
 
-    def is_behind_name(self) -> bool:
+    def is_after_name(self) -> bool:
         """Whether the previous token is a NAME."""
         return self.index > 0 and self.kinds[self.index - 1] == NAME
 
@@ -377,13 +377,14 @@ class Cursor:
         """Whether the lexer found a mistake on this physical line, or it is in brackets that the lexer closed
         itself.
         """
-        if self._said is None:
+        if self._lexer_mistakes is None:
             found = self.lexer.problems[self.known :]
-            self._said = sorted(problem.span.start for problem in found if problem.rule in _SAID)
+            self._lexer_mistakes = sorted(problem.span.start for problem in found if problem.rule in _LEAVING_GAPS)
             unclosed = [problem.span.start for problem in found if problem.rule == "unclosed-bracket"]
             self._unclosed = min(unclosed, default=len(self.text))
-        next_said = bisect_left(self._said, self._silent_from)
-        return at > self._unclosed or (next_said < len(self._said) and self._said[next_said] <= self._silent_to)
+        mistakes = self._lexer_mistakes
+        following = bisect_left(mistakes, self._silent_from)
+        return at > self._unclosed or (following < len(mistakes) and mistakes[following] <= self._silent_to)
 
     def complain_instead(self, of: list[Diagnostic], diagnostic: Diagnostic) -> bool:
         """Report a mistake instead of what the lexer found in this line; if the lexer's diagnostics have already
@@ -392,16 +393,16 @@ class Cursor:
         Returns:
             Whether it was reported.
         """
-        found, known, told = self.lexer.problems, self.known, len(self.problems)
+        found, known, before = self.lexer.problems, self.known, len(self.problems)
         of_line = found[known:]  # there may be thousands before it
         found[known:] = [problem for problem in of_line if problem not in of]
-        self._said = None
+        self._lexer_mistakes = None
         self.report(diagnostic)
-        is_told = len(self.problems) > told
-        if not is_told:
+        is_reported = len(self.problems) > before
+        if not is_reported:
             found[known:] = of_line
-            self._said = None
-        return is_told
+            self._lexer_mistakes = None
+        return is_reported
 
     def recover(self) -> None:
         """Skip to the next `key =` or the closing bracket of the current group; outside brackets to the end of the
@@ -431,6 +432,6 @@ def shown(raw: str) -> str:
 _QUOTES: Final = "a name of several words goes in quotes"
 VALUES: Final = frozenset((STRING, NAME, NUMBER, QUANTITY, BRACED))
 # Mistakes reported by the lexer after which the parser misses something.
-_SAID: Final = frozenset(
+_LEAVING_GAPS: Final = frozenset(
     ("syntax-error", "unclosed-bracket", "unclosed-string", "unclosed-comment", "misplaced-comment", "unknown-unit")
 )

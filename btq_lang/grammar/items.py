@@ -46,8 +46,8 @@ class ItemParser(NodeParser):
             self.complain("syntax-error", self.here(), "the path of an include needs no `path =`", (), (fix,))
             self.go_to(self.index + 2)
         elif (self.at(":") or self.at("=")) and self.kinds[self.index + 1] == STRING:
-            behind = blanks_end(self.text, self.starts[self.index] + 1, len(self.text))
-            fix = self.without_sign(f"Remove `{self.raw}`", behind, "", safe=True)
+            after = blanks_end(self.text, self.starts[self.index] + 1, len(self.text))
+            fix = self.without_sign(f"Remove `{self.raw}`", after, "", safe=True)
             self.complain("syntax-error", self.here(), f"unexpected `{self.raw}`", (), (fix,))
             self.advance()
         path = self.take() if self.kind == STRING else self.unquoted_path()
@@ -241,19 +241,19 @@ class ItemParser(NodeParser):
         has_sign = self.at(":") or self.at("=")
         first = self.index + 1 if has_sign and self.kinds[self.index + 1] != NEWLINE else self.index
         start = self.starts[first]
-        end = behind = path_end(self.text, start)
+        end = after = path_end(self.text, start)
         for index in range(first, len(self.kinds)):
             if self.kinds[index] == ERROR and self.raws[index] in ("'", '"'):  # only the opening quote is missing
-                end, behind = self.starts[index], self.starts[index] + 1
+                end, after = self.starts[index], self.starts[index] + 1
         title, path = "Put quotes around it", quote(self.text[start:end])
         fixes: tuple[Fix, ...] = ()
         if self.at("<") and (closing := self.text.find(">", start, line_end(self.text, start))) > start + 1:
             path = quote(self.text[start + 1 : closing].strip())
             fixes = (replace_fix(f"Write `{path}`", Span(start, closing + 1), path),)
         elif end > start and first > self.index:
-            fixes = (self.without_sign(title, behind, path, safe=False),)
+            fixes = (self.without_sign(title, after, path, safe=False),)
         elif end > start and not has_sign:
-            fixes = (replace_fix(title, Span(start, behind), path),)
+            fixes = (replace_fix(title, Span(start, after), path),)
         self.expected("a file in quotes", (), fixes)
         return None
 

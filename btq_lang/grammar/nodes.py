@@ -62,7 +62,7 @@ class NodeParser(AttributeParser):
         ports: list[Port] = []
         block = Block(level, None)
         blocks = [block]
-        told_too_deep = False
+        is_too_deep_reported = False
         while self.more and lexer.level > level:
             inner = lexer.level
             while block.level >= inner:
@@ -72,8 +72,8 @@ class NodeParser(AttributeParser):
             if self.kind == NAME and self.raw in _NO_KINDS and self.other_line(inner, blocks, ports):
                 continue
             if len(blocks) > MAX_DEPTH:
-                if not told_too_deep:
-                    told_too_deep = True
+                if not is_too_deep_reported:
+                    is_too_deep_reported = True
                     self.complain("nested-too-deep", self.here(), _TOO_DEEP, (OF_ITS_OWN,))
                 blocks.pop().close()
                 block = blocks[-1]
@@ -94,7 +94,7 @@ class NodeParser(AttributeParser):
         word = self.raw
         if word in NODE_CLAUSES:
             if len(blocks) > 1 or block.has_nodes():
-                block.clauses += self.clause_line_behind(level, block.children)
+                block.clauses += self.clause_line_after(level, block.children)
             else:  # the tree's own: XML may precede it, as it may be among ports
                 block.clauses += self.clause_line(level)
         elif word == "QualityReq" and self.is_requirement():
@@ -336,7 +336,7 @@ class NodeParser(AttributeParser):
         self.no_block(level)
         return found
 
-    def clause_line_behind(self, level: int, children: list[Node | Verbatim]) -> list[NodeClause]:
+    def clause_line_after(self, level: int, children: list[Node | Verbatim]) -> list[NodeClause]:
         """A clause line in the block of a node; it is reported if it comes after children."""
         start = self.lexer.line_start
         at = self.here()
@@ -365,8 +365,8 @@ class NodeParser(AttributeParser):
         following = self.index + 1
         if self.kinds[following] not in (NAME, STRING) or self.raws[following] in NODE_CLAUSES:
             return False
-        behind = self.kinds[following + 1]
-        return not (behind in (NEWLINE, OPEN) or self.raws[following + 1] in NODE_CLAUSES)
+        after = self.kinds[following + 1]
+        return not (after in (NEWLINE, OPEN) or self.raws[following + 1] in NODE_CLAUSES)
 
     def requirement_line(self, level: int) -> Satisfies:
         """Report that `satisfies` is missing before a requirement in the block of a node."""

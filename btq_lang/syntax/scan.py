@@ -205,8 +205,8 @@ def number_at(text: str, start: i64) -> tuple[i64, i64]:
     if unit < size and ((character := text[unit]).isalpha() or character in "_%1°"):
         unit_end = unit_at(text, unit)
         if unit_end > unit:
-            behind = blanks_end(text, unit_end, size)
-            if not text.startswith("(", behind) and (not text.startswith("=", behind) or text.startswith("==", behind)):
+            after = blanks_end(text, unit_end, size)
+            if not text.startswith("(", after) and (not text.startswith("=", after) or text.startswith("==", after)):
                 return (QUANTITY, unit_end) if is_unit(text[unit:unit_end]) else (ERROR, end)
         elif character == "°" or (unit == end and (character.isalpha() or character == "_")):
             return ERROR, end

@@ -37,7 +37,7 @@ class StrangeCharacters(Indentation):
         self._block_ends: set[int] = set()  # closing braces of blocks whose opening ones were reported
         self._strange = False  # an invalid character was reported on this line
 
-    def _nothing(self, start: i64, character: str) -> i64:
+    def _invalid_character(self, start: i64, character: str) -> i64:
         """Handle an invalid character: report once a line, and usually skip it."""
         text = self.text
         if character == "]" and self._brackets and text.find("[", self._brackets[-1][0], start) < 0:
@@ -94,8 +94,8 @@ class StrangeCharacters(Indentation):
         Returns:
             Where it ends, or `start` if it is not one.
         """
-        behind = blanks_end(self.text, start + 1, self.size)
-        ends_line = behind == self.size or self.text[behind] in "\r\n"
+        after = blanks_end(self.text, start + 1, self.size)
+        ends_line = after == self.size or self.text[after] in "\r\n"
         is_opening = character in "{["
         if self._brackets or not ends_line or self._strange or is_opening != bool(self.raws):
             return start
@@ -127,8 +127,8 @@ class StrangeCharacters(Indentation):
         while at < self.size:
             first, at = line_opening(text, self.ink, at)
             if at - first <= len(self.blanks):
-                behind = blanks_end(text, at + 1, self.size)
-                is_alone = behind >= self.size or text[behind] in "\r\n"
+                after = blanks_end(text, at + 1, self.size)
+                is_alone = after >= self.size or text[after] in "\r\n"
                 return at if text[at : at + 1] == sign and is_alone else -1
             at = line_end(text, at)
         return -1

@@ -20,14 +20,14 @@ from btq_lang.util.text import Span
 def close_string(text: str, start: int) -> Fix:
     """Close the string that begins at `start` on its line, before what is probably not part of it."""
     end = line_end(text, start)
-    said = start + 1 + len(text[start + 1 : end].rstrip(" \t,"))
+    end_of_string = start + 1 + len(text[start + 1 : end].rstrip(" \t,"))
     depth = 0
-    for at in range(start + 1, said):
+    for at in range(start + 1, end_of_string):
         depth += (text[at] == "(") - (text[at] == ")")
         if depth < 0:  # it closes brackets that were opened before the string
-            said = start + 1 + len(text[start + 1 : at].rstrip(" \t,"))
+            end_of_string = start + 1 + len(text[start + 1 : at].rstrip(" \t,"))
             break
-    return replace_fix(f"Close it with {text[start]}", Span(said, said), text[start])
+    return replace_fix(f"Close it with {text[start]}", Span(end_of_string, end_of_string), text[start])
 
 
 def value_meant(text: str, start: int, end: int, *, safe: bool) -> Fix:

@@ -82,8 +82,8 @@ def misspelt(text: str, span: Span) -> Diagnostic:
     meant = MEANT[raw.lower()]
     # Insert a blank next to another operator, so that the two do not become one.
     before = " " if text[span.start - 1 : span.start] in _OPERATOR_CHARACTERS else ""
-    behind = " " if text[span.end : span.end + 1] in _OPERATOR_CHARACTERS else ""
-    return error(span, f"`{raw}` is written `{meant}` in a script", _write(meant, span, before, behind))
+    after = " " if text[span.end : span.end + 1] in _OPERATOR_CHARACTERS else ""
+    return error(span, f"`{raw}` is written `{meant}` in a script", _write(meant, span, before, after))
 
 
 def wrong_quotes(span: Span, content: str) -> Diagnostic:
@@ -199,7 +199,7 @@ def colon_alone(span: Span) -> Diagnostic:
     return error(span, "unexpected `:` without `?`; assign a value with `:=`")
 
 
-def assignment_behind_ternary(span: Span) -> Diagnostic:
+def assignment_after_ternary(span: Span) -> Diagnostic:
     return error(span, "an assignment in the last part of `? :` must be in brackets: `c ? a : (b := 1)`")
 
 
@@ -235,5 +235,5 @@ def two_operands(text: str, left: Span, right: Span) -> Diagnostic:
     return error(place, f"missing operator between `{word}` and `{text[right.start : right.end]}`")
 
 
-def _write(meant: str, span: Span, before: str = "", behind: str = "") -> Fix:
-    return Fix(f"Write `{meant}`", (Change(Place(span), f"{before}{meant}{behind}"),), safe=True)
+def _write(meant: str, span: Span, before: str = "", after: str = "") -> Fix:
+    return Fix(f"Write `{meant}`", (Change(Place(span), f"{before}{meant}{after}"),), safe=True)

@@ -242,7 +242,7 @@ class _Parser:
     def unexpected(self, statement: Expression) -> NoReturn:
         """Report that what follows a statement neither separates nor begins one."""
         if RANK.get(self.kinds[self.at]) == ASSIGNMENT and isinstance(statement, Ternary):
-            self.stop(mistakes.assignment_behind_ternary(self.span(self.at)))
+            self.stop(mistakes.assignment_after_ternary(self.span(self.at)))
         self.no_operand()
 
     def unclosed(self, problem: Diagnostic) -> NoReturn:

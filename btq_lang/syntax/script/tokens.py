@@ -232,17 +232,17 @@ def _read_words(tokens: Tokens, text: str) -> None:
         word = text[starts[index] : ends[index]] if kind == NAME else ""
         if word not in _WORDS or index in tokens.meant:
             continue
-        span, behind = Span(starts[index], ends[index]), kinds[index + 1]
+        span, after = Span(starts[index], ends[index]), kinds[index + 1]
         after_operand = index > 0 and (kinds[index - 1] in OPERANDS or kinds[index - 1] == ")")
         if word in ("not", "NOT"):
-            if not after_operand and behind in BEGINS:
+            if not after_operand and after in BEGINS:
                 end_of_operand = closing.get(index + 1, index + 1) + 1
                 if _ends_condition(kinds[end_of_operand], text[starts[end_of_operand] : ends[end_of_operand]]):
                     kinds[index] = "!"
                     tokens.problems.append(mistakes.misspelt(text, Span(span.start, starts[index + 1])))
                 else:  # `not a == b` negates the comparison, but `!a == b` compares `!a`
                     kinds[index] = ERROR
-        elif after_operand and behind != ERROR and RANK.get(behind) != ASSIGNMENT:
+        elif after_operand and after != ERROR and RANK.get(after) != ASSIGNMENT:
             kinds[index] = mistakes.MEANT[word.lower()]
             tokens.problems.append(mistakes.misspelt(text, span))
 

@@ -193,19 +193,19 @@ def _separators(script: tree.Script, targets: _Targets) -> list[Diagnostic]:
     """Check separators: up to 4.8, exactly one `;` between two statements and none after the last; later any number."""
     found: list[Diagnostic] = []
     text, statements = script.text, script.statements
-    for before, behind in zip_longest(statements, statements[1:]):
-        end = len(text) if behind is None else behind.start
+    for before, after in zip_longest(statements, statements[1:]):
+        end = len(text) if after is None else after.start
         count = text.count(";", before.end, end)
-        if behind is not None and count == 0:
+        if after is not None and count == 0:
             fix = Fix("Add the `;`", (Change(Place(Span(before.end, before.end)), ";"),), safe=True)
-            found.append(_refused(fix, behind, "a statement without a `;` before it", targets.old, targets))
-        elif count > (behind is not None):
+            found.append(_refused(fix, after, "a statement without a `;` before it", targets.old, targets))
+        elif count > (after is not None):
             first = text.index(";", before.end)
-            if behind is not None:
+            if after is not None:
                 first = text.index(";", first + 1)
             span = Span(first, text.rindex(";", first, end) + 1)
             fix = Fix("Remove it", (Change(Place(span), ""),), safe=True)
-            what = "a `;` after the last statement" if behind is None else "more than one `;` between statements"
+            what = "a `;` after the last statement" if after is None else "more than one `;` between statements"
             found.append(_refused(fix, span, what, targets.old, targets))
     return found
 
@@ -234,8 +234,8 @@ def _refused(
 
 def _misread(fix: Fix, node: tree.Expression, other: str, misreading: tuple[str, ...], text: str) -> Diagnostic:
     verb = "reads" if len(misreading) == 1 else "read"
-    said = " ".join(text[node.start : node.end].split())
-    message = f"{_listed(misreading)} {verb} `{said}` as `{' '.join(other.split())}`"
+    shown = " ".join(text[node.start : node.end].split())
+    message = f"{_listed(misreading)} {verb} `{shown}` as `{' '.join(other.split())}`"
     return Diagnostic("script-version", Span(node.start, node.end), message, fixes=(fix,))
 
 
