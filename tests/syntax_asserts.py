@@ -89,7 +89,7 @@ def assert_parse(text: str, tree: str | None = None, *problems: str) -> Parsed:
     text = written(text)
     parsed = parse(text)
     assert_invariants(parsed)
-    if len(parsed.diagnostics) == 1:  # mending one mistake of several on a line brings up the next
+    if len(parsed.diagnostics) == 1:  # fixing one of several mistakes on a line reveals the next
         assert_safe_fixes(parsed)
     assert_same(show_problems(text, parsed.diagnostics), "\n".join(problems))
     if tree is not None:
@@ -133,7 +133,7 @@ def _is_cut_off(token: Token) -> bool:
 
 
 def assert_tokens(parsed: Parsed) -> None:
-    """No character is lost or told twice, and every block that opens is closed."""
+    """No character is lost or repeated, and every block that opens is closed."""
     at = depth = 0
     for token in parsed.tokens:
         assert token.start == at
@@ -176,7 +176,7 @@ def assert_nested(item: Item, start: int, end: int, text: str) -> None:
 
 
 def extent(part: object) -> tuple[int, int] | None:
-    """Where a part begins and ends, its block included; None where it is no part, or says nothing."""
+    """The span of a part, its block included; None if it is not a part, or has no span."""
     if isinstance(part, Node):
         return part.start, part.block_end
     if isinstance(part, Word | Pair | Path | QualityPath):
@@ -257,7 +257,7 @@ def dump(parsed: Parsed) -> str:
 
 
 def shown(entry: Entry) -> bool:
-    """The empty item behind the last one only carries diagnostics."""
+    """The empty item after the last one only carries diagnostics."""
     return not (isinstance(entry.item, Skipped) and entry.item.start == entry.item.end)
 
 

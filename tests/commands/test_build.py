@@ -284,7 +284,7 @@ def test_a_side_file_that_is_not_made_any_more_goes(btq: Btq) -> None:
     assert btq.build("--check") == (1, "out of date: mission.xml\nstale: mission.qreq.json\n", "")
     assert btq.build() == (0, "wrote mission.xml\nremoved mission.qreq.json\n", GUESSED.format("Pick (Action)"))
     assert btq.build("--check") == (0, "", "")
-    btq.write(**{"mission.qreq.json": "{}\n"})  # somebody else's
+    btq.write(**{"mission.qreq.json": "{}\n"})  # written by someone else
     assert btq.build("--check") == (0, "", "")
     assert btq.files == ["mission.btq", "mission.qreq.json", "mission.xml"]
 

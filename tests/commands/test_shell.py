@@ -46,7 +46,7 @@ def run(*command: str) -> str:
     return result.stdout
 
 
-# What completes to what; the last word is the one that the cursor stands behind.
+# Words of a command line and their completions; the cursor is at the end of the last word.
 LINES = [
     (["btq", ""], ["check", "completion", "explain"]),
     (["btq", "ch"], ["check"]),

@@ -28,7 +28,7 @@ class ClauseResult:
 
     Attributes:
         judged: all of its activations.
-        experiments: what the odds speak of: these, or what they come to in each run.
+        experiments: what the odds count: these, or their result in each run.
     """
 
     verdict: str

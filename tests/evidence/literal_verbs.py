@@ -51,8 +51,9 @@ class OfActivations(Log):
         ]
 
     def is_stopped(self, a: Activation, claim: Claim, requirement: Requirement) -> bool:
-        """Whether a guard that stands around the node for this clause has halted it: the nearest one above it that was
-        not halted itself, and failed."""
+        """Whether the guard around the node for this clause has halted it: the nearest one above it that was not halted
+        itself, and failed.
+        """
         uid, inner = self.tree.parent[a.uid], a
         while uid in self.guards and inner.outcome == "H":
             inner = next((each for each in reversed(self.of(uid)) if each.start <= inner.start <= each.stop), inner)

@@ -1,7 +1,7 @@
 """Random missions with requirements of all kinds, and logs of them: what the model of the engine does, as rows.
 
 A log may be one of control nodes like Nav2's, which do not reset their children and write their rows late, twice or not
-at all; it may lack all rows to IDLE, be cut off, and have runs that nobody ended.
+at all; it may lack all rows to IDLE, be cut off, and have runs without an end.
 """
 
 from __future__ import annotations
@@ -364,7 +364,7 @@ def as_logged(chance: random.Random, tree: LoggedTree, rows: list[Transition]) -
     if chance.random() < 0.4:
         inner = [uid for uid, last in tree.last.items() if last > uid]
         habits = {uid: chance.choice(["late", "only its result", "IDLE first"]) for uid in inner}
-        habits[ROOT] = chance.choice(["late", "IDLE first"])  # a run whose end nobody writes would be part of the next
+        habits[ROOT] = chance.choice(["late", "IDLE first"])  # a run without a logged end would be part of the next
     found: list[Transition] = []
     open_: set[int] = set()
     late: Transition | None = None

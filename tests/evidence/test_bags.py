@@ -1,4 +1,4 @@
-"""ROS 2 bags: the same verdicts as through the engine's own logs, whatever Nav2 leaves out, mixes or brings late."""
+"""ROS 2 bags: the same verdicts as through the engine's own logs, whatever Nav2 omits, mixes or publishes late."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def test_the_end_of_a_goal_may_come_with_the_next_one_or_never(nav: Verify, shar
 
 
 def test_a_bag_without_uids(nav: Verify, shared: Path) -> None:
-    """ROS 2 Humble: nodes of the same name cannot be told apart, so clauses at them are unknown."""
+    """ROS 2 Humble: nodes of the same name cannot be distinguished, so clauses at them are unknown."""
     xml, start, transitions = logged(shared / "logs" / "nav.btlog")
     write_bag(nav.folder / "bag", tree_log(transitions, names_of(xml), start, store=HUMBLE), store=HUMBLE)
     found = nav.json("bag", "--mission", "nav.btq")

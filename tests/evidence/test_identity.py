@@ -136,7 +136,7 @@ LIMITED = MAIN_XML.replace(
         # The engine's timer starts before the node does, so what a Timeout stops has lasted a little less than that.
         ("0 1R 2R 0.1 3R 20 3I 2F 2I 1F", "violated", "stopped by its own guard after 19.9 ms"),
         ("0 1R 2R 0.1 3R 20 2F 2I 1F", "violated", "stopped by its own guard after 19.9 ms"),  # no row to IDLE
-        ("0 1R 2R 0.1 3R 10 3I 2I 1I", "never exercised", ""),  # stopped by somebody else
+        ("0 1R 2R 0.1 3R 10 3I 2I 1I", "never exercised", ""),  # stopped by something else
         ("0 1R 2R 0.1 3R 10 3F 2F 1F", "satisfied", ""),
         ("0 1R 2R 0.1 3R 10 3S 2S 4S 1S", "satisfied", ""),
         # The guard left no row in the run in which the node was halted, and failed in the next one.

@@ -1,7 +1,7 @@
-"""Files that were cut off, and files in which somebody has changed bytes: a result or one clear error, in every format.
+"""Truncated files, and files with changed bytes: a result or one clear error, in every format.
 
-`python tests/evidence/test_mutations.py 20000` makes as many of each format as it is told, with another seed each time
-unless one follows; it prints the seed.
+`python tests/evidence/test_mutations.py 20000` makes that many of each format, with another seed each time unless one
+follows; it prints the seed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Readers of logs: whole files, cut ones, foreign ones, and such that somebody has tampered with."""
+"""Readers of logs: complete, truncated, foreign and manipulated files."""
 
 from __future__ import annotations
 

@@ -85,7 +85,7 @@ IDLE_RUN = "0 1R 5R 50 5S 1S"  # Move does not start
         ("Move tries at most 1 per Pick", TWICE, "satisfied 0/1"),
         ("Move tries at most 1 per Task", "0 1R 2R 3R 10 3F 2F 20 2R 3R 30 3S 2S 1S", "satisfied 0/2"),
         ("Move tries at most 1 per Task", UNWRITTEN, "violated 1/1"),
-        # SKIPPED is no activation, and one that is there from before counts where it started.
+        # SKIPPED is not an activation, and an earlier one counts where it started.
         ("Move tries at most 1 per Alarm", "0 1R 3R 10 5R 20 3S 3R 30 5S 40 3S 1S", "satisfied 0/1"),
         ("Move tries at most 1 per Alarm", "0 1R 3R 10 5R 20 3S 3R 30 3S 3R 40 5S 1S", "violated 1/1"),
         # An activation that had ended by 40 may have been over before the second start.
@@ -128,7 +128,7 @@ def test_runs_every(demand: str, runs: str, expected: str, verify: Verify) -> No
 @pytest.mark.parametrize(
     ("demand", "runs", "expected"),
     [
-        # Starts at 0 and 20, the run ends at 50: the window behind the last start has none.
+        # Starts at 0 and 20, the run ends at 50: the window after the last start has none.
         ("Move runs at least 1 per 20 ms", TWICE, "violated 1/1"),
         ("Move runs at least 1 per 30 ms", TWICE, "satisfied 0/1"),
         ("Move runs at least 2 per 30 ms", TWICE, "violated 1/1"),

@@ -202,7 +202,7 @@ def test_uses(demand: str, runs: str, expected: str, verify: Verify) -> None:
 @pytest.mark.parametrize(
     ("condition", "expected"),
     [
-        # The samples of Move: 50 % as it starts, then 30 %, 5 % and 30 %; that after its end is none.
+        # The samples of Move: 50 % as it starts, then 30 %, 5 % and 30 %; the sample after its end does not count.
         ("max(battery) <= 50 %", "satisfied 0/1"),
         ("max(battery) < 50 %", "violated 1/1"),
         ("min(battery) >= 5 %", "satisfied 0/1"),

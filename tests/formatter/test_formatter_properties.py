@@ -31,7 +31,7 @@ DEFAULTS = FormatOptions()
 
 LAYOUTS = st.builds(relaid, st.sampled_from((EVERY_FORM, *TEXTS)), st.integers(0, 2**32))
 OPTIONS = st.builds(FormatOptions, st.sampled_from((100, 60, 30, 8)), st.sampled_from((4, 2, 1, 8)))
-# Words of the language and what may stand between them: a text of these is now and then one without errors.
+# Words of the language and separators: a random text of these is now and then valid.
 PIECES = [
     *sorted({token.text for token in tokens(EVERY_FORM) if token.kind != COMMENT}),
     *("# c\n", "/* c */", "\n", "\n    ", "\n        ", "\t", "\r", "(", ")", "- ", "-1", "\ufeff", "\x0c", "\u2028"),

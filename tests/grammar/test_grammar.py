@@ -113,7 +113,7 @@ def _derive(part: Part, chance: random.Random, words: list[str], depth: int) -> 
         for each in what:
             _derive(each, chance, words, depth)  # type: ignore[arg-type]  # a list here
     elif kind == "one":
-        # Deep down the alternatives that stand first, which lead back to themselves nowhere.
+        # Below a certain depth only first alternatives, which are not recursive.
         _derive(chance.choice(what if depth < 25 else what[:1]), chance, words, depth)  # type: ignore[arg-type]  # as above
     elif kind == "maybe":
         if chance.random() < likely:

@@ -35,7 +35,7 @@ def show_token(token: Token) -> str:
 
 
 def assert_value(source: str, expected: str, *problems: str) -> None:
-    """How the lexer cuts what stands behind `a =` in brackets; columns count from there."""
+    """The tokens after `a =` in brackets; columns count from there."""
     shift = len("X (a = ")
     moved = [f"1:{int(problem[2:].split(' ', 1)[0]) + shift} {problem.split(' ', 1)[1]}" for problem in problems]
     assert_lex(f"X (a = {source})", f"NAME X | OPEN ( | NAME a | OPERATOR = | {expected} | CLOSE ) | NL", *moved)
@@ -364,7 +364,7 @@ def test_a_line_that_is_not_comparable_is_not_further_left() -> None:
 
 
 def test_a_line_that_begins_with_a_closing_bracket_never_ends_the_brackets_early() -> None:
-    # Here `b` ends them; the `)` that was missed before it is no second mistake.
+    # Here `b` ends them; the missing `)` before it is not a second mistake.
     expected = "NAME a | NL | >> | NAME X | OPEN ( | CLOSE | NL | << | NAME b | NL | ERROR ) | NL"
     assert_lex("a\n    X (\nb\n)", expected, f"2:7 {UNCLOSED}")
     assert_lex("a\n    X (b\n)\nc", "NAME a | NL | >> | NAME X | OPEN ( | NAME b | CLOSE ) | NL | << | NAME c | NL")

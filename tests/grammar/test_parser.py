@@ -77,7 +77,7 @@ def test_the_garbage_collector_is_left_as_it_was() -> None:
         gc.enable()
 
 
-# ---- what is no item ------------------------------------------------------------------------------------------------
+# ---- lines that are not items ---------------------------------------------------------------------------------------
 
 END = "found the end of the line"
 EXPECTED_ITEM = "expected an item: BehaviorTree, QualityReq, include, signal, …"

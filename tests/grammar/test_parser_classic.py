@@ -80,7 +80,7 @@ def said(requirement: Requirement) -> tuple[str, str]:
 
 
 def in_brackets(attributes: str, shown: str, *problems: str) -> None:
-    """A script action with these attributes, with a node behind it."""
+    """A script action with these attributes, followed by a node."""
     text = f"BehaviorTree ID = t\n\t->\n\t\tScriptAction ({attributes})\n\t\tZ\n"
     assert_parse(text, f"tree t\n  ->\n    ScriptAction{shown}\n    Z", *problems)
 

@@ -12,7 +12,7 @@ END = "found the end of the line"
 
 
 def assert_node(line: str, tree: str, *problems: str) -> None:
-    """One node, alone in a tree, with a node behind it; the columns of problems count from the node."""
+    """One node in a tree, followed by another; the columns of problems count from the node."""
     moved = [f"2:{int(problem[2:].split(' ', 1)[0]) + 2} {problem.split(' ', 1)[1]}" for problem in problems]
     block = "".join(f"  {shown}\n" for shown in [*tree.splitlines(), "Z"])
     assert_parse(f"BehaviorTree t\n  {line}\n  Z\n", f"tree t\n{block}", *moved)
@@ -511,7 +511,7 @@ def test_forgotten_brackets_are_one_diagnostic_whatever_they_swallow() -> None:
     ],
 )
 def test_node_clause(clause: str, shown: str) -> None:
-    """On the node's line, on a line of its own, and in brackets before, between and behind attributes."""
+    """On the node's line, on a line of its own, and in brackets before, between and after attributes."""
     assert_node(f"X {clause}", f"X\n  {shown}")
     assert_node(f"X {clause} tags z", f"X\n  {shown}\n  tags z")
     assert_node(f"X ({clause})", f"X\n  {shown}")

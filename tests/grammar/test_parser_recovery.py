@@ -340,7 +340,7 @@ def test_a_root_without_a_block_leaves_no_column_behind() -> None:
     assert found == [("second-root", 40), ("inconsistent-indentation", 45)]
 
 
-# ---- slips, and what is said of them --------------------------------------------------------------------------------
+# ---- common mistakes and their diagnostics --------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

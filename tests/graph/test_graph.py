@@ -1,4 +1,4 @@
-"""Pictures: where boxes stand, what is written on them, and the three formats."""
+"""Pictures: the positions and texts of boxes, and the three formats."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ def test_after_every_key_it_is_what_a_new_server_says(hospital: Path, request: p
 
 
 def answers(session: Session, typist: Typist) -> Mapping[str, object]:
-    """What a server says of the file in front, and of what stands at the cursor."""
+    """The server's results for the current file, and at the cursor."""
     path, offset = typist.path, typist.cursor
     workspace = session.workspace_of(path)
     if workspace is None:

@@ -1057,7 +1057,7 @@ def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: P
 
 @pytest.mark.parametrize(("broken", "is_told"), [("findings", False), ("edit", True)])
 def test_what_raises_while_somebody_types_is_logged_once(tmp_path: Path, broken: str, is_told: bool) -> None:
-    """A check, which nobody asks for, and what takes a change, which nobody is answered."""
+    """Failures outside requests: in a check, and in the handler of a change."""
     program = (
         "from btq_lang.lsp.session import Session\n"
         "def broken(*_): raise ZeroDivisionError('broken')\n"
@@ -1125,7 +1125,7 @@ def test_an_editor_that_traces_is_told_what_the_server_does(tmp_path: Path) -> N
 
 
 def traces(editor: Editor, method: str) -> list[Message]:
-    """What is told while a request is answered."""
+    """What is published while a request is answered."""
     editor.kept.clear()
     editor.ask(method, **editor.at("main.btq", 0, 0))
     return [message["params"] for message in editor.kept if message["method"] == "$/logTrace"]
@@ -1159,7 +1159,7 @@ def test_a_cancelled_request_is_answered_as_cancelled(tmp_path: Path) -> None:
     editor = Editor(tmp_path, capabilities={**PULLS, "window": {"workDoneProgress": True}})
     editor.request("workspace/diagnostic", previousResultIds=[])  # from then on all files are known
     editor.send(id="slow", method="workspace/diagnostic", params={"previousResultIds": []})
-    editor.notify("$/cancelRequest", id="slow")  # behind it stands the answer that the server needs to go on
+    editor.notify("$/cancelRequest", id="slow")  # after it comes the response that the server waits for
     answer = editor.wait_for(lambda message: message.get("id") == "slow")
     assert answer["error"]["code"] == -32800
     assert [each["method"] for each in editor.asked].count("window/workDoneProgress/create") == 2

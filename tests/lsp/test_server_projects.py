@@ -112,7 +112,7 @@ def test_of_pyproject_the_table_of_btq_is_looked_at(editor: Editor) -> None:
     editor.write("robot/pyproject.toml", '[tool.other]\nengin = 1\n[tool.btq]\nengine = "4.8"\nengin = 1\n')
     found = said(editor.published("robot/pyproject.toml")["diagnostics"])
     assert found == [((4, 0, 5), "unknown key `engin`; did you mean `engine`?")]
-    editor.write("robot/pyproject.toml", "[tool.btq]\n[tool.other]\nengin =\n")  # nobody can read any of it
+    editor.write("robot/pyproject.toml", "[tool.btq]\n[tool.other]\nengin =\n")  # none of it is readable
     assert said(editor.published("robot/pyproject.toml")["diagnostics"]) == [((2, 7, 7), "Invalid value")]
     editor.write("robot/pyproject.toml", "[tool.other]\nengin = 1\n")
     assert editor.published("robot/pyproject.toml")["diagnostics"] == []
@@ -158,7 +158,7 @@ def test_a_project_file_is_no_mission(editor: Editor) -> None:
 
 def test_the_diagnostics_of_a_project_file_are_pulled(folder: Path) -> None:
     def pulled() -> dict[str, int]:
-        """How many are told of each file, by its name; unchanged reports left aside."""
+        """How many diagnostics are reported for each file, by its name; without unchanged reports."""
         known = [{"uri": uri, "value": result} for uri, result in results.items()]
         items = editor.request("workspace/diagnostic", previousResultIds=known)["items"]
         results.update({each["uri"]: each["resultId"] for each in items if "resultId" in each})
@@ -191,7 +191,7 @@ def test_an_editor_that_asks_only_about_what_is_open_is_told_of_project_files(fo
     editor.shut("robot/btq.toml")
     assert len(editor.published("robot/btq.toml")["diagnostics"]) == 1
     assert len(editor.request("workspace/diagnostic", previousResultIds=[])["items"]) == 2
-    assert editor.published("robot/btq.toml")["diagnostics"] == []  # what is told twice would be shown twice
+    assert editor.published("robot/btq.toml")["diagnostics"] == []  # what is published twice would be shown twice
     editor.write("robot/btq.toml", "engines = 1\n")
     editor.request("workspace/diagnostic", previousResultIds=[])
     assert [one for one in editor.kept if one["method"] == "textDocument/publishDiagnostics"] == []

@@ -165,14 +165,14 @@ def test_files_come_and_go_and_the_project_changes(folder: Path, seed: int, monk
 
 
 def shown_by(session: Session, path: str, convert: Converter) -> str:
-    """What an editor is told of a file."""
+    """What is published for a file."""
     workspace = session.workspace_of(path)
     assert workspace is not None
     return convert.findings(workspace, path, session.findings(path))
 
 
 def patched(data: list[int], changes: list[Change]) -> list[int]:
-    """The integers after changes that all count in what is there before; they stand in order, and none in another."""
+    """The integers after changes that all refer to the original; the changes are in order and do not overlap."""
     patched, end = [], 0
     for one in changes:
         assert end <= one.start
@@ -293,7 +293,7 @@ def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None
     assert list(session.edit(skills, SKILLS)) == linked
     other = f"{folder}/other.btq"
     assert session.edit(other, OTHER + "    SubTree Carry\n") == (other,)
-    every = [skills, other, *linked[1:]]  # that one uses the tree, and is told where it is
+    every = [skills, other, *linked[1:]]  # that one uses the tree, and its diagnostic names the place
     assert list(session.edit(skills, SKILLS.replace("Carry", "Bring"))) == every
     assert list(session.edit(skills, SKILLS)) == every
     assert list(session.edit(skills, SKILLS.replace("Move", "Drive"))) == linked

@@ -134,7 +134,7 @@ def test_when_colour_is_wanted(isatty: bool, environ: dict[str, str], expected: 
 
 @pytest.mark.parametrize("form", FORMATS)
 def test_a_format_loads_only_what_it_needs(form: str) -> None:
-    """A start costs what is imported: a renderer must not bring in the others, nor heavy modules of Python's."""
+    """Imports dominate the start-up time: a renderer must not import the others, or heavy standard modules."""
     program = (
         "import sys; from btq_lang.render import Report, render\n"
         f"list(render({form!r}, Report((), {{}})))\n"

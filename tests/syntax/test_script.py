@@ -1,6 +1,5 @@
-"""The engine's scripting language: what each version reads, what is said of the rest, and the properties of the fixes.
-
-Every row of the tables was put to BehaviorTree.CPP 4.6.2, 4.8.4 and 4.10.0; `4.6`, `4.8` stand for them below.
+"""The engine's scripting language: what each version reads, the diagnostics for the rest, and the properties of the
+fixes.  Every row of the tables was run with BehaviorTree.CPP 4.6.2, 4.8.4 and 4.10.0; `4.6` and `4.8` mean them below.
 """
 
 from __future__ import annotations
@@ -95,7 +94,7 @@ READ_ALIKE = [
     ("x := (y := 3)", "x := (y := 3)"),
     ("x = y == z", "x = (y == z)"),
     ("\n x := 1 ;\n y := 2\t\n", "x := 1; y := 2"),
-    # The names of other languages' operators are names where no operator can stand.
+    # The names of other languages' operators are names where no operator is possible.
     ("and := 1; or := and", "and := 1; or := and"),
     ("not == 3", "(not == 3)"),
 ]
@@ -335,7 +334,7 @@ VERSIONS: list[tuple[str, list[str], str]] = [
         ["4.6 and 4.8 refuse a `?:` as the last part of another without brackets"],
         "a ? b : (c ? d : e)",
     ),
-    # What stands between statements.
+    # Separators of statements.
     ("x := 1 y := 2", ["4.6 and 4.8 refuse a statement without a `;` before it"], "x := 1; y := 2"),
     ("x := a ready", ["4.6 and 4.8 refuse a statement without a `;` before it"], "x := a; ready"),
     ("x := 1;; y := 2", ["4.6 and 4.8 refuse more than one `;` between statements"], "x := 1; y := 2"),

@@ -745,7 +745,7 @@ def test_what_one_mission_attaches_is_about_a_node() -> None:
     )
     assert [text for _, text in overview_of(rules=rules, one=plain).loose] == ["succeeds"]
     assert overview_of(rules=rules, one=plain, two=attached).loose == ()
-    # Nobody asks the engine to hold it, so it is not among the hard ones.
+    # The engine need not enforce it, so it is not a hard one.
     assert overview_of(rules=rules, one=plain).unenforced == ()
 
 
