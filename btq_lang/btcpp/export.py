@@ -128,7 +128,7 @@ def _document(source: Source, trees: Trees, included_as: IncludedAs, guessed: di
         else:  # other items have no element, nor have the comments in them
             contents += source.written(around.before)
     missing = {} if source.verbatim else undeclared(source.workspace, source.path)
-    guessed.update({name: node.category for name, node in missing.items() if node.said is None})
+    guessed.update({name: node.category for name, node in missing.items() if node.stated_category is None})
     contents += models.rest(source, (suggested_model(name, node) for name, node in missing.items()))
     contents += end_of_block
     end = source.written(source.comments.get(len(source.file.text), NO_COMMENTS).before)

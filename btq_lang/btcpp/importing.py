@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     Mark: TypeAlias = tuple[int, int, Element | None, Sequence[Piece], Sequence[str], Sequence[Attribute] | None, str]
     # How a node is written: the line without its indentation (empty: it is composed each time), the words, the
     # attributes in brackets and their spelling.
-    Said: TypeAlias = tuple[str, Sequence[Piece], Sequence[Attribute], Sequence[str]]
+    NodeLine: TypeAlias = tuple[str, Sequence[Piece], Sequence[Attribute], Sequence[str]]
 
 
 class Imported(Record):
@@ -122,7 +122,7 @@ class _Writer:
         self.source: Final = source
         self.symbols: Final = for_people
         # By tag and attributes: many nodes are alike and share their attributes.
-        self.said: Final[dict[tuple[str, tuple[Attribute, ...]], Said]] = {}
+        self.node_lines: Final[dict[tuple[str, tuple[Attribute, ...]], NodeLine]] = {}
         self.columns: Final = _COLUMNS if for_people else len(source) * 10
         self.included_as: Final = included_as
         self.out: Final[list[str]] = []
@@ -228,7 +228,7 @@ class _Writer:
 
     def nodes(self, parent: Element, level: int) -> None:
         """Write all nodes below an element, with the comments between them; not recursively, for trees are deep."""
-        known, marks, out = self.said, self.marks, self.out
+        known, marks, out = self.node_lines, self.marks, self.out
         stack = [iter(parent.children)]
         above: Element | None = parent  # the element of the previous line
         while stack:
@@ -265,7 +265,7 @@ class _Writer:
                 level -= 1
                 above = None
 
-    def node(self, element: Element) -> Said:
+    def node(self, element: Element) -> NodeLine:
         """Kind [ Label ] [ Attributes ]: from the tag and the attributes alone"""
         attributes, tag = element.attributes, element.tag
         index = 0

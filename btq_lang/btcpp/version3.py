@@ -75,11 +75,11 @@ class _Translator:
             self.rename(is_explicit, known.replacement)
             identity = known.replacement
         elif known is not None and known.word in _GONE:
-            self.tell(f"{known.why}: kept unchanged")
+            self.report(f"{known.why}: kept unchanged")
         for attribute in element.attributes:
             port = OLD_PORTS.get((identity or "", attribute.name))
             if port is not None:
-                self.tell(f"{attribute.name} of {identity} is now {port}", attribute)
+                self.report(f"{attribute.name} of {identity} is now {port}", attribute)
                 self.replace(attribute, self.changed(attribute, name=port))
 
     def rename(self, is_explicit: bool, new: str) -> None:
@@ -87,10 +87,10 @@ class _Translator:
         if is_explicit:
             for attribute in element.attributes:
                 if attribute.name == "ID":
-                    self.tell(f"{attribute.raw} is now {new}", attribute)
+                    self.report(f"{attribute.raw} is now {new}", attribute)
                     self.replace(attribute, self.changed(attribute, raw=new))
         else:
-            self.tell(f"{element.tag} is now {new}")
+            self.report(f"{element.tag} is now {new}")
             element.tag = new
 
     def subtree(self, is_plus: bool) -> None:
@@ -98,27 +98,29 @@ class _Translator:
         now."""
         element = self.element
         if is_plus:
-            self.tell("SubTreePlus is now SubTree")
+            self.report("SubTreePlus is now SubTree")
             element.tag = "SubTree"
         found: list[Attribute] = []
         for attribute in element.attributes:
             key, said = attribute.name, attribute.value
             if key == "__shared_blackboard":
                 if _is_true(said):
-                    self.tell('__shared_blackboard is now _autoremap="true"', attribute)
+                    self.report('__shared_blackboard is now _autoremap="true"', attribute)
                     found.append(self.changed(attribute, "_autoremap", "true"))
                 else:
-                    self.tell("__shared_blackboard is left out: version 4 shares only what is mapped", attribute)
+                    self.report("__shared_blackboard is left out: version 4 shares only what is mapped", attribute)
             elif key == "__autoremap":
-                self.tell("__autoremap is now _autoremap", attribute)
+                self.report("__autoremap is now _autoremap", attribute)
                 found.append(self.changed(attribute, "_autoremap"))
             elif is_plus or key in ("ID", "name") or key.startswith("_") or said.startswith("{"):
                 found.append(attribute)
             elif said == "":
-                self.tell(f"`{key}` of a SubTree names no entry: kept unchanged", attribute)
+                self.report(f"`{key}` of a SubTree names no entry: kept unchanged", attribute)
                 found.append(attribute)
             else:
-                self.tell(f'{key}="{attribute.raw}" of a SubTree names an entry: now "{{{attribute.raw}}}"', attribute)
+                self.report(
+                    f'{key}="{attribute.raw}" of a SubTree names an entry: now "{{{attribute.raw}}}"', attribute
+                )
                 found.append(self.changed(attribute, raw=f"{{{attribute.raw}}}"))
         element.attributes = tuple(found)
 
@@ -139,7 +141,7 @@ class _Translator:
         place = self.element.place(attribute)
         return Attribute(attribute.name if name is None else name, attribute.raw if raw is None else raw, place)
 
-    def tell(self, message: str, attribute: Attribute | None = None) -> None:
+    def report(self, message: str, attribute: Attribute | None = None) -> None:
         """Report a change of an attribute, or of the element's tag."""
         if attribute is None:
             start = self.element.start + 1

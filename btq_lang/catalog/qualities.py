@@ -154,8 +154,8 @@ def _find_word(word: str, key: str, index: _Index) -> QualityMatch | None:
     if len(parts_so_called) == 1:
         return QualityMatch("exact", parts_so_called[0], explanation=_remark((key,)))
     if parts_so_called:
-        told = f"`{word}` is part of several characteristics"
-        return QualityMatch("ambiguous", None, parts_so_called, explanation=told)
+        explanation = f"`{word}` is part of several characteristics"
+        return QualityMatch("ambiguous", None, parts_so_called, explanation=explanation)
     if meant:
         return QualityMatch("alias", meant[0], meant, True, _remark((key,)))
     other = _index("2011" if index.edition == "2023" else "2023")
@@ -203,12 +203,12 @@ def _of_other_edition(old: Quality, index: _Index) -> QualityMatch:
     now = " or ".join(quality.id for quality in candidates)
     same = len(candidates) == 1 and _are_equal(old.id, candidates[0].id)
     if index.edition == "2023":
-        told = f"`{old.id}` is a name of {old.source}"
-        told += f"; in 2023 it is {'' if same else 'nearest to '}{now}" if now else "; 2023 has no counterpart"
+        explanation = f"`{old.id}` is a name of {old.source}"
+        explanation += f"; in 2023 it is {'' if same else 'nearest to '}{now}" if now else "; 2023 has no counterpart"
     else:
-        told = f"`{old.id}` is new in {old.source}"
-        told += f"; in 2011 it was {'' if same else 'nearest to '}{now}" if now else "; 2011 has no counterpart"
-    return QualityMatch("other-edition", candidates[0] if same else old, candidates, same, told)
+        explanation = f"`{old.id}` is new in {old.source}"
+        explanation += f"; in 2011 it was {'' if same else 'nearest to '}{now}" if now else "; 2011 has no counterpart"
+    return QualityMatch("other-edition", candidates[0] if same else old, candidates, same, explanation)
 
 
 def _are_equal(id_: str, other: str) -> bool:
@@ -220,11 +220,11 @@ def _are_equal(id_: str, other: str) -> bool:
 def _alias(word: str, id_: str, index: _Index) -> QualityMatch:
     """Aliases lead to ids of 2023, which may be others in 2011, or none."""
     found = tuple(index.by_id[one] for one in _in_edition(id_, index))
-    told = f"`{word}` is another word for {' or '.join(quality.id for quality in found)}"
+    explanation = f"`{word}` is another word for {' or '.join(quality.id for quality in found)}"
     if len(found) == 1:
-        return QualityMatch("alias", found[0], found, True, told)
+        return QualityMatch("alias", found[0], found, True, explanation)
     if found:
-        return QualityMatch("ambiguous", None, found, explanation=told)
+        return QualityMatch("ambiguous", None, found, explanation=explanation)
     new = _index("2023").by_id[id_]
     return QualityMatch("other-edition", new, explanation=f"`{word}` means {id_}, which is new in {new.source}")
 

@@ -28,12 +28,12 @@ def number_for_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for pair in seen.node.attributes:
             met = _text_below(view, seen.id, pair.key, pair.value)
             if met is not None and pair.value is not None:
-                yield _told(pair.value, met, None)
+                yield _diagnostic(pair.value, met, None)
     for tree, port in _ports_of_trees(entry):
         met = _text_below(view, tree, port.name, port.default)
         if met is not None and port.default is not None:
             # Only if a SubTree passes nothing else to the port.
-            yield _told(port.default, met, Severity.WARNING)
+            yield _diagnostic(port.default, met, Severity.WARNING)
 
 
 def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -> tuple[Place, str, str] | None:
@@ -45,7 +45,7 @@ def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -
     return view.look_up(lookups.text_below, tree.text, port.text)
 
 
-def _told(value: Word, met: tuple[Place, str, str], severity: Severity | None) -> Diagnostic:
+def _diagnostic(value: Word, met: tuple[Place, str, str], severity: Severity | None) -> Diagnostic:
     place, name, node = met
     port = f"`{name}` of `{node}`"
     message = (

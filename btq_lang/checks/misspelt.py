@@ -42,16 +42,16 @@ def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if any(mention.name[:1] == "@" for mention in mentions):
         others |= dict.fromkeys(f"@{name}" for name in view.ask(_root_names))
     alike = _Alike(others)
-    told: set[str] = set()
+    reported: set[str] = set()
     for mention in mentions:
         if counts[mention.name] > 1:
             continue
         for meant in alike.to(mention.name):
-            if meant in told or _stand_together(mentions, mention, meant):
+            if meant in reported or _stand_together(mentions, mention, meant):
                 continue
             if view.ask(_is_meant, tree.name.text, mention.name, meant, meant in counts) and view.is_complete:
-                told.add(mention.name)
-                yield _told(mentions, mention, meant, counts.get(meant) == 1)
+                reported.add(mention.name)
+                yield _diagnostic(mentions, mention, meant, counts.get(meant) == 1)
                 break
 
 
@@ -107,12 +107,12 @@ def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, mea
     if _is_skeleton(name, meant):
         return False
     if not any(each.reads for each in uses):  # written only
-        is_told = len(others) == 1 and not others[0].writes  # there, where it is read
-        return is_port or (any(each.reads for each in others) and not is_told)
+        is_reported_there = len(others) == 1 and not others[0].writes  # there, where it is read
+        return is_port or (any(each.reads for each in others) and not is_reported_there)
     return len(uses) == 1 and (is_port or is_mentioned)
 
 
-def _told(mentions: Iterable[Mention], mention: Mention, meant: str, is_single: bool) -> Diagnostic:
+def _diagnostic(mentions: Iterable[Mention], mention: Mention, meant: str, is_single: bool) -> Diagnostic:
     """is_single: whether the other name also occurs once, so that it may be the misspelt one."""
     name = mention.name
     other = next((each for each in mentions if each.name == meant), None)

@@ -1,6 +1,6 @@
 """What changed between two missions.
 
-said        what a mission says, whatever its spelling, in a form that can be compared
+contents    the contents of a mission, whatever their spelling, in a form that can be compared
 matching    which nodes of the two missions correspond
 nodes       the changes of the trees, given that
 items       the changes of all else
@@ -16,10 +16,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from btq_lang.diff.changes import THINGS, Change, Detail, section
+from btq_lang.diff.contents import Place, contents
 from btq_lang.diff.items import item_changes, renamed_items
 from btq_lang.diff.matching import Forest, match
 from btq_lang.diff.nodes import tree_changes
-from btq_lang.diff.said import Place, said
 from btq_lang.workspace.workspace import Workspace
 
 __all__ = ["Change", "Detail", "Place", "compare"]
@@ -32,7 +32,7 @@ def compare(old: Workspace, old_paths: Iterable[str], new: Workspace, new_paths:
         old_paths: the files of the old mission, as `Workspace.closure` gives them: its own file is the last.
         new_paths: those of the new one.
     """
-    before, after = said(old, old_paths), said(new, new_paths)
+    before, after = contents(old, old_paths), contents(new, new_paths)
     renamed = renamed_items(before.items, after.items)
     forests = Forest(before.trees), Forest(after.trees)
     match(*forests, renamed)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final, Literal, TypeAlias
 
-from btq_lang.diff.said import Place, Values
+from btq_lang.diff.contents import Place, Values
 from btq_lang.util.record import Record
 
 # The order in which changes are listed: what the mission is and must be first, then how it does that.

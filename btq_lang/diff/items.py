@@ -9,7 +9,7 @@ from collections.abc import Hashable, Iterable, Iterator, Sequence
 from typing import Final
 
 from btq_lang.diff.changes import Change, Detail, details
-from btq_lang.diff.said import MAIN, MISSION, Item, Part, Value
+from btq_lang.diff.contents import MAIN, MISSION, Item, Part, Value
 
 # The things that can be renamed: others refer to them by name.
 _RENAMED: Final = ("requirement", "signal", "context", "quality", "node model")
@@ -44,7 +44,7 @@ def item_changes(
         earlier = names.get((thing, name))
         was = before.get((thing, earlier) if earlier is not None else key)
         if was is None:
-            yield Change("added", thing, name, None, item.place, tuple(_told(item, added=True)))
+            yield Change("added", thing, name, None, item.place, tuple(_contents(item, added=True)))
             continue
         if earlier is not None:
             yield Change("renamed", thing, name, was.place, item.place, earlier=earlier)
@@ -52,16 +52,16 @@ def item_changes(
         if thing == MISSION and MAIN in values:
             main = renamed.get(("tree", str(values[MAIN].key)), values[MAIN].key)
             values = {**values, MAIN: Value(main, values[MAIN].text)}
-        said = [*details(values, item.values)]
+        differences = [*details(values, item.values)]
         if thing == "requirement":
             counts = attached[0].get(was.name, 0), attached[1].get(name, 0)
             if (counts[0] == 0) != (counts[1] == 0):
-                said.append(Detail("attached to", _nodes(counts[0]), _nodes(counts[1])))
-        if said:
-            yield Change("changed", thing, name, was.place, item.place, tuple(said))
+                differences.append(Detail("attached to", _nodes(counts[0]), _nodes(counts[1])))
+        if differences:
+            yield Change("changed", thing, name, was.place, item.place, tuple(differences))
     for key, item in before.items():
         if key not in after and (item.thing, item.name) not in renamed:
-            yield Change("removed", item.thing, item.name, item.place, None, tuple(_told(item, added=False)))
+            yield Change("removed", item.thing, item.name, item.place, None, tuple(_contents(item, added=False)))
 
 
 def _leave_out_built(before: dict[tuple[str, object], Item], after: dict[tuple[str, object], Item]) -> None:
@@ -86,7 +86,7 @@ def _name(item: Item) -> str:
     return _path(item).rpartition("/")[2]
 
 
-def _told(item: Item, added: bool) -> Iterator[Detail]:
+def _contents(item: Item, added: bool) -> Iterator[Detail]:
     """The contents of something that was removed or added."""
     for aspect, value in item.values.items():
         if value.text and aspect:

@@ -22,7 +22,7 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from typing import Final, TypeAlias
 
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.diff.said import TREE, Part
+from btq_lang.diff.contents import TREE, Part
 
 Ids: TypeAlias = dict[Hashable, int]
 

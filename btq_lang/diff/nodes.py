@@ -12,8 +12,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal
 
 from btq_lang.diff.changes import Change, Detail, details
+from btq_lang.diff.contents import SUBTREE, TREE, VERBATIM, Part, Values
 from btq_lang.diff.matching import Forest, renamed_aspect
-from btq_lang.diff.said import SUBTREE, TREE, VERBATIM, Part, Values
 
 
 def tree_changes(old: Forest, new: Forest, renamed: Mapping[tuple[str, str], str]) -> Iterator[Change]:
@@ -30,8 +30,8 @@ def tree_changes(old: Forest, new: Forest, renamed: Mapping[tuple[str, str], str
             yield Change("renamed", "tree", _path(new, other), before.place, part.place, earlier=_path(old, one))
         if other in moved:
             yield Change("moved", "node", _path(new, other), before.place, part.place, earlier=_path(old, one))
-        if said := tuple(_said_otherwise(before, part, renamed)):
-            yield Change("changed", thing, _path(new, other), before.place, part.place, said)
+        if differences := tuple(_differences(before, part, renamed)):
+            yield Change("changed", thing, _path(new, other), before.place, part.place, differences)
     for one, other in enumerate(old.match):
         if other < 0 and not _is_part_of_one(old, one):
             yield _one_sided("removed", old, one)
@@ -59,7 +59,7 @@ def _one_sided(what: Literal["added", "removed"], forest: Forest, index: int) ->
         alone += 1
         requirements.update(dict.fromkeys(forest.parts[each].requirements))
         waiting += reversed(forest.children[each])
-    told = tuple(
+    attached = tuple(
         Detail(f"requirement {name}", *((None, "attached") if what == "added" else ("attached", None)))
         for name in requirements
     )
@@ -69,7 +69,7 @@ def _one_sided(what: Literal["added", "removed"], forest: Forest, index: int) ->
         _path(forest, index),
         part.place if what == "removed" else None,
         part.place if what == "added" else None,
-        told,
+        attached,
         below=alone - 1,
         around=tuple(shown(forest.parts[each]) for each in kept),
     )
@@ -130,7 +130,7 @@ def _increasing(numbers: list[int]) -> list[int]:
 # ---- changed ----
 
 
-def _said_otherwise(old: Part, new: Part, renamed: Mapping[tuple[str, str], str]) -> Iterable[Detail]:
+def _differences(old: Part, new: Part, renamed: Mapping[tuple[str, str], str]) -> Iterable[Detail]:
     if renamed.get(("node model", old.kind), old.kind) != new.kind:
         yield Detail("kind", old.word, new.word)
     elif old.category is not None and new.category is not None and old.category != new.category:

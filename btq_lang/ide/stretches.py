@@ -30,7 +30,7 @@ from btq_lang.syntax.tokens import COMMENT, OPERATOR, SYMBOL
 from btq_lang.syntax.tree import Entry, Requirement
 from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Span, width_of
-from btq_lang.workspace.references import Listener, What, tell
+from btq_lang.workspace.references import Listener, What, report
 
 if TYPE_CHECKING:
     from btq_lang.syntax.tree import Node, Pair, Word
@@ -95,7 +95,7 @@ def encoded(text: str, stretch: Stretch, known: Known, encoding: Encoding) -> En
     words = _Words(known)
     for entry in stretch.entries:
         words.by = entry.start - stretch.start
-        tell(entry.item, words)
+        report(entry.item, words)
     words.found.sort()
     made = _Encoder(text, encoding)
     at = 0

@@ -37,32 +37,32 @@ class CustomNode:
     """A node that is not the engine's, as its uses suggest it.
 
     Attributes:
-        said: the category that a use names, if any does.
+        stated_category: the category that a use names, if any does.
         children: the largest number in a use.
     """
 
-    __slots__ = ("_values", "children", "said")
+    __slots__ = ("_values", "children", "stated_category")
 
     def __init__(self, uses: Iterable[tuple[Node, str | None]] = ()) -> None:
-        self.said: str | None = None
+        self.stated_category: str | None = None
         self.children = 0
         self._values: Final[dict[str, dict[str, Word]]] = {}  # by port and text
-        for use, said in uses:
-            self.add(use, said)
+        for use, category in uses:
+            self.add(use, category)
 
     @property
     def category(self) -> str:
         """Its category, or the one that its number of children suggests."""
-        return self.said or likely_category(self.children)
+        return self.stated_category or likely_category(self.children)
 
     @property
     def ports(self) -> tuple[LikelyPort, ...]:
         """Its ports, in the order of their first use."""
         return tuple([_likely_port(name, tuple(values.values())) for name, values in self._values.items()])
 
-    def add(self, use: Node, said: str | None) -> None:
-        """Add what a use tells; said: its category, if the use names it."""
-        self.said = self.said or said
+    def add(self, use: Node, category: str | None) -> None:
+        """Add what a use tells, with its category, if the use names it."""
+        self.stated_category = self.stated_category or category
         self.children = max(self.children, len(use.children))
         for pair in use.attributes:
             key = pair.key.text
@@ -80,9 +80,9 @@ def _custom_nodes(store: Store[Workspace], mission: str) -> dict[str, CustomNode
     found: dict[str, CustomNode] = {}
     for path in sorted(workspace.linked(mission)):
         for node in _nodes(workspace.files[path]):
-            name, said = _named(node)
+            name, category = _named(node)
             if name and name not in BUILTINS:
-                found.setdefault(name, CustomNode()).add(node, said)
+                found.setdefault(name, CustomNode()).add(node, category)
     return found
 
 
@@ -120,17 +120,17 @@ def _named(node: Node) -> tuple[str, str | None]:
     kind = node.kind
     if is_placeholder(node):
         return legal_name(node.name.text if node.name else ""), PLACEHOLDERS[node.head.raw]
-    said = node.category.raw if node.category is not None else None
-    if said is None and kind is not None and kind.quoted and kind.text in CATEGORIES:
-        said = kind.text  # in quotes: the tag of an explicit form
-    if said is not None:
+    category = node.category.raw if node.category is not None else None
+    if category is None and kind is not None and kind.quoted and kind.text in CATEGORIES:
+        category = kind.text  # in quotes: the tag of an explicit form
+    if category is not None:
         word = node.id if node.category is not None else node.attribute("ID")
     else:
         word = kind
         if kind is not None and not kind.quoted and kind.raw in KNOWN_WORDS:
-            said = KNOWN_WORDS[kind.raw].category
+            category = KNOWN_WORDS[kind.raw].category
     tag = xml_tag(word.text, word.quoted, len(node.children)) if word is not None else ""
-    return ("", None) if said == "SubTree" or tag == "SubTreePlus" else (tag, said)
+    return ("", None) if category == "SubTree" or tag == "SubTreePlus" else (tag, category)
 
 
 def _likely_port(name: str, values: tuple[Word, ...]) -> LikelyPort:

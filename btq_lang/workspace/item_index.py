@@ -69,7 +69,7 @@ class Facts:
             found.setdefault(use.kind, set()).add(use.name)
         return {kind: frozenset(names) for kind, names in found.items()}
 
-    def said(self, of: Kind | str) -> frozenset[str]:
+    def names_of(self, of: Kind | str) -> frozenset[str]:
         """The names of a kind that it refers to, or the value of the property with this name."""
         names: frozenset[str] = self.used.get(of, frozenset()) if isinstance(of, Kind) else getattr(self, of)
         return names
@@ -100,9 +100,9 @@ class Tally:
     @classmethod
     def of(cls, items: Iterable[Facts], of: Kind | str) -> Tally:
         """A tally of the names of a kind that items use, or of another set of names in their facts."""
-        said = [each.said(of) for each in items if type(each.item) not in _SAYING_NOTHING]
+        names = [each.names_of(of) for each in items if type(each.item) not in _SAYING_NOTHING]
         counts: dict[str, int] = {}
-        for name in chain.from_iterable(said):
+        for name in chain.from_iterable(names):
             counts[name] = counts.get(name, 0) + 1
         return cls(of, counts)
 
@@ -110,7 +110,7 @@ class Tally:
         """The tally after an edit that replaced some items; the same object if it is equal."""
         changes: dict[str, int] = {}
         for facts, change in (*((each, 1) for each in come), *((each, -1) for each in gone)):
-            for name in facts.said(self._of):
+            for name in facts.names_of(self._of):
                 changes[name] = changes.get(name, 0) + change
         if not any(changes.values()):
             return self

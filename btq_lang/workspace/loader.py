@@ -84,9 +84,9 @@ def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:
             if kind == "pyproject.toml" and not has_btq_table(text or ""):
                 continue
             project, problems = parse_project(text or "", kind, root)
-            told = tuple(LoadProblem(path, found.message, found.position) for found in problems)
+            reported = tuple(LoadProblem(path, found.message, found.position) for found in problems)
             lost = tuple(folder for folder in project.include_paths if not os.path.isdir(folder))
-            return Found(replace(project, lost_paths=lost), path, (problem, *told) if problem else told)
+            return Found(replace(project, lost_paths=lost), path, (problem, *reported) if problem else reported)
     return Found(Project(folder), None)
 
 

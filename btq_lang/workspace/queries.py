@@ -54,21 +54,21 @@ class _Answer:
 
     Attributes:
         key: the function and its arguments.
-        asked: its dependencies, in the order in which it asked for them.
-        askers: its dependents.
+        dependencies: in the order in which it asked for them.
+        dependents: whose dependency it is.
         number: in which order answers were opened; one that is restarted keeps its number.
         low: the lowest number that it reaches while it, or a circle that it is part of, is open; else None.
         is_circular: whether it depends on itself.
     """
 
-    __slots__ = ("asked", "askers", "is_circular", "key", "low", "number", "state", "value")
+    __slots__ = ("dependencies", "dependents", "is_circular", "key", "low", "number", "state", "value")
 
     def __init__(self, key: tuple[Any, ...]) -> None:
         self.key = key
         self.value: Any = _UNKNOWN
         self.state = _STALE
-        self.asked: tuple[_Answer, ...] = ()
-        self.askers: set[_Answer] = set()
+        self.dependencies: tuple[_Answer, ...] = ()
+        self.dependents: set[_Answer] = set()
         self.number = 0
         self.low: int | None = None
         self.is_circular = False
@@ -92,7 +92,7 @@ class Store(Generic[State]):
         self._inputs: dict[Hashable, list[_Answer]] = {}  # by topic
         self._pinned: set[tuple[Any, ...]] = set()
         self._size = 0  # after the last sweep
-        self._asked: dict[_Answer, None] | None = None  # of the query that is being computed
+        self._dependencies: dict[_Answer, None] | None = None  # of the query that is being computed
         self._path: list[_Answer] = []  # the queries that are open, each asked by the one before it
         self._count = 0  # of numbers
         self._first = 0  # the last number before the current top-level query
@@ -111,8 +111,8 @@ class Store(Generic[State]):
         answer = self._answers.get(name)
         if answer is None:
             answer = self._answers[name] = _Answer(name)
-        if self._asked is not None:
-            self._asked[answer] = None
+        if self._dependencies is not None:
+            self._dependencies[answer] = None
         if answer.state != _CLEAN and self._settle(answer):
             return _declared(answer)  # type: ignore[no-any-return]  # its owner declares what the query may return
         return answer.value  # type: ignore[no-any-return]  # it is what the query returns
@@ -126,8 +126,8 @@ class Store(Generic[State]):
             answer.value = read(self._state, *key)
             answer.state = _CLEAN
             self._inputs.setdefault(topic, []).append(answer)
-        if self._asked is not None:
-            self._asked[answer] = None
+        if self._dependencies is not None:
+            self._dependencies[answer] = None
         return answer.value  # type: ignore[no-any-return]  # it is what the function returns
 
     # ---- used by the store's owner ----
@@ -151,9 +151,9 @@ class Store(Generic[State]):
         self._state = state
         for topic in topics:
             inputs = self._inputs.pop(topic, ())
-            kept = [each for each in inputs if each.askers]
+            kept = [each for each in inputs if each.dependents]
             for answer in inputs:
-                if answer.askers:
+                if answer.dependents:
                     self._replace(answer, answer.key[0](state, *answer.key[1:]))
                 else:
                     del self._answers[answer.key]
@@ -174,16 +174,16 @@ class Store(Generic[State]):
         waiting = [self._answers[key] for key in self._pinned if key in self._answers]
         used = set(waiting)
         while waiting:
-            for each in waiting.pop().asked:
+            for each in waiting.pop().dependencies:
                 if each not in used:
                     used.add(each)
                     waiting.append(each)
         kept_answers = {key: answer for key, answer in self._answers.items() if answer in used}
         for answer in self._answers.values():
             if answer in used:
-                answer.askers &= used
+                answer.dependents &= used
             else:  # else answers and their dependents would keep each other alive
-                answer.asked, answer.askers = (), set()
+                answer.dependencies, answer.dependents = (), set()
         self._answers = kept_answers
         kept = {topic: [each for each in inputs if each in used] for topic, inputs in self._inputs.items()}
         self._inputs = {topic: inputs for topic, inputs in kept.items() if inputs}
@@ -202,9 +202,9 @@ class Store(Generic[State]):
                 self._open_first(answer)
         if answer.low is None:
             return False
-        asker = self._path[-1]
-        asker.is_circular = True
-        asker.low = min(answer.low, asker.low if asker.low is not None else answer.low)
+        dependent = self._path[-1]
+        dependent.is_circular = True
+        dependent.low = min(answer.low, dependent.low if dependent.low is not None else answer.low)
         return True
 
     def _open_first(self, answer: _Answer) -> None:
@@ -267,25 +267,25 @@ class Store(Generic[State]):
 
     def _verify(self, answer: _Answer) -> None:
         """Check whether the dependencies of an answer are unchanged; else it is stale."""
-        for each in answer.asked:
+        for each in answer.dependencies:
             if each.state != _CLEAN:
                 self._settle(each)
                 if answer.state == _STALE:
                     return
 
     def _compute(self, answer: _Answer) -> object:
-        outer, self._asked = self._asked, {}
+        outer, self._dependencies = self._dependencies, {}
         try:
             value = answer.key[0](self, *answer.key[1:])
-            asked = self._asked
+            dependencies = self._dependencies
         finally:
-            self._asked = outer
-        before = set(answer.asked)
-        for each in before.difference(asked):
-            each.askers.discard(answer)
-        answer.asked = tuple(asked)
-        for each in asked:
-            each.askers.add(answer)
+            self._dependencies = outer
+        before = set(answer.dependencies)
+        for each in before.difference(dependencies):
+            each.dependents.discard(answer)
+        answer.dependencies = tuple(dependencies)
+        for each in dependencies:
+            each.dependents.add(answer)
         return value
 
     def _replace(self, answer: _Answer, value: object) -> None:
@@ -296,15 +296,15 @@ class Store(Generic[State]):
             return
         answer.value = value
         waiting: list[_Answer] = []
-        for asker in answer.askers:
-            if asker.state == _CLEAN:
-                waiting.append(asker)
-            asker.state = _STALE
+        for dependent in answer.dependents:
+            if dependent.state == _CLEAN:
+                waiting.append(dependent)
+            dependent.state = _STALE
         while waiting:
-            for asker in waiting.pop().askers:
-                if asker.state == _CLEAN:
-                    asker.state = _SUSPECT
-                    waiting.append(asker)
+            for dependent in waiting.pop().dependents:
+                if dependent.state == _CLEAN:
+                    dependent.state = _SUSPECT
+                    waiting.append(dependent)
 
 
 def _is_as_before(answer: _Answer, levels: int) -> bool:
@@ -312,7 +312,7 @@ def _is_as_before(answer: _Answer, levels: int) -> bool:
     longer."""
     if answer.state != _SUSPECT or answer.is_circular or answer.low is not None:
         return False
-    for each in answer.asked:
+    for each in answer.dependencies:
         if each.state != _CLEAN and not (levels and _is_as_before(each, levels - 1)):
             return False
     answer.state = _CLEAN

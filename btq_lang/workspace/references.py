@@ -84,12 +84,12 @@ class Mention(Record):
 
 def mentions(item: syntax.Item) -> tuple[Mention, ...]:
     """All words of an item that name something, in the order of the text."""
-    told = _Mentions()
-    tell(item, told)
-    return tuple(sorted(told.found, key=attrgetter("span")))
+    listener = _Mentions()
+    report(item, listener)
+    return tuple(sorted(listener.found, key=attrgetter("span")))
 
 
-def tell(item: syntax.Item, to: Listener) -> None:
+def report(item: syntax.Item, to: Listener) -> None:
     """Report the words of an item that name something, nearly in the order of the text."""
     if isinstance(item, syntax.Tree):
         to.word(What.TREE, item.name, defines=True)

@@ -103,14 +103,14 @@ class Item(Record):
     place: Place
 
 
-class Said(Record):
+class Contents(Record):
     """The contents of a mission: its trees, and all else."""
 
     trees: tuple[Part, ...]
     items: tuple[Item, ...]
 
 
-def said(workspace: Workspace, paths: Iterable[str]) -> Said:
+def contents(workspace: Workspace, paths: Iterable[str]) -> Contents:
     """The contents of some files of a workspace together; of duplicates the first counts, as in the language.
 
     Args:
@@ -143,7 +143,7 @@ def said(workspace: Workspace, paths: Iterable[str]) -> Said:
             ports = {aspect: value for aspect, value in model.values.items() if aspect.startswith("port ")}
             tree.values = {**ports, **tree.values}
             del items[model.thing, model.name]
-    return Said(tuple(trees), tuple(items.values()))
+    return Contents(tuple(trees), tuple(items.values()))
 
 
 class _Reader:
