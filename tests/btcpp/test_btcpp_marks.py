@@ -1,4 +1,4 @@
-"""The marks of a build: what is put in is what is taken out."""
+"""The marks of a build: what it adds is what an import removes."""
 
 from __future__ import annotations
 

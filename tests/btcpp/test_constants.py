@@ -1,4 +1,4 @@
-"""Constants on the ports of subtrees, spelt so that every version of the engine takes them."""
+"""Constants for the ports of subtrees, spelt so that every version of the engine accepts them."""
 
 from __future__ import annotations
 

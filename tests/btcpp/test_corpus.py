@@ -45,14 +45,14 @@ def corpus(shared: Path) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def verdicts(shared: Path) -> dict[str, str]:
-    """What the engine says of each file: OK, LOAD or CREATE, where it was refused."""
+    """The engine's verdict on each file: OK, or LOAD or CREATE where it was refused."""
     with (shared / "corpus" / "MANIFEST.tsv").open(encoding="utf-8") as file:
         return {row["file"]: row["engine_4_10"] for row in csv.DictReader(file, delimiter="\t")}
 
 
 @pytest.fixture(scope="module")
 def found(corpus: dict[str, str]) -> dict[str, tuple[Diagnostic, ...]]:
-    """What is found in each file."""
+    """The diagnostics of each file."""
     return {name: check(Workspace({name: file_of(name, text)}, Project()), name) for name, text in corpus.items()}
 
 
@@ -110,7 +110,7 @@ def test_what_was_version_3_can_be_built(imported: Callable[[bool], dict[str, Im
 def test_diagnostics_point_at_the_words_of_the_xml(
     corpus: dict[str, str], found: dict[str, tuple[Diagnostic, ...]]
 ) -> None:
-    """Every place is a place of the XML, and the commonest rules point at the very word they speak of."""
+    """Every place is a place of the XML, and the commonest rules point at the very word that they are about."""
     pointed = 0
     for name, text in corpus.items():
         for each in found[name]:

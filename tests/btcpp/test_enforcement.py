@@ -1,4 +1,4 @@
-"""What requirements add to the XML: what is taken out again, what is said of it, and where it cannot stand.
+"""What requirements add to the XML: what an import removes, what is reported, and where nothing can be added.
 
 What it looks like is in `golden/enforce_*`, and what it does in `engine/test_engine_enforcement.py`.
 """
@@ -53,7 +53,7 @@ def states(workspace: Workspace, path: str, bundled: bool = False) -> list[str]:
 
 
 def assert_comes_back(workspace: Workspace, path: str) -> None:
-    """From what is built, import makes what it makes of the plain tree."""
+    """An import of the built XML gives the same as an import of the plain tree."""
     plain = import_xml(write(export(workspace, path).document))
     again = import_xml(xml_of(workspace, path))
     assert again.text == plain.text

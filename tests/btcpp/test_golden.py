@@ -1,8 +1,8 @@
-"""The golden files: `golden/x.btq` is written as `golden/x.xml`, and what the export says of it is `golden/x.remarks`.
+"""The golden files: `golden/x.btq` is written as `golden/x.xml`, and the export's remarks are `golden/x.remarks`.
 
-What its requirements add is in it, and how each clause that is to be enforced is held is in the remarks.  A file whose
-name ends in `_verbatim` is written verbatim.  `pytest --update` writes what is written today: read the
-difference before it is committed.
+What its requirements add is in it, and the remarks tell how each clause is enforced.  A file whose name ends in
+`_verbatim` is written verbatim.  `pytest --update` writes what is written today: read the difference before it is
+committed.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def test_every_golden_file_is_used() -> None:
 
 
 def assert_golden(path: Path, text: str, update: bool) -> None:
-    """A file says exactly this; an empty text is no file."""
+    """Compare a file with a text; an empty text is no file."""
     if update:
         if text:
             path.write_text(text, encoding="utf-8", newline="")

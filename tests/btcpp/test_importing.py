@@ -415,7 +415,7 @@ OLD_NODES = (
 
 @pytest.mark.parametrize("node", OLD_NODES)
 def test_a_node_that_version_3_has_already_says_nothing_new(node: str) -> None:
-    """What is said of the version is said of the root's tag, without its brackets."""
+    """The version is a property of the root's tag, without its brackets."""
     xml = f'<root main_tree_to_execute="T"><BehaviorTree ID="T"><{node}/></BehaviorTree></root>'
     change, *_ = import_xml(xml).changes
     assert change.message == 'BTCPP_format="4" is added'

@@ -1,4 +1,4 @@
-"""XML in a workspace: checked as it is, shown as it stands, and included by missions."""
+"""XML in a workspace: checked as it is, with diagnostics placed in the XML, and included by missions."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ def test_what_can_be_no_tag_is_refused_directly_below_a_reactive_sequence() -> N
             f"the engine refuses `{name}` directly in a ReactiveSequence: put it in a Sequence of its own"
         ]
     for node in ("Action Scan", "Scan", '"Größe"', 'SubTree "3d scan"', 'ScriptAction (name = "3d scan")', '"3d scan"'):
-        assert found(node) == []  # a forbidden tag is told as such
+        assert found(node) == []  # a forbidden tag is reported as such
     xml = '<root BTCPP_format="4"><BehaviorTree ID="T"><ReactiveSequence><Action ID="3d scan"/></ReactiveSequence>'
     (told,) = [each for each in problems(f"{xml}</BehaviorTree></root>") if each.rule == "explicit-in-reactive"]
     assert told.notes == ("its message `Unknown node type: Action` refers to the tag: put it in a Sequence of its own",)

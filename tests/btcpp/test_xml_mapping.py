@@ -1,4 +1,4 @@
-"""docs/xml-mapping.md and docs/enforcement.md: each mission becomes the XML that stands below it."""
+"""docs/xml-mapping.md and docs/enforcement.md: each mission becomes the XML that is below it."""
 
 from __future__ import annotations
 

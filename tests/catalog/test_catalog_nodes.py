@@ -1,4 +1,4 @@
-"""The node table, held against what the engines print of themselves, and the look-ups of words and ports."""
+"""The node table, compared with what the engines print of themselves, and the look-ups of words and ports."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The quality catalog, held against the collected facts, and what a name written in a file means."""
+"""The quality catalog, compared with the collected facts, and what a name written in a file means."""
 
 from __future__ import annotations
 

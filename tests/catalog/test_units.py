@@ -1,4 +1,4 @@
-"""The unit table, every row of it held against pint; reading, converting, and what is offered for a misspelt unit."""
+"""The unit table, every row of it compared with pint; reading, converting, and suggestions for misspelt units."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ PINT_BASES = {
     "current": "[current]",
     "temperature": "[temperature]",
 }
-# The words of the grammar that may stand behind a number: a unit so called would swallow them.
+# The words of the grammar that may follow a number: a unit with such a name would swallow them.
 KEYWORDS = """
     include qualities quality iso25010 TreeNodesModel Action Condition Control Decorator SubTree input output inout
     metadata Root BehaviorTree ID xml parameters satisfices satisfies tags Quality QualityReq description signal

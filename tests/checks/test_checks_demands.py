@@ -1,4 +1,4 @@
-"""What the rules about demands say beyond their pages: messages, places, what they leave alone."""
+"""What the rules about demands report beyond their pages: messages, places, and exceptions."""
 
 from __future__ import annotations
 
@@ -82,8 +82,8 @@ NO_BOUND = ", not counting steps without a bound"
         ("->\n    Repeat (num_cycles = -1)\n        Action X\n    Action A", None),  # A is never reached
         ("->\n    ForceFailure\n        Action X\n    Action A", None),
         ("?\n    ForceSuccess\n        Action X\n    Action A", None),
-        ("->\n    Custom\n        Action A\n    Action X", None),  # nobody knows whether it runs A
-        ("->\n    Timeout (msec = 20 s)\n        Action A\n    Action X", None),  # told as a bound never reached
+        ("->\n    Custom\n        Action A\n    Action X", None),  # it is unknown whether it runs A
+        ("->\n    Timeout (msec = 20 s)\n        Action A\n    Action X", None),  # reported as a bound never reached
         ("->\n    Action W\n    Action X", None),  # that is demanded in some situations only
         ("->\n    Action O\n    Action X", None),  # it is seldom late
     ],
@@ -349,7 +349,7 @@ def test_where_a_failure_ends(tree: str, reason: str) -> None:
         "IfThenElse\n    Action B\n    {}\n    Action C",
         "||\n    {}\n    Action B",
         "|| (failure_count = 2)\n    {}\n    Action B",  # all must succeed, so one failure is enough
-        "Decorator Mine\n    {}",  # nobody knows
+        "Decorator Mine\n    {}",  # it is unknown
         "TryCatch\n    {}\n    Action B",
     ],
 )

@@ -23,7 +23,7 @@ from btq_lang.workspace.workspace import Workspace
 def test_includes_that_are_found() -> None:
     assert_clean('//- a/main.btq\ninclude "b.btq"\ninclude "../c.btq"\n//- a/b.btq\n//- c.btq\n')
     assert_clean('//- main.btq\ninclude "b.btq"\n//- shared/b.btq\n', Project(include_paths=("shared",)))
-    assert_clean('include "nav.xml" (ros_pkg = "nav2")\n')  # what a ROS package holds nobody knows here
+    assert_clean('include "nav.xml" (ros_pkg = "nav2")\n')  # the files of a ROS package are unknown here
 
 
 def test_what_may_be_meant() -> None:
@@ -120,7 +120,7 @@ _GOOD = _TREE.format(include="", node="<AlwaysSuccess/>")
 
 
 def _of_xml(main: str = "main.btq", **xml: str) -> tuple[Diagnostic, ...]:
-    """What is told of a mission that includes `nav.xml`."""
+    """The diagnostics of a mission that includes `nav.xml`."""
     texts = {f"{name}.xml": text for name, text in xml.items()}
     texts["main.btq"] = 'include "nav.xml"\nRoot Main\nBehaviorTree Main\n    SubTree Nav\n'
     return check(workspace_of(texts), main)

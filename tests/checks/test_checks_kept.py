@@ -1,4 +1,4 @@
-"""What checks keep from one edit to the next is what they would find anew."""
+"""After an edit, the checks report what they would report for a new workspace."""
 
 from __future__ import annotations
 
@@ -178,7 +178,7 @@ def test_what_no_quote_closes_is_not_empty() -> None:
 
 @pytest.mark.parametrize("spelling", ["classic", "short"])
 def test_trees_and_requirements_change_names_and_places(spelling: missions.Spelling) -> None:
-    """In a file of so many trees that what is kept of all of them is brought up to date, and not made anew."""
+    """In a file of so many trees that cached results about all of them are updated instead of recomputed."""
     chance = random.Random(1)
     lines = missions.mission(300, 3, spelling).split("\n")
     kept = Kept()
@@ -198,7 +198,7 @@ def test_trees_and_requirements_change_names_and_places(spelling: missions.Spell
 
 
 def asked_after(monkeypatch: pytest.MonkeyPatch, before: dict[str, str], after: dict[str, str], path: str) -> list[str]:
-    """The trees of a file that the checks are asked for when some files become others."""
+    """The trees of a file that the checks read when some files change."""
     asked: list[str] = []
 
     def noting(_: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -231,7 +231,7 @@ def test_a_model_that_changes_is_asked_for_again(monkeypatch: pytest.MonkeyPatch
     "text", [EVERY_FORM, BOARDS, missions.mission(60, 2, "classic"), missions.mission(60, 2, "short")]
 )
 def test_every_check_says_what_it_asks_for(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
-    """Else it would be asked again of every item after every edit."""
+    """Else it would run again for every item after every edit."""
     asked: list[tuple[str, type]] = []
 
     def watched(check: Check) -> Check:
@@ -254,7 +254,7 @@ def test_every_check_says_what_it_asks_for(monkeypatch: pytest.MonkeyPatch, text
 
 
 def test_what_an_edit_replaces_goes_when_it_is_swept() -> None:
-    """What is found out of a workspace holds the whole of it."""
+    """What is computed from a workspace keeps the whole of it alive."""
     workspace, answers = Workspace.of(FILES), Kept()
     gc.collect()
     before = Counter(type(each) for each in gc.get_objects())

@@ -1,4 +1,4 @@
-"""What the checks of requirements' measurable part say, and mend, that their pages do not show."""
+"""What the checks of requirements' measurable part report, and fix, that their pages do not show."""
 
 from __future__ import annotations
 

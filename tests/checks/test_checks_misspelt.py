@@ -1,4 +1,4 @@
-"""Misspelt entries: the slips that are told, and all that only looks like one."""
+"""Misspelt entries: those that are reported, and all that only looks like one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Action Any
 
 
 def told(lines: str, head: str = "") -> list[str]:
-    """What is told of a tree of these lines, without the line and the severity."""
+    """The diagnostics of a tree of these lines, without the line and the severity."""
     body = "".join(f"        {line}\n" for line in lines.strip("\n").split("\n"))
     text = f"{MODELS}{head}BehaviorTree Main\n    ->\n{body}"
     return [found.split(" ", 2)[2] for found in findings(text, RULE)]
@@ -83,7 +83,7 @@ def test_without_models_two_places_that_are_alone_are_told_once_and_either_may_b
     [
         "Take (image = {picture})\nStore (image = {picture})\nStore (image = {pictuer})\nTake (image = {pictuer})",
         "Store (image = {pictuer})\nStore (image = {picture})",  # the robot's program may write both
-        # Who says both means both.
+        # Two entries at one node are both meant.
         "Take (image = {picture})\nStore (image = {picture})\nB (x = {pictuer} y = {picture})",
         "Take (image = {picture})\nStore (image = {picture})\nxml '<A x=\"{pictuer}\"/>'",
     ],

@@ -76,7 +76,7 @@ def test_a_tree_whose_mended_name_is_taken_is_an_error(
 
 
 def test_a_forbidden_name_is_told_where_the_tree_is() -> None:
-    """Not at each of its SubTrees, nor where a SubTree names a tree that is not there."""
+    """Not at each of its SubTrees, nor where a SubTree names a missing tree."""
     assert_problems(
         tree("->", '    SubTree "a b"', '    SubTree "a b"') + 'BehaviorTree "a b"\n    X\n',
         '5:14 warning forbidden-name «"a b"» the engine refuses the tree ID `a b`: it contains a space',

@@ -1,4 +1,4 @@
-"""When a guard is said to ask for nothing new: never where a run might write what it reads, and where it is certain."""
+"""Guards on values that never change: reported only if no run might write what they read, and always then."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_what_is_written_before_or_after(tree: str) -> None:
         f"All||\n    {W}\n    -> Deep\n        ?\n            Action A",
         f"WhileDoElse\n    {W}\n    Action A",
         f"TryCatch\n    {W}\n    Action A",
-        f"Control Mine\n    {W}\n    Action A",  # nobody knows
+        f"Control Mine\n    {W}\n    Action A",  # it is unknown
         f"->\n    {W}\n    Decorator Mine (speed = {{level}})\n        Action A",
         f'->\n    {W}\n    -> Inner (_while = "level := 1.0")\n        Action A',
         f"->\n    {W}\n    Action A (level = {{=}})",
@@ -93,7 +93,7 @@ def test_what_may_be_written_meanwhile(tree: str) -> None:
         ("A never n > 3|on violation halt", True),
         ("A leaves n <= 3|on violation halt", True),
         ("A uses at most 3 of used|on violation halt", True),
-        ("A needs n <= 3|on violation halt", False),  # asked once, and meant so
+        ("A needs n <= 3|on violation halt", False),  # evaluated once, as intended
         ("A takes at most 3 s if n <= 3 else 5 s|on violation halt", False),
         ("A keeps n <= 3", False),
         ("A keeps n <= 3|on violation warn", False),
@@ -163,10 +163,10 @@ def test_files() -> None:
     (found,) = problems(f"{main} satisfies q\n", RULE, rules=rules, skills=skills)
     assert found.message == MESSAGE
     assert [each.message for each in found.related] == ["writes it, but not while the node runs", "guarded node"]
-    # Attached in the other file: told at the node.
+    # Attached in the other file: reported at the node.
     both = f'include "skills.btq"\n{rules}apply q to every A\n'
     assert findings(f"{main}\n", RULE, rules=both, skills=skills) == [f"6 warning «A» {MESSAGE}"]
-    # With the node in the other file, too: told at what writes the entry.
+    # With the node in the other file, too: reported at what writes the entry.
     part = f"{both}BehaviorTree Part\n    A\n"
     calls = f"{main[:-1]}SubTree Part\n"
     assert findings(calls, RULE, rules=part, skills=skills) == [f"5 warning «S» {MESSAGE}"]

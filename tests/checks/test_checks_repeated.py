@@ -34,7 +34,7 @@ def test_two_names_of_one_quality_are_one() -> None:
 
 
 def test_what_is_no_repetition() -> None:
-    """Other arguments; a quality that encloses requirements; what an `apply` brings to all."""
+    """Other arguments; a quality that encloses requirements; what an `apply` attaches to all."""
     assert_clean("""
         QualityReq most (limit : s) "t"
             takes at most limit

@@ -1,4 +1,4 @@
-"""What nodes can return, held against running them: a small engine below ticks random trees, and never may a node
+"""The possible results of nodes, compared with running them: a small engine below ticks random trees, and no node may
 return what the check believes to be impossible."""
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""The checks on files that nobody would hand in: cut, torn and stirred.  None raises, every place lies in its file, a
-safe fix mends, and a workspace reached by edits says the same as a fresh one."""
+"""The checks on damaged files: cut, torn and stirred.  None raises, every place is in its file, a safe fix removes its
+diagnostic, and a workspace reached by edits gives the same as a new one."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def folders() -> list[dict[str, str]]:
     return found
 
 
-# What is wrong in many ways at once: a mutation of it reaches what no example does.
+# Many mistakes at once: mutations of it reach what no example does.
 CROOKED = {
     "main.btq": """\
 include "parts.btq"

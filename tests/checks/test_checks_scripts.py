@@ -1,4 +1,4 @@
-"""Scripts in a file: which values are scripts, what each is held against, and where in the source a problem stands."""
+"""Scripts in a file: which values are scripts, the rules for each, and where in the source a problem is."""
 
 from __future__ import annotations
 

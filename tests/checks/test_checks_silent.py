@@ -1,4 +1,4 @@
-"""What the engine says nothing about, nor any parser: counts of nothing, values for outputs, clauses about nothing."""
+"""What neither the engine nor a parser reports: counts of nothing, values for outputs, clauses about nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a check says of `on violation` is what a build does: each clause that is not enforced, and no other."""
+"""A check reports of `on violation` what a build does: each clause that is not enforced, and no other."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from btq_lang.workspace.workspace import Workspace
 
 RULE = "not-enforced"
 GOLDEN = sorted((Path(__file__).parents[1] / "btcpp" / "golden").glob("*.btq"))
-# What else says why the engine does not hold a claim.
+# Other rules that report why the engine does not enforce a claim.
 OTHERWISE = ("limit-on-synchronous-node", "limit-too-small", "uses-of-gauge")
 
 
@@ -108,7 +108,7 @@ def test_nodes_that_nothing_can_stand_around() -> None:
         "the engine cannot enforce `on violation fail`: `A` may be skipped and has `_onSuccess`, so with a "
         "guard around it the tree would behave differently"
     ]
-    # To halt the mission, something stands around its root.
+    # To halt the mission, its root gets a wrapper.
     tree = "RunOnce\n    ->\n        Action A\n        Condition C"
     assert told("A takes at most 5 s|on violation fail", tree=tree) == []
     assert told("A takes at most 5 s|on violation halt", tree=tree) == [
@@ -169,7 +169,7 @@ def test_a_check_says_what_a_build_does_with_any_mission(text: str) -> None:
 
 
 def assert_same(workspace: Workspace, path: str) -> None:
-    """A clause that is asked to be enforced in a bundle, and is not, is told of, and no other."""
+    """Each clause that a bundle should enforce and does not is reported, and no other."""
     found = check(workspace, path)
     reasons = {each.message.partition(": ")[2] for each in found if each.rule == RULE and each.severity is None}
     known = requirements(workspace, path)

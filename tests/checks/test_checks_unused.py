@@ -58,7 +58,7 @@ def test_a_signal_is_asked_for_behind_a_keyword_in_a_description() -> None:
 
 
 def test_one_mistake_is_told_once() -> None:
-    """What asks for it misspells its name, or cannot be read, or subtracts without blanks."""
+    """Its user misspells its name, or cannot be read, or subtracts without blanks."""
     assert_problems(
         f'signal battery : % from {{b}}\nQualityReq rq1 "t"\n    leaves batery > 3 %\n{NODE}',
         "3:12 error unknown-signal «batery» unknown signal `batery`; did you mean `battery`?",

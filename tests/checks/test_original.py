@@ -1,4 +1,4 @@
-"""The published language's own example, byte for byte: understood, and told nothing untrue."""
+"""The published language's own example, byte for byte: understood, without a wrong diagnostic."""
 
 from __future__ import annotations
 

@@ -583,7 +583,7 @@ INCLUDED = '<root BTCPP_format="4"><BehaviorTree ID="X"><{}/></BehaviorTree></ro
 
 
 def titles(out: str) -> list[str]:
-    """The files whose changes are told."""
+    """The titles of the files whose changes are listed."""
     return [line for line in out.splitlines() if line[:1].isalpha()]
 
 

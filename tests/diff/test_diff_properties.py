@@ -1,4 +1,4 @@
-"""What holds for every mission: with itself there is no difference, and one edit is told as just that edit."""
+"""What holds for every mission: compared with itself there is no difference, and one edit gives just that change."""
 
 from __future__ import annotations
 
@@ -159,6 +159,6 @@ def test_a_node_that_is_known_again_and_stands_elsewhere_has_moved(trees: list[M
     target.children.insert(chance.randrange(len(target.children) + 1), marked)
     old, new = text_of(trees), text_of(edited)
     moved = {(each.what, each.name.rpartition("/")[2]) for each in compare_texts(old, new)}
-    # Of nodes that changed sides, or of subtrees that are alike, nobody can say which has moved; nothing else has.
+    # Of nodes that changed sides, or of subtrees that are alike, it is unknown which has moved; nothing else has.
     assert {what for what, _ in moved} == ({"moved"} if old != new else set())
     assert target is home or ("moved", "Marked") in moved

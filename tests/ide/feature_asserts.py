@@ -93,7 +93,7 @@ class Fixture:
         return self.workspace, *self.cursor
 
     def expect(self, mark: str, found: Iterable[tuple[str, Span]]) -> None:
-        """The places found are exactly those marked, shown with what stands there if not."""
+        """The places found are exactly those marked, shown with the text there if not."""
         assert self.show(sorted((path, *span) for path, span in found)) == self.show(sorted(self.marks[mark]))
 
     def show(self, places: Iterable[Place]) -> list[str]:
@@ -101,7 +101,7 @@ class Fixture:
 
 
 def check_goto(text: str) -> None:
-    """`<def>` is where the definition of what stands at the cursor is; without one there is none."""
+    """`<def>` is where the definition of the word at the cursor is; without one there is none."""
     fixture = Fixture(text, "def")
     targets = goto_definition(*fixture.at)
     for target in targets:
@@ -117,13 +117,13 @@ def check_implementation(text: str) -> None:
 
 
 def check_type(text: str) -> None:
-    """`<def>` is what says of which kind the thing at the cursor is; without one nothing does."""
+    """`<def>` is what declares the type of the thing at the cursor; without one nothing does."""
     fixture = Fixture(text, "def")
     fixture.expect("def", ((target.path, target.name) for target in goto_type(*fixture.at)))
 
 
 def check_references(text: str) -> None:
-    """`<def>` and `<ref>` are all places that name what stands at the cursor; the answer is the same from each."""
+    """`<def>` and `<ref>` are all references to what the word at the cursor means; the result is the same from each."""
     fixture = Fixture(text, "def", "ref")
     everywhere = fixture.marks["def"] + fixture.marks["ref"]
     for path, start, end in [*everywhere, (*fixture.at[1:], fixture.at[2])]:
@@ -143,7 +143,7 @@ def check_highlights(text: str) -> None:
 
 
 def check_rename(text: str, name: str, after: str) -> None:
-    """Renaming what stands at the cursor makes this of the files; and renaming it back, what they were."""
+    """Renaming the word at the cursor changes the files to this; and renaming it back restores them."""
     fixture = Fixture(text)
     result = rename(*fixture.at, name)
     assert not isinstance(result, Refusal), result.reason
@@ -155,7 +155,7 @@ def check_rename(text: str, name: str, after: str) -> None:
 
 
 def check_no_rename(text: str, reason: str, name: str | None = None) -> None:
-    """What stands at the cursor is not renamed, and this is said about it; without a name it is said at once."""
+    """The word at the cursor cannot be renamed, for this reason; without a name it is reported at once."""
     fixture = Fixture(text)
     ready = prepare_rename(*fixture.at)
     if name is None:
@@ -243,7 +243,7 @@ def check_tokens(text: str, *expected: str) -> None:
 
 
 def decoded(data: list[int], lines: LineIndex, encoding: Encoding) -> Iterator[tuple[Span, str]]:
-    """Of each semantic token where it stands, and `type.modifier`."""
+    """The place of each semantic token, and `type.modifier`."""
     line = column = 0
     for down, right, length, type_, bits in zip(*[iter(data)] * 5, strict=True):
         line, column = line + down, right if down else column + right
@@ -255,7 +255,7 @@ def decoded(data: list[int], lines: LineIndex, encoding: Encoding) -> Iterator[t
 
 
 def check_delta(before: list[int], after: list[int], expected: tuple[int, int, list[int]] | None) -> None:
-    """This is what makes the second list of integers of the first."""
+    """This change turns the first list of integers into the second."""
     made = difference(before, after)
     if made is not None:
         assert [*before[: made.start], *made.come, *before[made.start + made.gone :]] == after
@@ -263,7 +263,7 @@ def check_delta(before: list[int], after: list[int], expected: tuple[int, int, l
 
 
 def check_hover(text: str, markdown: str | None) -> None:
-    """What is shown at the cursor; `<hover>` is the word that it is said of."""
+    """What is shown at the cursor; `<hover>` is the word that it is about."""
     fixture = Fixture(text, "hover")
     found = hover(*fixture.at)
     fixture.expect("hover", ((fixture.at[1], found.span) for found in (found,) if found is not None))
@@ -511,7 +511,7 @@ def check_node_path(text: str, path: str | None) -> None:
 
 
 def check_moved(text: str, moves: Mapping[str, str], after: str) -> None:
-    """When files are called otherwise their includes are mended so."""
+    """When files are moved their includes are adapted so."""
     fixture = Fixture(text, cursor=False)
     edits = moved_files(fixture.workspace, moves)
     files = {path: apply_edits(content, edits.get(path, ())) for path, content in fixture.files.items()}

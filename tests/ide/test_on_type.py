@@ -1,4 +1,4 @@
-"""What happens while one types: new lines, brackets, names that are written together."""
+"""Edits while typing: new lines, brackets, names that change together."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The place where somebody types: what is looked at for it."""
+"""The place of the cursor: how much is read for it."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ from feature_asserts import check_no_rename, check_rename
             "satisfies",
             'BehaviorTree Main\n    Pick "satisfies"\nQualityReq rq\n    Main/"satisfies" takes at most 1 s\n',
         ),
-        # A custom node without a model is renamed wherever it stands.
+        # A custom node without a model is renamed everywhere.
         (
             "//- a.btq\nBehaviorTree A\n    Pi$0ck\n//- b.btq\nBehaviorTree B\n    Pick\n",
             "Grasp",

@@ -1,4 +1,4 @@
-"""Every feature answers for texts that nobody would write, at every offset; `damage.py` asks of damaged missions."""
+"""Every feature works for texts that are far from valid, at every offset; `damage.py` does it with damaged missions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Budgets: the rule of each node, what they are made of, and that no run of any tree lies outside of them."""
+"""Budgets: the rule of each node, what they are made of, and that no run of any tree is outside of them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 # ---- no run lies outside --------------------------------------------------------------------------------------------
 
 KINDS = tuple(kind for kinds in GROUPS.values() for kind in kinds)
-# Queues and entries that somebody else writes are no part of the simulation: where they stand, no end can be said.
+# Queues and entries that others write are not simulated: with them, the end of a run is unknown.
 NOT_SIMULATED = {"for-each", "skip-unless-updated", "wait-until-updated"}
 
 

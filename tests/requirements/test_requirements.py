@@ -47,7 +47,7 @@ def one(found: Requirements, name: str) -> Applied:
 
 
 def where(found: Requirements, name: str) -> list[str]:
-    """The nodes that a requirement holds for, each with its arguments."""
+    """The nodes that a requirement applies to, each with its arguments."""
     return [
         f"{each.node.node.head.text} {each.node.node.name.text if each.node.node.name else '-'} in {each.node.tree}"
         + "".join(f" {argument.name}={argument.value.text}" for argument in each.arguments)
@@ -468,7 +468,7 @@ def test_more_than_any_number() -> None:
 
 
 def classic(text: str) -> list[tuple[str, str, object]]:
-    """What a description demands: verbs, texts, and what is behind them."""
+    """What a description demands: verbs, texts, and bounds or conditions."""
     description = text.replace('"', "'")
     found = resolved(
         "signal speed : m/s from {speed}\nBehaviorTree Main\n    ->\n        B\n"
@@ -508,7 +508,7 @@ def test_descriptions_that_are_scripts() -> None:
     [
         "The robot is quick",
         "SuccessIf the moving shall take at most 30 sec.",
-        "SuccessIf keeps sped < 1 m/s",  # nobody measures that
+        "SuccessIf keeps sped < 1 m/s",  # not a signal
         "SuccessIf keeps speed < 1 s",
         "SuccessIf never happens",
         "FailureIf takes between 1 s and 2 s",

@@ -1,4 +1,4 @@
-"""What is resolved, composed and found of requirements after an edit is what would be made anew."""
+"""After an edit, requirements, budgets and findings equal those of a new workspace."""
 
 from __future__ import annotations
 
@@ -193,7 +193,7 @@ def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -
 
 
 def edited(text: str, chance: random.Random) -> str:
-    """A text after somebody wrote a letter, a word, or a line, or moved or removed some."""
+    """A text after a random edit: a letter, a word or a line written, moved or removed."""
     lines = text.split("\n")
     at = chance.randrange(len(lines))
     kind = chance.randrange(10)
@@ -220,7 +220,7 @@ def edited(text: str, chance: random.Random) -> str:
 
 
 def said(workspace: Workspace, found: Requirements) -> Iterator[object]:
-    """All that requirements and budgets say, with places as they stand in the texts."""
+    """All results for requirements and budgets, with places in the texts."""
 
     def at(place: Place) -> tuple[str | None, int]:
         assert place.path is not None, "these places have a path"
@@ -275,19 +275,19 @@ def test_an_edit_in_one_tree_leaves_the_others() -> None:
 
 
 def after_edit(before: Workspace, path: str, text: str) -> Workspace:
-    """The workspace after an edit, with what was asked about the one before it."""
+    """The workspace after an edit, with the cached answers of the one before it."""
     after = before.with_file(path, text)
     advance(before, after)
     return after
 
 
 def held(store: Store[Workspace]) -> dict[str, object]:
-    """What holds for nodes of each tree in scope of the main file."""
+    """What applies to nodes of each tree in scope of the main file."""
     return in_trees(store, applied_in, "/p/main.btq")
 
 
 def in_trees(store: Store[Workspace], query: Callable[..., object], viewpoint: str) -> dict[str, object]:
-    """What a query says of each tree in scope, by the tree's name."""
+    """The result of a query for each tree in scope, by the tree's name."""
     trees = inputs.trees(store, viewpoint)
     return {facts.summary.symbols[0].name: store.ask(query, viewpoint, path, facts) for path, facts in trees}
 

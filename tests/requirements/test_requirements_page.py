@@ -1,4 +1,4 @@
-"""docs/requirements.md: each mission in it checks clean, is built, and gives the overview that stands behind it."""
+"""docs/requirements.md: each mission in it checks clean, is built, and gives the overview that follows it."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""What stands in many places is looked at once, however often it is named: trees that run each other twice, contexts
-that name each other twice.  What is counted is calls, in missions where to follow every name would take 2³⁰ of them."""
+"""What is named in many places is computed once, however often it is named: trees that run each other twice, contexts
+that name each other twice.  Calls are counted, in missions where following every name would take 2³⁰ of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The table `[evidence]` of a project file: what it says, and what is said about what is wrong in it."""
+"""The table `[evidence]` of a project file: its settings, and what is reported about errors in it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The query store: under random graphs, circles and edits its answers are those of a store without memory."""
+"""The query store: under random graphs, circles and edits its answers are those of a store without a cache."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def total(store: Store[Graph], node: int) -> int:
 
 
 def afresh(graph: Graph) -> dict[int, int]:
-    """What `total` says of each node, by the words of its docstring alone: no detours."""
+    """The value of `total` for each node, by its definition alone: no detours."""
     reached = {node: set(of) for node, of in graph.edges.items()}
     for middle in graph.edges:
         for node in graph.edges:
@@ -122,7 +122,7 @@ def test_no_query_runs_unless_something_that_it_asked_differs(seed: int) -> None
     random = Random(seed)
     graph = drawn(random, 30, circles=False, detours=False)
     store = Store(graph)
-    seen: dict[int, object] = {}  # what each node rested on when it was computed last
+    seen: dict[int, object] = {}  # what each node depended on when it was computed last
     for _ in range(20):
         RUNS.clear()
         truth = afresh(graph)
