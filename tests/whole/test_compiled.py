@@ -76,13 +76,13 @@ print(gc.collect())
 """
 
 
-def answers(package: Path, texts: list[str]) -> tuple[list[Path], list[str]]:
-    """What the parser, the checks and the colours of a package say of each text, and where a module of each lies."""
+def answers(package: Path, texts: list[str], **environment: str) -> tuple[list[Path], list[str]]:
+    """The results of the parser, the checks and the colours of a package for each text, and a module of each."""
     said = subprocess.run(
         [sys.executable, "-c", TELL],
         input="".join(json.dumps(text) + "\n" for text in texts),
         cwd=package,  # which stands first in the path of `-c`
-        env=os.environ | {"PYTHONPATH": str(package), "PYTHONMALLOC": "debug"},  # writing beside an object is fatal
+        env=os.environ | {"PYTHONPATH": str(package)} | environment,
         capture_output=True,
         text=True,
         check=True,
@@ -129,7 +129,7 @@ def test_what_is_compiled_reads_and_checks_as_the_pure_form(compiled: Path) -> N
     texts += [deep(60), f"context c : {' * '.join('a' * 80)}"]
     texts += [torn(draw.choice((CLASSIC, SHORT, *texts[: len(EXAMPLES)])), draw) for _ in range(500)]
     pure_files, pure = answers(ROOT, texts)
-    compiled_files, by_compiled = answers(compiled, texts)
+    compiled_files, by_compiled = answers(compiled, texts, PYTHONMALLOC="debug")  # writing beside an object is fatal
     names = ("parser.py", "syntax/tree.py", "syntax/script/parser.py")
     assert pure_files == [ROOT / "btq_lang" / name for name in names]
     assert [file.parent for file in compiled_files] == [(compiled / "btq_lang" / name).parent for name in names]
