@@ -247,7 +247,7 @@ def _build_and_import(workspace: Workspace) -> None:
             return
         made = enforced(workspace, MAIN, done, write_out is bundle)
         xml = write(made.export.document)
-        built = Built(MAIN, "main.xml", xml, (made.export.document,), made.export.elements, made.held)
+        built = Built(MAIN, "main.xml", xml, (made.export.document,), made.export.elements, made.clauses)
         side = side_file(workspace, built)
         imported = import_xml(xml)
         assert imported.is_complete

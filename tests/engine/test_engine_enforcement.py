@@ -60,7 +60,7 @@ def guarded(text: str) -> str:
     workspace = Workspace.of({"main.btq": text})
     assert problems(workspace) == []
     done = enforced(workspace, "main.btq", export(workspace, "main.btq"))
-    clauses = [held for applied in done.held for held in applied]
+    clauses = [held for applied in done.clauses for held in applied]
     assert {held.way for held in clauses} == {"enforced"}
     assert all(held.why == "" or held.why.startswith("as a limit on") for held in clauses)
     return write(done.export.document)
@@ -565,7 +565,7 @@ def test_a_signal_that_somebody_writes_first_needs_no_first_value(engine: Engine
     text += "Root Main\nBehaviorTree Main\n    ->\n        First\n        Move\n"
     workspace = Workspace.of({"main.btq": text})
     done = enforced(workspace, "main.btq", export(workspace, "main.btq"))
-    assert done.held[0][0].why == "the mission ends if a guard reads `speed` before anything writes it"
+    assert done.clauses[0][0].why == "the mission ends if a guard reads `speed` before anything writes it"
     xml = write(done.export.document)
     written: Parts = {"First": [step("SUCCESS", speed=0.5)]}
     assert run(engine, xml, written).status == "SUCCESS"

@@ -113,7 +113,7 @@ def test_random_trees_do_the_same(engine: Engine, seed: int) -> None:
         workspace = Workspace.of({"main.btq": text})
         plain = export(workspace, "main.btq").document
         done = enforced(workspace, "main.btq", export(workspace, "main.btq"))
-        clauses += sum(held.way == "enforced" for applied in done.held for held in applied)
+        clauses += sum(held.way == "enforced" for applied in done.clauses for held in applied)
         what = {"parts": parts(chance), "ticks": 40, "blackboard": {f"b{n}": chance.randrange(2) for n in range(3)}}
         cases.append((text, plain, done.export.document, what))
     answers = engine.run(job(write(document), **what) for _, *both, what in cases for document in both)
