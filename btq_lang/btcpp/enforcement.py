@@ -48,7 +48,7 @@ class ClauseEnforcement(Record):
         clause: as typed.
         place: of the clause.
         node: that it applies to, if any.
-        way: by the engine, by analysis of logs, or by people.
+        way: by the engine, from logs, or by people.
         why: the reason why the engine does not enforce it, or a note on how it does; mostly empty.
         asked: whether the requirement wants it enforced.
         subject: how the claim names the node: as itself, as its tree, or as the mission.

@@ -1,7 +1,8 @@
 """The versions of BehaviorTree.CPP that missions are written for, and what changed between them: one row a change.
 
-One invariant: every difference between versions is a row here, or a field of `engine_nodes` (since when a node exists);
-nothing else compares versions.  Read in the sources of the releases, and tried.
+One invariant: every difference between versions is a row here, a field of a row in `engine_nodes` (since when a node
+exists, a port's type before), or in `syntax/script/versions.py`, where it is one of the scripting language.  Determined
+from the sources of the releases and by experiment.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Words that look like node kinds but are not the engine's: of the published language, and of older engines.
 
-One invariant: no word here is a tag, a symbol or an alias of `nodes.BUILTINS`.  A node with such a name is a custom
-node all the same; the table only provides what to tell its author.
+One invariant: no word here is a tag, a symbol or an alias of `nodes.BUILTINS`.  A node with such a name is
+taken for its replacement of today if it has one, else for a custom node.
 """
 
 from __future__ import annotations

@@ -52,7 +52,7 @@ class View:
     def __init__(self, store: Store[Workspace], viewpoint: str, facts: Facts | None = None) -> None:
         self.store = store
         self.viewpoint = viewpoint
-        self.facts: Facts = facts  # type: ignore[assignment]  # who looks at no item asks for none
+        self.facts: Facts = facts  # type: ignore[assignment]  # unset only where no caller reads it
         self.seen = self.seen_in(viewpoint, facts) if facts is not None else NO_NODES
 
     def ask(self, query: Callable[..., T], *key: Any) -> T:

@@ -62,7 +62,7 @@ class Files:
     Attributes:
         overlay: texts that replace files on the disk, by path: standard input, an editor's buffers.
         stdin: the path assigned to standard input, once it was read.
-        folders: relative to which paths are shown: the current folder, or an editor's folders.
+        folders: the bases of paths that are shown: the current folder, or an editor's folders.
     """
 
     def __init__(self) -> None:

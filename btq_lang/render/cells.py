@@ -27,7 +27,7 @@ def printable(text: str) -> str:
 def cut(line: str, left: int, room: int) -> str:
     """The cells from `left` on, at most `room` of them, with `…` where text was cut off.
 
-    The sign on the left takes an extra cell, before the cell `left`.
+    A leading `…` adds one cell, before the cell `left`.
     """
     pieces, columns = laid_out(line)
     if not left and columns[-1] <= room:

@@ -39,7 +39,7 @@ def verdicts(missions: Sequence[MissionVerdicts], keys: Mapping[str, str]) -> It
 
 
 def outcomes(missions: Sequence[MissionVerdicts]) -> BoxDetails:
-    """Further lines for the boxes of nodes about their instances in the logs, and the classes of the boxes."""
+    """A function from a node to further lines in its box, about its instances in the logs, and to the box's class."""
     found: dict[int, list[NodeSummary]] = {}
     for mission in missions:
         for each in mission.nodes:

@@ -16,8 +16,8 @@ salsa and rust-analyzer, with the cone of an edit marked from below.)
 
 *Circles.*  A query that depends on itself gets the answer declared with `on_circle`, and so does every
 query on that circle, whichever was asked first.  An answer computed inside an open circle is part of it if it depends
-on one that is (Tarjan's strongly connected components).  No chain of queries is too long: at the depth `_DEEPEST` its
-far half is restarted with an empty Python stack.
+on one that is (Tarjan's strongly connected components).  Deep chains do not overflow Python's stack: at the depth
+`_DEEPEST`, the deeper half is evaluated first, from an empty stack.
 """
 
 from __future__ import annotations
