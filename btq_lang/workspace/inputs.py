@@ -1,5 +1,7 @@
 """What queries read in the workspace: the inputs of the store (queries.py) that several packages use, each a function
-of the store and of a *viewpoint*, the path of the file in whose scope names are looked up.
+of the store and of a *viewpoint*, which names the scope in which names are looked up: all that one program registers
+before it creates a tree.  Today that is a file with what it includes, named by its path.  An item has a key of its own,
+so that one file can be looked at from several viewpoints.
 
 One invariant: a result refers to syntax nodes only through the facts of their items, which are equal only to
 themselves, and has no offsets that an edit elsewhere would move; equal results are interchangeable, for queries keep
