@@ -29,7 +29,7 @@ State = TypeVar("State")
 T = TypeVar("T")
 
 _CLEAN, _SUSPECT, _STALE = range(3)
-_FEW: Final = 10_000  # answers: sweeping fewer is not worth the time
+_FEW: Final = 2_000  # answers: sweeping fewer is not worth the time
 _DEEPEST: Final = 40  # nested queries; Python allows some twenty calls for each
 _NEAR: Final = 3  # levels of dependencies
 _ON_CIRCLE: dict[Callable[..., Any], object] = {}
