@@ -270,7 +270,7 @@ class _Writer:
         attributes, tag = element.attributes, element.tag
         index = 0
         head: list[Piece]
-        is_explicit = tag in _CATEGORIES
+        is_explicit = tag in CATEGORIES
         if not is_explicit:
             has_code = tag not in PLACEHOLDERS or element.get("code") is not None
             head = [(kind(tag, False, has_code, self.symbols), None)]
@@ -302,7 +302,7 @@ class _Writer:
             elif isinstance(child, Comment):
                 self.comment_line(child, level)
             elif isinstance(child, Element):
-                identity = self.first(child, "ID") if child.tag in _CATEGORIES else None
+                identity = self.first(child, "ID") if child.tag in CATEGORIES else None
                 if identity is None:
                     self.verbatim(child, level)
                 else:
@@ -539,5 +539,4 @@ _INDENT: Final = "    "
 _TEXTS_TOLD: Final = 100  # reported one by one; a file with more is hardly mended by hand
 _COLUMNS: Final = 100  # the formatter's
 _DIRECTIONS: Final = {"input_port": "input", "output_port": "output", "inout_port": "inout"}
-_CATEGORIES: Final = frozenset(CATEGORIES)
 _RETURN: Final = re.compile("&#(?:0*13|[xX]0*[dD]);")

@@ -16,6 +16,7 @@ from btq_lang.btcpp.wrappers import MARK
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.evidence.model import LoggedTree
 from btq_lang.requirements.resolve import requirements
+from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
@@ -203,7 +204,7 @@ def _number(instance: Instance) -> int:
 
 
 def _kind(element: Element) -> str:
-    return element.get("ID") or element.tag if element.tag in _EXPLICIT else element.tag
+    return element.get("ID") or element.tag if element.tag in CATEGORIES else element.tag
 
 
 def _without_number(path: str) -> str:
@@ -217,6 +218,3 @@ def _unique(pairs: list[tuple[tuple[str, str], int]]) -> dict[tuple[str, str], i
     for key, number in pairs:
         numbers_of.setdefault(key, []).append(number)
     return {key: numbers[0] for key, numbers in numbers_of.items() if len(numbers) == 1}
-
-
-_EXPLICIT: Final = frozenset(("Action", "Condition", "Control", "Decorator", "SubTree"))

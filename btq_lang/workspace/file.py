@@ -286,10 +286,6 @@ class File:
         after = bisect_right(entries, start, key=_start_of)
         return self.text[start : entries[after].start if after < len(entries) else len(self.text)]
 
-    def summary_of(self, entry: Entry) -> Summary:
-        """The summary of one of the file's entries."""
-        return self.facts[id(entry.item)].summary
-
     @cached_property
     def _entries(self) -> dict[int, Entry]:
         return {id(entry.item): entry for entry in self.parsed.entries}

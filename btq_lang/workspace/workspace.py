@@ -98,9 +98,6 @@ class Workspace:
         store = after.__dict__["store"] = self.__dict__.pop("store", None) or Store(self)
         store.advance(after, topics)
 
-    def without_file(self, path: str) -> Workspace:
-        return Workspace({other: file for other, file in self.files.items() if other != path}, self.project)
-
     def with_project(self, project: Project) -> Workspace:
         return Workspace(self.files, project)
 

@@ -176,7 +176,7 @@ def test_a_workspace_reached_by_edits_says_the_same_as_a_fresh_one(data: st.Data
         path = data.draw(st.sampled_from(sorted(files)))
         if data.draw(st.booleans()) and len(files) > 1:
             del files[path]
-            workspace = workspace.without_file(path)
+            workspace = Workspace({name: workspace.files[name] for name in files}, PROJECT)
         else:
             files[path] = mutation(data.draw, files[path])
             workspace = workspace.with_file(path, files[path])

@@ -14,6 +14,7 @@ from typing import Final
 from btq_lang.btcpp.document import Element
 from btq_lang.btcpp.reader import read as read_xml
 from btq_lang.evidence.model import ROOT, LoggedTree
+from btq_lang.syntax.tokens import CATEGORIES
 
 
 class NotALog(Exception):
@@ -65,7 +66,7 @@ def _uid(element: Element) -> int:
 
 
 def _kind(element: Element) -> str:
-    return element.get("ID") or element.tag if element.tag in _EXPLICIT else element.tag
+    return element.get("ID") or element.tag if element.tag in CATEGORIES else element.tag
 
 
 def _path(element: Element, uid: int, prefix: str) -> str:
@@ -77,5 +78,4 @@ def _path(element: Element, uid: int, prefix: str) -> str:
     return f"{prefix}/{own}" if prefix else own
 
 
-_EXPLICIT: Final = frozenset(("Action", "Condition", "Control", "Decorator", "SubTree"))
 _MOST_DIGITS: Final = 5  # the engine numbers nodes with 16 bits
