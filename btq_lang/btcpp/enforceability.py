@@ -66,7 +66,7 @@ class Judge:
     def why_not(self, applied: Applied, claim: Claim) -> str | None:
         """Why the engine does not enforce a clause that it should; None if it does, or if the mission's root is
         unknown, which is reported of the mission."""
-        if applied.requirement.method in ("review", "test", "analysis"):
+        if applied.requirement.is_verified_by_people:
             return f"verified by {applied.requirement.method}"
         try:
             self.needs(applied.requirement, claim, self.node(applied, claim), "_", "@_")

@@ -135,16 +135,12 @@ def clause_enforcements(
     return _plans(workspace, found, path, _written(workspace, path, bundled))[0].clauses
 
 
-def unasked(method: str | None, action: str | None) -> tuple[Way, str] | None:
-    """How clauses are checked that the engine need not enforce, and why; None if the engine is to enforce them.
-
-    Args:
-        method: of `verified by`.
-        action: of `on violation`.
-    """
-    if method in ("review", "test", "analysis"):
-        return "reviewed", f"verified by {method}"
-    return None if action in ("fail", "halt") else ("monitored", "")
+def unasked(requirement: Requirement) -> tuple[Way, str] | None:
+    """How the clauses of a requirement are checked that the engine need not enforce, and why; None if it is to enforce
+    them."""
+    if requirement.is_verified_by_people:
+        return "reviewed", f"verified by {requirement.method}"
+    return None if requirement.demands_enforcement else ("monitored", "")
 
 
 def _has_requirements(workspace: Workspace, path: str) -> bool:
@@ -223,7 +219,7 @@ class _Planner:
     def enforce(self, applied: Applied, claim: Claim) -> ClauseEnforcement:
         """How a clause is enforced; records the wrappers it needs."""
         requirement = applied.requirement
-        if (known_way := unasked(requirement.method, requirement.action)) is not None:
+        if (known_way := unasked(requirement)) is not None:
             return ClauseEnforcement(
                 requirement.name, claim.text, claim.place, applied.node, *known_way, subject=applied.shown
             )

@@ -19,8 +19,6 @@ from btq_lang.syntax.tree import (
     Claim,
     Entry,
     Mission,
-    Odds,
-    OnViolation,
     Requirement,
     Scope,
     Signal,
@@ -55,7 +53,7 @@ def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:
                     yield from _count(requirement, claim, amount, number, is_lower)
                 elif what == "time" and operand in _TIMED:
                     if id(requirement) not in limits:
-                        limits[id(requirement)] = _has_limits(requirement)
+                        limits[id(requirement)] = _is_enforceable(view, requirement)
                     if not (limits[id(requirement)] and VERBS[verb].limits):
                         yield from _time(amount, number, is_lower)
 
@@ -135,12 +133,12 @@ def _shown(amount: Amount) -> str:
     return f"-{amount.word.raw}" if amount.negative else amount.word.raw
 
 
-def _has_limits(requirement: Requirement) -> bool:
-    """Whether the engine should enforce its times, which are then reported as limit-too-small."""
-    clauses = requirement.clauses
-    actions = [clause.action.raw for clause in clauses if isinstance(clause, OnViolation) and clause.action is not None]
-    has_odds = any(isinstance(clause, Odds) for clause in clauses)
-    return actions[:1] in (["fail"], ["halt"]) and not has_odds
+def _is_enforceable(view: View, written: Requirement) -> bool:
+    """Whether the engine is to enforce its times, which are then reported as limit-too-small."""
+    from btq_lang.requirements.definitions import requirement  # few files have claims about times
+
+    found, _ = view.ask(requirement, written.name.text) if written.name is not None else (None, ())
+    return found is not None and found.is_enforceable
 
 
 def _has_scope(requirement: Requirement) -> bool:

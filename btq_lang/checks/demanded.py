@@ -53,7 +53,7 @@ class Demanded:
 def _hard_claims(
     view: View, in_tree: Iterable[Applied], budgets: Budgets
 ) -> Iterator[tuple[Applied, Claim, ResolvedNode, Place | None, str | None]]:
-    held = [applied for applied in in_tree if applied.requirement.action in ("fail", "halt")]
+    held = [applied for applied in in_tree if applied.requirement.demands_enforcement]
     if not held:
         return
     judge = judge_of(view)
@@ -127,11 +127,6 @@ def reported_at(view: View, applied: Applied, claim: Claim) -> Place | None:
     if claim.place.path == view.path and not (applied.arguments and applied.how != "subject"):
         return claim.place
     return next((place for place in (applied.place, claim.place) if place.path == view.path), None)
-
-
-def is_enforced(applied: Applied) -> bool:
-    """Whether the requirement wants it enforced, and not only monitored."""
-    return applied.requirement.action in ("fail", "halt") and applied.requirement.odds is None
 
 
 def highest(claim: Claim) -> tuple[float, str] | None:

@@ -99,7 +99,7 @@ def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple
     if of_name is None:
         return ()
     found = [*limits.goal_beyond_bound(view, of_name), *odds.window_too_small(of_name)]
-    if of_name.action in ("fail", "halt"):
+    if of_name.demands_enforcement:
         found += unenforced.not_enforced_between(view, name)
     return _here(viewpoint, found)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced, lowest, seconds
+from btq_lang.checks.demanded import Demanded, Found, highest, lowest, seconds
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.composition import port_count, port_seconds
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def limit_too_small(demanded: Demanded) -> Iterator[Found]:
     """A limit that has no effect in the engine: it counts whole milliseconds, and 0 means no limit."""
     for applied, claim, _, place in demanded.claims:
-        most = highest(claim) if VERBS[claim.verb].limits and is_enforced(applied) else None
+        most = highest(claim) if VERBS[claim.verb].limits and applied.requirement.is_enforceable else None
         if most is None or most[0] >= 0.001:
             continue
         yield (
@@ -44,7 +44,7 @@ def limit_too_small(demanded: Demanded) -> Iterator[Found]:
 def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
     """A limit on a node that completes within one tick: the time is not checked while it runs."""
     for applied, claim, node, place in demanded.claims:
-        if not VERBS[claim.verb].limits or not is_enforced(applied) or highest(claim) is None:
+        if not VERBS[claim.verb].limits or not applied.requirement.is_enforceable or highest(claim) is None:
             continue
         if demanded.budgets.composed(node).waits:
             continue

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import words
-from btq_lang.checks.demanded import Demanded, Found, Guard, is_enforced
+from btq_lang.checks.demanded import Demanded, Found, Guard
 from btq_lang.checks.view import View
 from btq_lang.checks.writers import all_entries, declared_port, isolated, written_keys
 from btq_lang.diagnostics.model import Diagnostic, Related
@@ -45,7 +45,7 @@ def guards(demanded: Demanded) -> Iterator[Guard]:
     """The signals that the engine reads to enforce a claim, each once, and where to report it."""
     known: dict[tuple[int, ...], tuple[Signal, ...]] = {}
     for applied, claim, _, place in demanded.claims:
-        if claim.verb not in _READING or not is_enforced(applied):
+        if claim.verb not in _READING or not applied.requirement.is_enforceable:
             continue
         parts = (claim.condition, claim.signal, *(scope.condition for scope in applied.requirement.scopes))
         key = tuple(map(id, parts))  # one claim may apply to many nodes

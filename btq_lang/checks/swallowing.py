@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
-from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.checks.demanded import Demanded, Found, highest
 from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements.composition import port_count
 from btq_lang.requirements.nodes import callers, mission
@@ -17,13 +18,12 @@ if TYPE_CHECKING:
 
 Swallower: TypeAlias = tuple[ResolvedNode, str]  # the node that does not fail when something below it does, and why
 
-_NEVER_ENFORCED = frozenset(("runs", "starts", "ends"))
-
 
 def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
     """A failure that never reaches the root, on whichever way the node is run."""
     for applied, claim, node, place in demanded.claims:
-        if applied.requirement.action != "fail" or not is_enforced(applied) or claim.verb in _NEVER_ENFORCED:
+        requirement = applied.requirement
+        if requirement.action != "fail" or not requirement.is_enforceable or not VERBS[claim.verb].enforced:
             continue
         if claim.limit is not None and highest(claim) is None:
             continue  # too short a time is only noticed afterwards

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def not_enforced(demanded: Demanded) -> Iterator[Found]:
     """A claim about a node that no build enforces, or only one that writes all files into one."""
     for applied, claim, node, place, why in demanded.hard:
-        if place is None or _is_reported_otherwise(demanded, claim, node, place):
+        if place is None or _is_reported_otherwise(demanded, applied, claim, node, place):
             continue
         related = () if place == node.place else (Related(node.place, "node"),)
         if why is not None:
@@ -71,11 +71,15 @@ def _found(
     )
 
 
-def _is_reported_otherwise(demanded: Demanded, claim: Claim, node: ResolvedNode, place: Place) -> bool:
+def _is_reported_otherwise(
+    demanded: Demanded, applied: Applied, claim: Claim, node: ResolvedNode, place: Place
+) -> bool:
     """Whether a rule of its own reports why the engine does not enforce it."""
     if claim.signal is not None:
         return claim.signal.behaviour == "gauge"
-    most = highest(claim) if VERBS[claim.verb].limits and place != node.place else None
+    if not applied.requirement.is_enforceable or place == node.place:
+        return False
+    most = highest(claim) if VERBS[claim.verb].limits else None
     return most is not None and (most[0] < 0.001 or not demanded.budgets.composed(node).waits)
 
 

@@ -28,7 +28,6 @@ from btq_lang.util.record import replace
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate, Joined
     from btq_lang.evidence.model import Outcome, Series, Session
-    from btq_lang.requirements.model import Requirement
 
 
 class MissionEvaluation:
@@ -49,14 +48,14 @@ class MissionEvaluation:
             JudgedClause(applied.requirement, claim, applied)
             for applied in found.applied
             for claim in applied.requirement.claims
-            if not _is_by_people(applied.requirement)
+            if not applied.requirement.is_verified_by_people
         ]
         used = {(clause.requirement.name, clause.claim.text) for clause in clauses}
         clauses += [
             JudgedClause(requirement, claim, None)
             for requirement in found.all.values()
             for claim in requirement.claims
-            if not _is_by_people(requirement) and (requirement.name, claim.text) not in used
+            if not requirement.is_verified_by_people and (requirement.name, claim.text) not in used
         ]
         self._clauses: Final = clauses
         self._sources: Final[list[Source]] = []
@@ -166,7 +165,7 @@ class MissionEvaluation:
             contexts=self._contexts.summary(),
             retries=self._coverage.retries.summary(),
             recoveries=self._coverage.recoveries.summary(),
-            by_people=tuple(each.name for each in found.all.values() if each.claims and _is_by_people(each)),
+            by_people=tuple(each.name for each in found.all.values() if each.claims and each.is_verified_by_people),
         )
 
     def _verdict(self, clause: JudgedClause) -> ClauseVerdict:
@@ -188,10 +187,6 @@ class MissionEvaluation:
             end=source.end if source.end is not None else last.end,
             remarks=tuple(dict.fromkeys((*last.remarks, *source.remarks))),
         )
-
-
-def _is_by_people(requirement: Requirement) -> bool:
-    return requirement.method in ("review", "test", "analysis")
 
 
 _OUTCOMES: Final[dict[Outcome, str]] = {"S": "succeeded", "F": "failed", "H": "halted", "O": "interrupted"}

@@ -6,8 +6,8 @@ One invariant: it reports the plan of the build itself, in its words.
 from __future__ import annotations
 
 from btq_lang.btcpp.enforcement import ClauseEnforcement, clause_enforcements, unasked
-from btq_lang.requirements.constraints import constraints
-from btq_lang.syntax.tree import Claim, How, OnViolation, Requirement
+from btq_lang.requirements.definitions import requirement
+from btq_lang.syntax.tree import Claim, Requirement
 from btq_lang.workspace.file import Definition, is_btq
 from btq_lang.workspace.inputs import everything
 from btq_lang.workspace.queries import Store
@@ -29,7 +29,8 @@ def enforcement_lines(workspace: Workspace, path: str, found: Definition, *, is_
     item = found.symbol.target
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
     ways: dict[str, dict[tuple[str, str], dict[str, None]]] = {}
-    known = None if item.text is not None and constraints(item.text) else unasked(*_asked(item))
+    resolved, _ = workspace.store.ask(requirement, found.path, found.symbol.name)
+    known = unasked(resolved) if resolved is not None and not resolved.classic else None
     if known is not None:  # and for a large mission that takes long
         text = workspace.files[found.path].text
         for claim in item.clauses:
@@ -44,17 +45,6 @@ def enforcement_lines(workspace: Workspace, path: str, found: Definition, *, is_
                 if each.subject:
                     nodes[each.subject] = None
     return _lines(ways)
-
-
-def _asked(item: Requirement) -> tuple[str | None, str | None]:
-    """The method and the action that a requirement names."""
-    method = action = None
-    for clause in item.clauses:
-        if isinstance(clause, How) and clause.method is not None:
-            method = clause.method.raw
-        if isinstance(clause, OnViolation) and clause.action is not None:
-            action = clause.action.raw
-    return method, action
 
 
 def _missions(workspace: Workspace, path: str, found: Definition) -> tuple[str, ...]:

@@ -23,7 +23,6 @@ from btq_lang.syntax.tree import (
     Clause,
     Entry,
     Node,
-    OnViolation,
     Quality,
     QualityPath,
     Requirement,
@@ -144,21 +143,17 @@ def _parts_a_time(workspace: Workspace, path: str, top: Node) -> bool:
     return any(
         len({id(node.node) in inside for node in applied.nodes}) > 1
         for each in workspace.linked(path)
-        if _has_hard_span(workspace.files[each])
+        if _has_span(workspace.files[each])
         for applied in requirements(workspace, each).applied
-        if isinstance(applied.subject, Time) and applied.requirement.action in _ENFORCED
+        if isinstance(applied.subject, Time) and applied.requirement.is_enforceable
     )
 
 
-def _has_hard_span(file: File) -> bool:
-    """Whether a requirement in a file enforces a time between two events: few do, and others need not be resolved."""
+def _has_span(file: File) -> bool:
+    """Whether a requirement in a file limits a time between two events: few do, and others need not be resolved."""
     targets = (symbol.target for symbol in file.names.symbols[Kind.REQUIREMENT])
     clauses = [target.clauses for target in targets if isinstance(target, Requirement)]
-    return any(
-        any(isinstance(one, Claim) and isinstance(one.subject, Between) for one in each)
-        and any(isinstance(one, OnViolation) and one.action and one.action.text in _ENFORCED for one in each)
-        for each in clauses
-    )
+    return any(isinstance(one, Claim) and isinstance(one.subject, Between) for each in clauses for one in each)
 
 
 def _trees(file: File) -> Iterator[Tree]:
@@ -172,9 +167,6 @@ def _item_end(file: File, entry: Entry) -> int:
     end = max([tree.end, *(child.block_end for child in tree.children if isinstance(child, Node))])
     line = file.lines.position(entry.start + end).line
     return file.lines.offset(Position(line, len(file.lines.line(line))))
-
-
-_ENFORCED = ("fail", "halt")
 
 
 # ---- inline a subtree ----

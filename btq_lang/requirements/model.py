@@ -346,6 +346,23 @@ class Requirement(Record):
     reasons: tuple[str, ...] = ()
     method: Method | None = None
 
+    @property
+    def demands_enforcement(self) -> bool:
+        """Whether `on violation` demands that the engine enforces the claims."""
+        return self.action in ("fail", "halt")
+
+    @property
+    def is_verified_by_people(self) -> bool:
+        """Whether people verify the claims, so that no tool enforces or monitors them."""
+        return self.method in ("review", "test", "analysis")
+
+    @property
+    def is_enforceable(self) -> bool:
+        """Whether the engine is to enforce the claims, as far as the requirement itself decides that; a claim or its
+        node may still prevent it."""
+        is_single = self.odds is None and self.window is None  # else many experiments decide, which the engine forgets
+        return self.demands_enforcement and is_single and not self.is_verified_by_people
+
 
 class Argument(Record):
     """The value of a parameter: as given, or its default."""

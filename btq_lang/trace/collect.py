@@ -30,7 +30,7 @@ from btq_lang.trace.overview import (
     Use,
 )
 from btq_lang.trace.overview import Total as TotalRow
-from btq_lang.trace.ways import declared_ways, is_hard
+from btq_lang.trace.ways import declared_ways
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span as TextSpan
 from btq_lang.workspace.placeholders import is_placeholder
@@ -266,7 +266,7 @@ class _Requirement:
             self.at,
             tuple(self.uses),
             tuple(self.loose or ()),
-            is_hard(each),
+            each.demands_enforcement and not each.is_verified_by_people,
         )
 
 

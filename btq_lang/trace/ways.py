@@ -6,10 +6,10 @@ What the generated tree enforces is unknown here: callers that know it pass `col
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.graph.missions import clauses_in_words
-from btq_lang.requirements.model import Applied, Requirement
+from btq_lang.requirements.model import Applied
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.trace.overview import Clause
 from btq_lang.workspace.workspace import Workspace
@@ -30,21 +30,13 @@ def declared_ways(
     return [_clauses(applied, because) for applied in found.applied]
 
 
-def is_hard(requirement: Requirement) -> bool:
-    """Whether the engine must enforce a requirement, which people do not verify."""
-    return requirement.action in ("fail", "halt") and requirement.method not in _BY_PEOPLE
-
-
 def _clauses(applied: Applied, because: str) -> tuple[Clause, ...]:
     requirement = applied.requirement
     if not requirement.claims:
         return tuple(Clause(text, "reviewed", "it is not measurable") for text in clauses_in_words(applied)[:1])
-    if requirement.method in _BY_PEOPLE:
+    if requirement.is_verified_by_people:
         why = f"verified by {requirement.method}"
         return tuple(Clause(claim.text, "reviewed", why) for claim in requirement.claims)
-    is_demanded = is_hard(requirement)
+    is_demanded = requirement.demands_enforcement
     why = because or f"nothing enforces `on violation {requirement.action}`" if is_demanded else ""
     return tuple(Clause(claim.text, "monitored", why, is_demanded) for claim in requirement.claims)
-
-
-_BY_PEOPLE: Final = ("review", "analysis", "test")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_clean, assert_fix, assert_problems
+from check_asserts import assert_clean, assert_fix, assert_problems, findings, problems
 
 NODE = "BehaviorTree Main\n    Action X satisfies r\n"
 
@@ -66,6 +66,15 @@ def test_a_limit_is_told_as_one() -> None:
         "2:5 error limit-too-small «takes at most 0 s» the engine cannot enforce `0 s`: it counts whole "
         "milliseconds, and 0 disables the limit; write at least 1 ms",
     )
+
+
+@pytest.mark.parametrize("clause", ["in at least 98 % of runs", "over last 5 runs", "verified by test"])
+def test_a_time_that_the_engine_does_not_limit(clause: str) -> None:
+    text = f'QualityReq r "t"\n    takes at most 0 s\n    on violation fail\n    {clause}\n{NODE}'
+    assert findings(text, "limit-too-small") == []
+    assert [each.message for each in problems(text, "impossible-bound")] == [
+        "a duration must be longer than zero, found `0 s`"
+    ]
 
 
 @pytest.mark.parametrize(("bound", "fixed"), [("at most 4.5", "at most 4"), ("at least 1.5", "at least 2")])

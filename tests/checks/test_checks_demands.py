@@ -363,6 +363,10 @@ def test_what_cannot_be_enforced_fails_nothing() -> None:
         "A takes at least 5 s|on violation fail",
         "A runs at least 1 per 5 s|on violation fail",
         "A takes at most 5 s",
+        "A takes at most 5 s|on violation fail|in at least 98 % of runs",
+        "A takes at most 5 s|on violation fail|over last 5 runs",
+        "A takes at most 5 s|on violation fail|verified by review",
+        "A takes at most 5 s|on violation fail|verified by test",
     ):
         assert findings(mission("Inverter\n    Action A", f"q {clauses}"), "swallowed-failure") == []
 
@@ -411,6 +415,8 @@ def test_a_first_value() -> None:
     message = "`n` has no initial value: the mission ends if a guard reads it before anything writes it"
     assert findings(GUARD.replace("{initially}", "") + tree, "signal-may-be-unset") == [f"1 warning «n» {message}"]
     assert findings(GUARD.replace("{initially}", "").replace("halt", "warn") + tree, "signal-may-be-unset") == []
+    reviewed = GUARD.replace("{initially}", "").replace("halt", "halt\n    verified by review")
+    assert findings(reviewed + tree, "signal-may-be-unset") == []
     through = GUARD.replace("{initially}", "").replace("A keeps n <= 3", "A takes at most 3 s\n    A needs high")
     assert findings(through + "context high : n > 3\n" + tree, "signal-may-be-unset") == [f"1 warning «n» {message}"]
 

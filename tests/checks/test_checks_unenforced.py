@@ -42,6 +42,8 @@ def told(clauses: str, signals: str = "", tree: str = "->\n    Action A\n    Con
         ("A follows C halts", "the engine runs no script at this event"),
         ("A takes at most 5 s|in at least 98 % of runs", "a probability is evaluated in the logs of many runs"),
         ("A takes at most 5 s|verified by test", "verified by test"),
+        ("C takes at most 5 s|verified by review", "verified by review"),  # no limit-on-synchronous-node
+        ("A takes at most 0.5 ms|over last 5 runs", "a window is evaluated in the logs of many runs"),
         (
             "from A fails to C succeeds takes at most 5 s",
             "it limits the time between nodes, and no node encloses that time",

@@ -451,7 +451,8 @@ def test_extractions_in_examples() -> None:
 
 def test_a_time_that_is_enforced_is_not_parted() -> None:
     """A build puts it around the Sequence that begins and ends with its nodes; what is monitored may be parted."""
-    for action, first in (("fail", ()), ("halt", ()), ("log", ("Extract into the tree `Extracted`",))):
+    extract = ("Extract into the tree `Extracted`",)
+    for action, first in (("fail", ()), ("halt", ()), ("log", extract), ("fail\n    verified by test", extract)):
         text = (
             "Root Main\n"
             'QualityReq r "x"\n    from Pick starts to Place succeeds takes at most 9 s\n'
