@@ -227,7 +227,7 @@ def _node(workspace: Workspace, path: str, mention: Mention) -> Subject:
     is_kind = node is not None and node.kind is not None and mention.word == node.kind
     quoted = mention.word.quoted
     if is_kind or (mention.defines and not quoted):
-        builtin = kind_of(node) if node is not None else lookup(mention.name, quoted)
+        builtin = lookup(mention.name, quoted, len(node.nodes) if node else None)
         if builtin is not None:
             return Subject(What.NODE, builtin.tag, ENGINE)
     return _defined(workspace, path, What.NODE, mention.name)

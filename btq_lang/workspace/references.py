@@ -15,12 +15,11 @@ from typing import TypeAlias
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.names import legal_name
-from btq_lang.catalog.nodes import PLACEHOLDERS
+from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import BRACED, NAME, NUMBER, QUANTITY, STRING
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace.node_names import kind_of
 from btq_lang.workspace.symbols import requirements_at
 
 
@@ -286,7 +285,7 @@ def _content(key: str, node: syntax.Node) -> str | None:
     attribute = RESERVED_ATTRIBUTES.get(key)
     if attribute is not None:
         return "script" if attribute.is_script else None
-    kind = kind_of(node)
+    kind = None if node.kind is None else lookup(node.kind.text, node.kind.quoted, len(node.nodes))
     port = kind.port(key) if kind is not None else None
     return None if port is None else port.content
 
