@@ -72,8 +72,8 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue  # a value may be on a line that could not be read
         if _may_have_more(view, seen):
             continue  # and so may a default
-        slips = {likely[0] for likely in _meant(seen, ports).values() if likely}  # reported as unknown, with a fix
-        missing = [port for port in missing if port.name not in slips]
+        misspelt = {likely[0] for likely in _meant(seen, ports).values() if likely}  # reported as unknown, with a fix
+        missing = [port for port in missing if port.name not in misspelt]
         if not missing:
             continue
         names = " and ".join(f"`{port.name}`" for port in missing)

@@ -154,13 +154,16 @@ class Messages:
     """Incoming messages, each read by one call in a thread: pygls uses a call for each header line.
 
     A reader for `pygls.io_.run_async`.
+
+    Attributes:
+        has_pending_edit: whether an edit has arrived that is not yet handled.
     """
 
     def __init__(self, stream: BinaryIO) -> None:
         self._stream = stream
         self._head: list[bytes] = []
         self._body = b""
-        self._is_taken = True
+        self.has_pending_edit = False
 
     async def readline(self) -> bytes:
         if not self._head:
@@ -168,13 +171,8 @@ class Messages:
         return self._head.pop(0) if self._head else b""
 
     async def readexactly(self, _: int) -> bytes:
-        self._is_taken = True
+        self.has_pending_edit = False
         return self._body
-
-    @property
-    def has_pending_edit(self) -> bool:
-        """Whether an edit has arrived that is not yet handled."""
-        return not self._is_taken and _CHANGE in self._body
 
     def _read(self) -> None:
         """One message; empty at the end of input."""
@@ -185,7 +183,7 @@ class Messages:
         if length:
             self._head = [b"Content-Length: %d\r\n" % length, b"\r\n"]
             self._body = self._stream.read(length)
-            self._is_taken = False
+            self.has_pending_edit = _CHANGE in self._body
 
 
 def _failure(future: Future[Any]) -> BaseException | None:
