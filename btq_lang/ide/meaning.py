@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import lru_cache, partial
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup, spellings
@@ -17,8 +17,9 @@ from btq_lang.syntax.tokens import COMMENT, NAME
 from btq_lang.syntax.tree import Entry, Model, Qualities, QualityPath, Requirement, Root, Satisfices, Tree, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
 from btq_lang.workspace.file import Definition
-from btq_lang.workspace.node_names import kind_of
+from btq_lang.workspace.node_names import kind_of, meaning_of
 from btq_lang.workspace.references import Mention, What, called
 from btq_lang.workspace.workspace import Workspace
 
@@ -301,7 +302,7 @@ def _port(workspace: Workspace, found: Found) -> Subject:
         return Subject(What.PORT, mention.name, f"tree {name.text}")
     if node.id is None:
         return Subject(What.PORT, mention.name)
-    kind = kind_of(node)
+    kind = meaning_of(node, partial(inputs.category, workspace.store, found.path)).kind
     if kind is not None:
         return Subject(What.PORT, mention.name, f"{ENGINE} {kind.tag}")
     owner = _defined(workspace, found.path, What.NODE, node.id.text)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace.node_names import kind_of
+from btq_lang.workspace import inputs
+from btq_lang.workspace.node_names import meaning_of
 from btq_lang.workspace.symbols import requirements_at
 from btq_lang.workspace.workspace import Workspace
 
@@ -143,15 +145,8 @@ def _node(workspace: Workspace, path: str, node: syntax.Node, by: int) -> Outlin
 
 
 def _category(workspace: Workspace, path: str, node: syntax.Node) -> str:
-    if node.category is not None:
-        return node.category.raw.lower()
-    kind = kind_of(node)
-    if kind is not None:
-        return kind.category.lower()
-    name = node.id
-    found = workspace.scope(path).find(Kind.MODEL, name.text) if name is not None else None
-    target = found.symbol.target if found else None
-    return target.category.raw.lower() if isinstance(target, syntax.Model) else "node"
+    meaning = meaning_of(node, partial(inputs.category, workspace.store, path))
+    return meaning.category.lower() if meaning.category is not None else "node"
 
 
 def clauses_detail(clauses: tuple[syntax.NodeClause, ...]) -> str:

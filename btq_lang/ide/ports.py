@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import NodeKind, lookup, port_type
 from btq_lang.syntax.tree import Model, Node, Port, Tree
 from btq_lang.util.record import Record
-from btq_lang.workspace.node_names import kind_of
+from btq_lang.workspace import inputs
+from btq_lang.workspace.node_names import meaning_of
+from btq_lang.workspace.references import called
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -37,14 +41,11 @@ class NodePort(Record):
 
 def ports_of(workspace: Workspace, path: str, node: Node) -> tuple[NodePort, ...]:
     """The ports of a node; empty if they are unknown."""
-    name = node.id
-    is_subtree = node.category is not None and node.category.raw == "SubTree"
-    if is_subtree and name is not None:
-        return ports_of_tree(workspace, path, name.text)
-    if node.kind is not None and node.kind.raw == "SubTreePlus":
-        called = node.attribute("ID")
-        return ports_of_tree(workspace, path, called.text) if called is not None else ()
-    return () if name is None else _ports(workspace, path, kind_of(node), name.text)
+    tree = called(node)
+    if tree is not None:
+        return ports_of_tree(workspace, path, tree.text)
+    meaning = meaning_of(node, partial(inputs.category, workspace.store, path))
+    return _ports(workspace, path, meaning.kind, node.id.text) if node.id is not None else ()
 
 
 def ports_of_kind(

@@ -1,20 +1,61 @@
-"""What a written node is called, and which built-in that means, as far as the node alone determines it.
+"""What a written node is called, and what that means.
 
-One invariant: nothing is looked up.  Whether a custom node has a model is known to `resolved`.
+One invariant: besides the node, only the category of its model counts, which the caller looks up.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.names import legal_name
-from btq_lang.catalog.nodes import BUILTINS, lookup, spellings, xml_tag
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup, spellings, xml_tag
+from btq_lang.util.record import Record
 from btq_lang.workspace.placeholders import is_placeholder
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import NodeKind
     from btq_lang.syntax.tree import Node
+
+
+class Meaning(Record):
+    """What a node means.
+
+    Attributes:
+        kind: the built-in, if it is one; for an older engine's word, the one of today.
+        category: as written, or that of the built-in, the placeholder, the model or an older engine's word; None if
+            unknown.
+        of_model: the category of its model; None if no model of it is in scope.
+        is_outdated: whether its category is that of an older engine's word which has no replacement today.
+    """
+
+    kind: NodeKind | None
+    category: str | None
+    of_model: str | None = None
+    is_outdated: bool = False
+
+
+def meaning_of(node: Node, category_of_model: Callable[[str], str | None]) -> Meaning:
+    """What a node means.
+
+    Args:
+        category_of_model: returns the category of a node's model in scope, given the node's name.
+    """
+    name = node.id
+    category = node.category.raw if node.category is not None else None
+    if name is None or category == "SubTree":
+        return Meaning(None, category)
+    if is_placeholder(node):
+        return Meaning(None, PLACEHOLDERS[name.raw])
+    kind = kind_of(node)
+    if kind is not None:
+        return Meaning(kind, category or kind.category)
+    of_model = category_of_model(name.text)
+    known = KNOWN_WORDS.get(name.text) if of_model is None and not name.quoted else None
+    if known is None:
+        return Meaning(None, category or of_model, of_model)
+    kind = BUILTINS.get(known.replacement or "")
+    return Meaning(kind, category or known.category, is_outdated=kind is None and category is None)
 
 
 def kind_of(node: Node) -> NodeKind | None:

@@ -11,15 +11,14 @@ from functools import cache, partial
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS
 from btq_lang.diagnostics.model import Place
 from btq_lang.syntax.tree import Node, NodeClause, Satisfices, Tags, Tree
 from btq_lang.workspace import inputs
-from btq_lang.workspace.node_names import kind_of, kinds_of, names_of
+from btq_lang.workspace.node_names import kinds_of, meaning_of, names_of
 from btq_lang.workspace.placeholders import is_placeholder
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import Flow, NodeKind
+    from btq_lang.catalog.kinds import Flow
     from btq_lang.syntax.tree import Word
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
@@ -57,12 +56,8 @@ class ResolvedNode:
         index: among the children of its parent, counting verbatim XML.
         children: the nodes below it.
         id, name: of the node, from its attributes if they are not written before.
-        kind: the built-in, if it is one; for an older engine's word, the one of today.
         is_placeholder: whether it represents a skill (placeholders.py).
-        of_model: the category of its model; None if no model of it is in scope.
-        category: as written, or that of the built-in, the placeholder, the model or an older engine's word; None if
-            unknown.
-        is_outdated: whether its category is that of an older engine's word which has no replacement today.
+        kind, of_model, category, is_outdated: its meaning (node_names.py).
         is_subtree: whether it runs another tree, under the name that the engine of today has for that.
     """
 
@@ -99,28 +94,13 @@ class ResolvedNode:
         self.id: Final = node.id
         self.name: Final[Word | None] = node.name
         self.is_placeholder: Final = is_placeholder(node)
-        self.kind: NodeKind | None = None
-        self.of_model: str | None = None
-        self.category: str | None = node.category.raw if node.category is not None else None
-        self.is_outdated = False
+        meaning = meaning_of(node, category_of_model)
+        self.kind: Final = meaning.kind
+        self.of_model: Final = meaning.of_model
+        self.category: Final = meaning.category
+        self.is_outdated: Final = meaning.is_outdated
         self._names: frozenset[str] | None = None
-        if self.id is not None and self.category != "SubTree":
-            self._resolve(self.id, category_of_model)
         self.is_subtree: Final = self.category == "SubTree" and not self.is_outdated
-
-    def _resolve(self, name: Word, category_of_model: Callable[[str], str | None]) -> None:
-        if self.is_placeholder:
-            self.category = PLACEHOLDERS[name.raw]
-            return
-        self.kind = kind_of(self.node)
-        if self.kind is None:
-            self.of_model = category_of_model(name.text)
-            if self.of_model is None and not name.quoted and (known := KNOWN_WORDS.get(name.text)) is not None:
-                self.kind = BUILTINS.get(known.replacement or "")
-                self.is_outdated = self.kind is None and self.category is None
-                self.category = self.category or known.category
-        if self.category is None:
-            self.category = self.kind.category if self.kind is not None else self.of_model
 
     # ---- its place ----
 

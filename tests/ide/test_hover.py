@@ -365,3 +365,10 @@ def test_the_parameters_of_a_requirement() -> None:
         Slow
         """,
     )
+
+
+def test_a_port_of_an_older_engines_word_is_that_of_its_replacement() -> None:
+    check_hover(
+        "BehaviorTree Main\n    RetryUntilSuccesful (<hover>num_$0attempts</hover> = 3)\n        Pick\n",
+        "`input num_attempts : int` (required): The total number of attempts; -1 means endless",
+    )

@@ -60,6 +60,29 @@ def test_outline_of_models() -> None:
     )
 
 
+def test_outline_of_words_of_older_engines() -> None:
+    check_outline(
+        """
+        BehaviorTree Main
+            SequenceStar
+                SubTreePlus (ID = Dock)
+                BlackboardCheckInt
+                    Pick
+        BehaviorTree Other
+            FallbackStar
+        Decorator FallbackStar
+        """,
+        "tree Main",
+        "  control SequenceStar",
+        "    subtree SubTreePlus",
+        "    decorator BlackboardCheckInt",
+        "      node Pick",
+        "tree Other",
+        "  decorator FallbackStar",
+        "decorator FallbackStar",
+    )
+
+
 def test_items_in_a_root_are_its_children() -> None:
     check_outline(
         "Root Main\n    BehaviorTree Main\n        Pick\n    BehaviorTree Dock\n        Pick\n",
