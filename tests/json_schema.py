@@ -11,7 +11,7 @@ def violations(
     value: Any, schema: dict[str, Any], at: str = "$", definitions: dict[str, Any] | None = None
 ) -> Iterator[str]:
     """Where a value does not keep a schema: as much of JSON Schema as the schemas of btq use."""
-    definitions = schema.get("$defs", {}) if definitions is None else definitions
+    definitions = (schema.get("$defs") or schema.get("definitions", {})) if definitions is None else definitions
     if "$ref" in schema:
         yield from violations(value, definitions[schema["$ref"].rpartition("/")[2]], at, definitions)
     if "const" in schema and value != schema["const"]:
@@ -30,8 +30,24 @@ def violations(
                 yield from violations(part, schema["properties"][key], f"{at}.{key}", definitions)
             elif schema.get("additionalProperties") is False:
                 yield f"{at}: unknown {key}"
+            elif isinstance(schema.get("additionalProperties"), dict):
+                yield from violations(part, schema["additionalProperties"], f"{at}.{key}", definitions)
     for index, item in enumerate(value if isinstance(value, list) else ()):
         yield from violations(item, schema.get("items", {}), f"{at}[{index}]", definitions)
+    if isinstance(value, list) and len(value) < schema.get("minItems", 0):
+        yield f"{at}: fewer than {schema['minItems']}"
+    if isinstance(value, str) and len(value) < schema.get("minLength", 0):
+        yield f"{at}: shorter than {schema['minLength']}"
+    for part in schema.get("allOf", ()):
+        yield from violations(value, part, at, definitions)
+    if "anyOf" in schema and all(any(violations(value, part, at, definitions)) for part in schema["anyOf"]):
+        yield f"{at}: {value!r} fits none"
+    if "oneOf" in schema:
+        fitting = sum(not any(violations(value, part, at, definitions)) for part in schema["oneOf"])
+        if fitting != 1:
+            yield f"{at}: {value!r} fits {fitting}"
+    if "not" in schema and not any(violations(value, schema["not"], at, definitions)):
+        yield f"{at}: {value!r} is excluded"
 
 
 def is_of(value: object, type_: str) -> bool:

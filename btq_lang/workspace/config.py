@@ -13,7 +13,7 @@
     [evidence]                        # logs of what robots did: see project_evidence.py
 
 One invariant: every text gives a project and never an exception; what is wrong in it is left out and reported.  Not
-known here: the disk, and where the file was found.
+known here: the disk, and where the file was found.  A new key is a row of `KEYS`; `project_schema` describes its form.
 """
 
 from __future__ import annotations
@@ -114,11 +114,11 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
     fields: dict[str, Any] = {"root": root}
     problems: list[ProjectProblem] = []
     for key, value in table.items():
-        if key in _KEYS:
-            field, read = _KEYS[key]
+        if key in KEYS:
+            field, read, *_ = KEYS[key]
             fields[field], complaints = read(key, value)
         else:
-            complaints = [_Complaint(f"unknown key `{key}`{_meant(key, _KEYS)}")]
+            complaints = [_Complaint(f"unknown key `{key}`{_meant(key, KEYS)}")]
         for complaint in complaints:
             at = _find(text, (*above, key, *complaint.below), complaint.value)
             problems.append(ProjectProblem(complaint.message, at))
@@ -226,12 +226,12 @@ def _severities(key: str, value: object) -> _Read:
     for name, word in value.items():
         if message := unknown_rule(name):
             complaints.append(_Complaint(message, (name,)))
-        elif not isinstance(word, str) or word not in _SEVERITIES:
-            words = ", ".join(map(_quoted, _SEVERITIES))
-            meant = _meant(word, _SEVERITIES) if isinstance(word, str) else ""
+        elif not isinstance(word, str) or word not in SEVERITIES:
+            words = ", ".join(map(_quoted, SEVERITIES))
+            meant = _meant(word, SEVERITIES) if isinstance(word, str) else ""
             complaints.append(_Complaint(f"`{key}.{name}` must be one of {words}{meant}", (name,)))
         else:
-            severities.append((name, _SEVERITIES[word]))
+            severities.append((name, SEVERITIES[word]))
     return tuple(severities), complaints
 
 
@@ -242,16 +242,23 @@ def _evidence(key: str, value: object) -> _Read:
     return found, [_Complaint(message, below) for message, below in complaints]
 
 
-_SEVERITIES: dict[str, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}
-_KEYS = {
-    "engine": ("engines", _engines),
-    "qualities": ("qualities", _qualities),
-    "include-paths": ("include_paths", _strings),
-    "exclude": ("exclude", _strings),
-    "select": ("select", _rule_names),
-    "ignore": ("ignore", _rule_names),
-    "rules": ("severities", _severities),
-    "evidence": ("evidence", _evidence),
+SEVERITIES: dict[str, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}
+# What a key sets in a Project, how its value is read, which values that accepts, as the name of a definition in
+# project_schema.py, and a line for editors.
+KEYS = {
+    "engine": ("engines", _engines, "engines", "the versions of BehaviorTree.CPP that must load the missions"),
+    "qualities": ("qualities", _qualities, "edition", "the edition of the quality model for files that name none"),
+    "include-paths": (
+        "include_paths",
+        _strings,
+        "strings",
+        "folders searched for included files, after that of the including file",
+    ),
+    "exclude": ("exclude", _strings, "strings", "patterns of paths that the check of a folder leaves out"),
+    "select": ("select", _rule_names, "rules", "only these rules"),
+    "ignore": ("ignore", _rule_names, "rules", "all rules except these"),
+    "rules": ("severities", _severities, "severities", "the severities of rules"),
+    "evidence": ("evidence", _evidence, "evidence", "logs of what robots did, which btq verify reads"),
 }
 
 

@@ -67,11 +67,9 @@ def read_evidence(table: object) -> tuple[Evidence, list[Complaint]]:
     if not isinstance(table, dict):
         return Evidence(), [("`evidence` must be a table", ())]
     complaints: list[Complaint] = [
-        (f"unknown key `evidence.{key}`{did_you_mean(near(key, _KEYS, 1))}", (key,))
-        for key in table
-        if key not in _KEYS
+        (f"unknown key `evidence.{key}`{did_you_mean(near(key, KEYS, 1))}", (key,)) for key in table if key not in KEYS
     ]
-    logs, store, signals = (table.get(key) for key in _KEYS)
+    logs, store, signals = (table.get(key) for key in KEYS)
     if logs is not None and not (isinstance(logs, list) and all(isinstance(each, str) and each for each in logs)):
         complaints.append(("`evidence.logs` must be a list of paths", ("logs",)))
         logs = None
@@ -98,12 +96,12 @@ def _wrong(name: str, source: Any) -> Iterator[Complaint]:
         yield f'`{key}` must be a table such as {{ topic = "/battery_state", field = "percentage" }}', ()
         return
     for each in source:
-        if each not in _OF_A_SOURCE:
-            yield f"unknown key `{key}.{each}`{did_you_mean(near(each, _OF_A_SOURCE, 1))}", (each,)
-    for each in (*_TEXTS, "unit"):
+        if each not in SOURCE_KEYS:
+            yield f"unknown key `{key}.{each}`{did_you_mean(near(each, SOURCE_KEYS, 1))}", (each,)
+    for each in (*TEXTS, "unit"):
         if each in source and not (isinstance(source[each], str) and source[each]):
             yield f"`{key}.{each}` must be a string", (each,)
-    for each in _NUMBERS:
+    for each in NUMBERS:
         number = source.get(each, 0.0)
         if isinstance(number, bool) or not isinstance(number, int | float) or not _is_finite(number):
             yield f"`{key}.{each}` must be a number", (each,)
@@ -113,7 +111,7 @@ def _wrong(name: str, source: Any) -> Iterator[Complaint]:
     if ("topic" in source) == ("file" in source):
         yield f"`{key}` must have either a `topic` and its `field`, or a `file` and its `column`", ()
         return
-    kind, wanted, others = _OF_A_TOPIC if "topic" in source else _OF_A_FILE
+    kind, wanted, others = OF_A_TOPIC if "topic" in source else OF_A_FILE
     if wanted not in source:
         yield f"`{key}` must have a `{wanted}` beside its `{kind}`", ()
     for each in others:
@@ -128,9 +126,24 @@ def _is_finite(number: float) -> bool:
         return False
 
 
-_KEYS: Final = ("logs", "store", "signals")
-_TEXTS: Final = ("topic", "field", "file", "time", "column")
-_NUMBERS: Final = ("scale", "offset")
-_OF_A_SOURCE: Final = (*_TEXTS, *_NUMBERS, "unit")
-_OF_A_TOPIC: Final = ("topic", "field", ("file", "time", "column"))
-_OF_A_FILE: Final = ("file", "column", ("topic", "field"))
+# Each key with a line for editors.
+KEYS: Final = {
+    "logs": "patterns of the paths of logs, relative to this file",
+    "store": "the folder where btq verify keeps the verdicts",
+    "signals": "where the samples of signals come from, by the names of the signals",
+}
+TEXTS: Final = {
+    "topic": "the topic of a bag that has the samples",
+    "field": "the field of the topic's messages",
+    "file": "the CSV or Parquet file that has the samples, relative to this file",
+    "time": "the column with the time in seconds since the epoch; default: the first one",
+    "column": "the column with the samples",
+}
+NUMBERS: Final = {
+    "scale": "the value is what is read, times the scale, plus the offset; default: 1",
+    "offset": "the value is what is read, times the scale, plus the offset; default: 0",
+}
+SOURCE_KEYS: Final = {**TEXTS, **NUMBERS, "unit": "the unit of the value; default: that of the signal"}
+# What comes with a topic, and what with a file: its key, the key that it requires, and those that do not go with it.
+OF_A_TOPIC: Final = ("topic", "field", ("file", "time", "column"))
+OF_A_FILE: Final = ("file", "column", ("topic", "field"))

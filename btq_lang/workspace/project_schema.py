@@ -1,0 +1,76 @@
+"""The project file as a JSON schema, for editors of TOML and for the catalog of schemas at schemastore.org.
+
+One invariant: it refuses no file that `config.parse_project` reads without a problem, and it has every key of the
+tables that `config` and `project_evidence` read by.  It is written in draft 4, the only one that Taplo reads.
+"""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+from btq_lang.catalog.qualities import EDITIONS
+from btq_lang.catalog.versions import targets
+from btq_lang.diagnostics.rules import RULES
+from btq_lang.workspace.config import KEYS, SEVERITIES
+from btq_lang.workspace.project_evidence import KEYS as EVIDENCE_KEYS
+from btq_lang.workspace.project_evidence import NUMBERS, OF_A_FILE, OF_A_TOPIC, SOURCE_KEYS, TEXTS
+
+Json: TypeAlias = "dict[str, Any]"
+
+
+def project_schema() -> Json:
+    """The schema of btq.toml."""
+    return {
+        "$schema": "http://json-schema.org/draft-04/schema#",
+        "title": "btq.toml",
+        "description": "What holds for all missions of a project of btq",
+        **_table({key: {"description": doc, "allOf": [_form(form)]} for key, (_, _, form, doc) in KEYS.items()}),
+        "definitions": {
+            "engine": {"enum": [*targets()]},
+            "engines": {"anyOf": [_form("engine"), _list(_form("engine"), minItems=1)]},
+            "edition": {"enum": [*EDITIONS]},
+            "strings": _list({"type": "string"}),
+            "rule": {"enum": [*RULES]},
+            "rules": _list(_form("rule")),
+            "severity": {"enum": [*SEVERITIES]},
+            "severities": _table(
+                {name: {"description": rule.summary, "allOf": [_form("severity")]} for name, rule in RULES.items()}
+            ),
+            "text": {"type": "string", "minLength": 1},
+            "number": {"type": "number"},
+            "evidence": _evidence(),
+            "signal": _signal(),
+        },
+    }
+
+
+def _evidence() -> Json:
+    forms = {
+        "logs": _list(_form("text")),
+        "store": _form("text"),
+        "signals": {"type": "object", "additionalProperties": _form("signal")},
+    }
+    return _table({key: {"description": doc, "allOf": [forms[key]]} for key, doc in EVIDENCE_KEYS.items()})
+
+
+def _signal() -> Json:
+    """The source of a signal: a field of a topic, or a column of a file."""
+    forms = {**dict.fromkeys((*TEXTS, "unit"), _form("text")), **dict.fromkeys(NUMBERS, _form("number"))}
+    keys = {key: {"description": doc, "allOf": [forms[key]]} for key, doc in SOURCE_KEYS.items()}
+    kinds = [
+        {"required": [kind, wanted], "not": {"anyOf": [{"required": [each]} for each in others]}}
+        for kind, wanted, others in (OF_A_TOPIC, OF_A_FILE)
+    ]
+    return {**_table(keys), "oneOf": kinds}
+
+
+def _table(keys: Json) -> Json:
+    return {"type": "object", "properties": keys, "additionalProperties": False}
+
+
+def _list(items: Json, **more: int) -> Json:
+    return {"type": "array", "items": items, **more}
+
+
+def _form(name: str) -> Json:
+    return {"$ref": f"#/definitions/{name}"}
