@@ -16,6 +16,7 @@ opening     files from the disk, XML too, as a workspace
 side_file   what of a mission its XML cannot hold; `instances` numbers the nodes as the engine does
 restoring   a mission from its XML and its side file
 marks       what a build puts into the XML so that an import knows it
+recognition which XML is the engine's
 
 One invariant: no other package knows XML.
 """

@@ -5,7 +5,8 @@ command line comes in, and text on the standard streams and files go out.  How t
 other packages do that.
 
     arguments.py the command line, and which module runs which command
-    files.py, output.py, options.py shared by commands: input files, output, selection of findings
+    files.py, xml_below.py, ignored.py   input files, and which XML is among them
+    output.py, options.py   output, selection of findings
     check.py, format.py, build.py …   the commands
     shell/           completion scripts
 """

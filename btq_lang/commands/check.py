@@ -15,6 +15,7 @@ from btq_lang.render import Finding, Report, Trouble, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.util.record import replace
 from btq_lang.workspace.config import Project, unknown_rule
+from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, shown, write_whole
 from btq_lang.workspace.workspace import Workspace
 
@@ -37,7 +38,8 @@ def run(options: CheckOptions) -> int:
     if options.watch:
         from btq_lang.commands.watch_mode import run_on_changes
 
-        run_on_changes(lambda: _check(options, files)[1], options.paths, watched)
+        suffixes = (*SUFFIXES, ".xml")
+        run_on_changes(lambda: _check(options, files)[1], options.paths, watched, suffixes)
     return code
 
 
@@ -52,7 +54,7 @@ def _usage_problem(options: CheckOptions) -> str | None:
 
 def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     """Check once; returns the exit code and the files that another run depends on."""
-    groups, problems = files.groups(options.paths, options.stdin_filename)
+    groups, problems = files.groups(options.paths, options.stdin_filename, with_xml=True)
     groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
     mended = 0
     if options.fix:
@@ -72,7 +74,7 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
                 found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
             findings += [Finding(path, text, diagnostic) for diagnostic in found if _is_wanted(diagnostic, options)]
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
-    empty = no_mission_below(options.paths, groups)
+    empty = no_mission_below(options.paths, groups, "no .btq file and no BehaviorTree.CPP XML")
     report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), empty)
     _print(with_paths(report, shown), options, mended)
     if empty and options.output_format not in ("full", "concise"):  # formats for people have it in their summary

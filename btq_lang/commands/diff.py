@@ -10,7 +10,8 @@ from collections.abc import Callable, Collection, Iterator
 
 from btq_lang.btcpp.as_built import Built, as_built
 from btq_lang.btcpp.manual_edits import ADVICE
-from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of, is_mission
+from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of
+from btq_lang.btcpp.recognition import is_mission
 from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import STDIN, Files, Group
 from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions

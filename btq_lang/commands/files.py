@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.util.record import Record, replace
+from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import Found, LoadProblem, absolute, collect, decoded, excluder, find_project, load
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
+    from btq_lang.commands.xml_below import XmlBelow
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.file import File
 
@@ -42,12 +44,16 @@ def usage_problem(paths: Iterable[str]) -> str | None:
     return "empty path; `.` is this folder" if "" in paths else None
 
 
-def no_mission_below(paths: Iterable[str], groups: Iterable[Group]) -> str | None:
-    """The message if folders were requested and none contains a mission."""
+def no_mission_below(paths: Iterable[str], groups: Iterable[Group], missing: str = "no .btq file") -> str | None:
+    """The message if folders were requested and none contains a mission.
+
+    Args:
+        missing: what was looked for, for the message.
+    """
     folders = [path.rstrip("/") + "/" for path in paths if os.path.isdir(path)]
     if not folders or any(group.given for group in groups):
         return None
-    return f"no .btq file below {', '.join(folders)}"
+    return f"{missing} below {', '.join(folders)}"
 
 
 def write_stdout(text: str) -> None:
@@ -71,13 +77,17 @@ class Files:
         self._of_stdin: LoadProblem | None = None
         self.folders: tuple[str, ...] = (absolute("."),)
         self._known: dict[str, File] = {}
+        self._xml: XmlBelow | None = None
 
     def groups(
-        self, paths: Iterable[str], stdin_filename: str | None = None
+        self, paths: Iterable[str], stdin_filename: str | None = None, *, with_xml: bool = False
     ) -> tuple[tuple[Group, ...], tuple[LoadProblem, ...]]:
         """The files that paths denote, by project, and read errors.
 
         Each file belongs to the nearest project file above it, whatever the current folder.
+
+        Args:
+            with_xml: below folders, the engine's XML counts too, and not only this language.
         """
         problems: list[LoadProblem] = []
         projects: dict[str, Found] = {}
@@ -100,7 +110,10 @@ class Files:
             if path in self.overlay:
                 members.setdefault(project_of(path).path or "", {})[path] = None
                 continue
-            found, unreachable = collect([path], project_of(path).project)
+            suffixes = (*SUFFIXES, ".xml") if with_xml else SUFFIXES
+            found, unreachable = collect([path], project_of(path).project, suffixes)
+            if with_xml and found != (path,):
+                found = self._missions(path, found)
             problems += unreachable
             for file in found:
                 home = project_of(file)
@@ -113,6 +126,15 @@ class Files:
             groups.append(group)
             problems += found_problems
         return tuple(groups), tuple(problems)
+
+    def _missions(self, folder: str, found: tuple[str, ...]) -> tuple[str, ...]:
+        if self._xml is None:
+            if all(path.endswith(SUFFIXES) for path in found):
+                return found
+            from btq_lang.commands.xml_below import XmlBelow  # many projects have no XML
+
+            self._xml = XmlBelow()
+        return self._xml.missions(folder, found)
 
     def know(self, files: Iterable[File]) -> None:
         """Reuse files parsed elsewhere, while their texts are the same."""

@@ -1,4 +1,4 @@
-"""The texts of a file's revisions in git.  Git runs as a process, and only here.
+"""The texts of a file's revisions in git.  Git runs as a process, here and in `ignored`.
 
 One invariant: nothing is written, and git reads no external argument as an option.
 """
@@ -10,8 +10,9 @@ import posixpath
 import subprocess
 from typing import Final
 
-from btq_lang.btcpp.marks import is_built_of, is_mission
+from btq_lang.btcpp.marks import is_built_of
 from btq_lang.btcpp.opening import file_of
+from btq_lang.btcpp.recognition import is_mission
 from btq_lang.btcpp.side_file import SIDE_SUFFIX, xml_path
 from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import SUFFIXES, File

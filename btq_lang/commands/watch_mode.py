@@ -6,24 +6,31 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 
+from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import absolute, collect, find_project, shown, stamp
 from btq_lang.workspace.watcher import watch
 
 
-def run_on_changes(run: Callable[[], tuple[str, ...]], paths: Sequence[str], watched: tuple[str, ...]) -> None:
+def run_on_changes(
+    run: Callable[[], tuple[str, ...]],
+    paths: Sequence[str],
+    watched: tuple[str, ...],
+    suffixes: tuple[str, ...] = SUFFIXES,
+) -> None:
     """Run on every change, until Ctrl+C.
 
     Args:
         run: performs one run; returns the files that the next one depends on.
         paths: of the command line; new files among them count as changes, too.
         watched: the files that the first run depended on.
+        suffixes: of files that count below folders.
     """
     state = {"files": watched}
 
     def files() -> Iterator[str]:
         yield from state["files"]
         for path in paths:
-            yield from collect([path], find_project(absolute(path)).project)[0]
+            yield from collect([path], find_project(absolute(path)).project, suffixes)[0]
 
     changes = watch(files, stamp, time.sleep, time.monotonic)
     print("Watching for changes; press Ctrl+C to stop", file=sys.stderr)

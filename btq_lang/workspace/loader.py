@@ -20,6 +20,8 @@ from btq_lang.workspace.config import PROJECT_FILES, Project, has_btq_table, inc
 from btq_lang.workspace.file import SUFFIXES
 
 _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv
+_OF_COLCON = frozenset({"build", "install", "log"})  # colcon makes these in the folder that it runs in
+_HEAD = 4096  # bytes that nearly always show what a file is
 IS_SPECIAL = "cannot be read: expected a regular file, found a pipe or a device"
 _BOM = "\ufeff"
 
@@ -141,8 +143,8 @@ def collect(
 ) -> tuple[tuple[str, ...], tuple[LoadProblem, ...]]:
     """The files that paths denote, each once: a file itself, a folder all btq files below it, sorted.
 
-    Left out below a folder: hidden files and folders, `build`, `node_modules`, and what the project excludes.  Links to
-    folders are followed, but no folder is entered twice.
+    Left out below a folder: hidden files and folders, `build`, `node_modules`, what colcon makes or ignores, and what
+    the project excludes.  Links are followed, but no folder is entered twice, and a file with two paths is one file.
     """
     files: dict[str, None] = {}
     problems: list[LoadProblem] = []
@@ -169,6 +171,17 @@ def read(path: str) -> tuple[str | None, LoadProblem | None]:
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         return None, LoadProblem(path, f"cannot be read: {_reason(error)}")
     return decoded(path, data)
+
+
+def head(path: str) -> str:
+    """The first characters of a file; empty for one that cannot be read."""
+    try:
+        with open(path, "rb") as file:
+            data = file.read(_HEAD)
+    except (OSError, ValueError):
+        return ""
+    encoding = "utf-16" if data.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8"
+    return data.decode(encoding, "replace").removeprefix(_BOM)
 
 
 def decoded(path: str, data: bytes) -> tuple[str | None, LoadProblem | None]:
@@ -270,11 +283,12 @@ def _upwards(folder: str) -> Iterator[str]:
         folder = above
 
 
-def _files_below(top: str, project: Project, problems: list[LoadProblem], suffixes: tuple[str, ...]) -> Iterator[str]:
+def _files_below(top: str, project: Project, problems: list[LoadProblem], suffixes: tuple[str, ...]) -> Iterable[str]:
     excluded = excluder(project)
     folders = [top]
     links: list[str] = []
     seen: set[tuple[int, int]] = set()
+    files: dict[tuple[int, int], str] = {}
     while folders or links:
         # Links come last: a folder is then found under its own name first.
         folder = folders.pop() if folders else links.pop(0)
@@ -285,18 +299,24 @@ def _files_below(top: str, project: Project, problems: list[LoadProblem], suffix
             problems.append(LoadProblem(folder, f"cannot be read: {_reason(error)}"))
             continue
         seen.add((status.st_dev, status.st_ino))
+        names = {entry.name for entry in entries}
+        if folder != top and "COLCON_IGNORE" in names:
+            continue
+        left_out = _SKIPPED_FOLDERS | (_OF_COLCON if names >= _OF_COLCON else frozenset())
         for entry in sorted(entries, key=lambda entry: entry.name):
             path = f"{folder.rstrip('/')}/{entry.name}"
             if entry.name.startswith("."):
                 continue
             if _is_folder(entry):
-                if entry.name not in _SKIPPED_FOLDERS and not excluded(path + "/"):
+                if entry.name not in left_out and not excluded(path + "/"):
                     (links if entry.is_symlink() else folders).append(path)
             elif entry.name.endswith(suffixes) and not excluded(path):
-                if _is_file(path):
-                    yield path
+                if (identity := _identity(path)) is not None:
+                    if identity not in files or not entry.is_symlink():
+                        files[identity] = path
                 elif entry.is_symlink() and not os.path.exists(path):
                     problems.append(LoadProblem(path, "cannot be read: the link has no target"))
+    return files.values()
 
 
 def excluder(project: Project) -> Callable[[str], bool]:
@@ -324,6 +344,15 @@ def _is_folder(entry: os.DirEntry[str]) -> bool:
         return entry.is_dir()
     except OSError:  # a link to itself
         return False
+
+
+def _identity(path: str) -> tuple[int, int] | None:
+    """What all paths of a regular file have in common; None for anything else."""
+    try:
+        status = os.stat(path)
+    except (OSError, ValueError):  # ValueError: a NUL in the path
+        return None
+    return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) else None
 
 
 def _is_file(path: str) -> bool:

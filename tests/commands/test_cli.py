@@ -229,11 +229,15 @@ def test_a_folder_without_missions_is_named(btq: Run, tmp_path: Path) -> None:
     done = btq("check", "empty", "x.btq/")
     assert (done.returncode, done.stdout, done.stderr) == (
         2,
-        "No files were checked: no .btq file below empty/, x.btq/\n",
+        "No files were checked: no .btq file and no BehaviorTree.CPP XML below empty/, x.btq/\n",
         "",
     )
     done = btq("check", "empty", "--output-format", "github")
-    assert (done.returncode, done.stdout, done.stderr) == (2, "", "btq check: no .btq file below empty/\n")
+    assert (done.returncode, done.stdout, done.stderr) == (
+        2,
+        "",
+        "btq check: no .btq file and no BehaviorTree.CPP XML below empty/\n",
+    )
     for command in ("build", "trace", "graph"):
         done = btq(command, "x.btq")
         assert (done.returncode, done.stdout, done.stderr) == (2, "", f"btq {command}: no .btq file below x.btq/\n")
@@ -362,7 +366,7 @@ def test_import_of_broken_xml_writes_nothing_and_shows_it(btq: Run, tmp_path: Pa
 def test_a_mission_includes_xml(btq: Run, tmp_path: Path) -> None:
     (tmp_path / "main.btq").write_text('include "pick.xml"\n\nBehaviorTree Main\n    SubTree Pick\n')
     (tmp_path / "pick.xml").write_text(XML.replace("Main", "Pick").replace('<SubTree ID="Pick"/>', "<AlwaysSuccess/>"))
-    assert btq("check").stdout == "No problems found in 1 file\n"
+    assert btq("check").stdout == "No problems found in 2 files\n"
 
 
 def test_an_error_in_an_included_file_is_told_once(btq: Run, tmp_path: Path) -> None:
@@ -383,7 +387,7 @@ def test_an_error_in_included_xml_is_told_once(btq: Run, tmp_path: Path) -> None
     message = "`Sequence` requires 1 or more children, found none"
     at_include = f"m.btq:1:9: error[include-with-errors] `old.xml` has 1 error: {message}\n"
     itself = f"old.xml:2:25: error[child-count] {message}\n"
-    for paths, told in ((["m.btq"], at_include), (["."], at_include), (["m.btq", "old.xml"], itself)):
+    for paths, told in ((["m.btq"], at_include), (["."], itself), (["m.btq", "old.xml"], itself)):
         done = btq("check", "--output-format", "concise", *paths)
         assert (done.returncode, done.stdout) == (1, f"{told}Found 1 error\n")
     shown = btq("check", "m.btq").stdout

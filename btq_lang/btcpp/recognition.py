@@ -1,0 +1,40 @@
+"""Which XML is BehaviorTree.CPP's, recognized by its text alone.
+
+One invariant: no file that the engine loads trees or models from is passed over.  Many other files are called .xml, and
+some of them have the document element `root` too.  Whether the XML is well-formed is not known here.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+
+def may_be_mission(head: str) -> bool:
+    """Whether a file that begins with a text may be XML of the engine.
+
+    Args:
+        head: some characters, or all of them.
+    """
+    rest = head[_prolog(head) :]
+    return rest[:2] in ("", "<", "<!", "<?") or rest.startswith("<root") or "<root".startswith(rest)
+
+
+def is_mission(xml: str) -> bool:
+    """Whether a text is XML of the engine: its document element is `root`, and names a version or a main tree, or
+    contains trees, models or includes."""
+    return _ROOT.match(xml, _prolog(xml)) is not None
+
+
+def _prolog(xml: str) -> int:
+    """Where the document element begins."""
+    found = _PROLOG.match(xml)
+    return found.end() if found is not None else 0
+
+
+_PROLOG: Final = re.compile(r"(?:[^<]+|<\?.*?\?>|<!--.*?-->|<!(?!--)[^>]*>)*", re.DOTALL)
+_ROOT: Final = re.compile(
+    r"<root(?=[\s/>])(?:[^>]*\s(?:BTCPP_format|main_tree_to_execute)\s*="
+    r"|.*?<(?:BehaviorTree\b|TreeNodesModel\b|include\s[^>]*\bpath\s*=))",
+    re.DOTALL,
+)
