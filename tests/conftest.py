@@ -17,6 +17,10 @@ settings.register_profile("usual", deadline=None, derandomize=True)
 settings.register_profile("thorough", deadline=None, max_examples=2_000)
 settings.load_profile("usual")
 
+# On a code host, `btq check` would choose its format by these.
+for name in ("GITHUB_ACTIONS", "GITLAB_CI", "CI_PROJECT_DIR"):
+    os.environ.pop(name, None)
+
 # So that what fails in them is shown as in a test.
 pytest.register_assert_rewrite("check_asserts", "syntax_asserts", "feature_asserts")
 

@@ -6,7 +6,7 @@ other packages do that.
 
     arguments.py the command line, and which module runs which command
     files.py, xml_below.py, ignored.py   input files, and which XML is among them
-    output.py, options.py   output, selection of findings
+    output.py, options.py, reporting.py   output, options of a check, its report
     check.py, format.py, build.py …   the commands
     shell/           completion scripts
 """

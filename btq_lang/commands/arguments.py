@@ -91,10 +91,17 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
         epilog="exit codes: 0 clean, or only infos and hints; 1 errors or warnings; 2 usage or I/O\n\n"
         "examples:\n  btq check                          the project in this folder\n"
         "  btq check --fix mission.btq        and apply the safe fixes\n"
-        "  btq check --output-format github   annotations in a pull request\n",
+        "  btq check --statistics             which rules have most findings\n",
     )
     _add_paths(parser)
-    parser.add_argument("--output-format", choices=FORMATS, help="default: full")
+    parser.add_argument(
+        "--output-format",
+        choices=FORMATS,
+        help="default: full; on GitHub github, on GitLab with --output-file gitlab",
+    )
+    parser.add_argument("-o", "--output-file", metavar="FILE", help="where to write; default: standard output")
+    parser.add_argument("--statistics", action="store_true", help="only the number of findings of each rule")
+    parser.add_argument("--exit-zero", action="store_true", help="exit 0 also with errors and warnings")
     parser.add_argument("--select", action="append", metavar="RULES", help="only these rules, separated by commas")
     parser.add_argument(
         "--ignore", action="append", metavar="RULES", help="all rules except these, separated by commas"

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 from btq_lang.checks import check, check_each
 from btq_lang.checks.includes import is_reported_beside
 from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem, write_stdout
+from btq_lang.commands.reporting import FOR_PEOPLE, form_of, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.render import Finding, Report, Trouble, render, with_paths
-from btq_lang.render.colour import wants_colour
+from btq_lang.render import Finding, Report, Trouble
 from btq_lang.util.record import replace
 from btq_lang.workspace.config import Project, unknown_rule
 from btq_lang.workspace.file import SUFFIXES
-from btq_lang.workspace.loader import LoadProblem, shown, write_whole
+from btq_lang.workspace.loader import LoadProblem, write_whole
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -49,7 +49,8 @@ def _usage_problem(options: CheckOptions) -> str | None:
     if options.jobs < 0:
         return f"--jobs {options.jobs}: expected a number of processes, or 0 to let btq choose"
     rules = _rules(options.select) + _rules(options.ignore)
-    return usage_problem(options.paths) or next(filter(None, map(unknown_rule, rules)), None)
+    unknown = next(filter(None, map(unknown_rule, rules)), None)
+    return usage_problem(options.paths) or unknown or report_problem(options)
 
 
 def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
@@ -76,15 +77,16 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     empty = no_mission_below(options.paths, groups, "no .btq file and no BehaviorTree.CPP XML")
     report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), empty)
-    _print(with_paths(report, shown), options, mended)
-    if empty and options.output_format not in ("full", "concise"):  # formats for people have it in their summary
+    is_written = write_report(report, options, mended)
+    if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
         print(f"btq check: {empty}", file=sys.stderr)
     watched = tuple(
         path for group in groups for path in (*group.workspace.files, *group.absent, group.project_file) if path
     )
-    if problems or empty:
+    if problems or empty or not is_written:
         return 2, watched
-    return int(any(finding.diagnostic.effective_severity in _FAILS for finding in findings)), watched
+    fails = any(finding.diagnostic.effective_severity in _FAILS for finding in findings)
+    return int(fails and not options.exit_zero), watched
 
 
 def _trouble(problem: LoadProblem) -> Trouble:
@@ -150,17 +152,6 @@ def _fix(
     return tuple(done), mended, tuple(trouble)
 
 
-def _print(report: Report, options: CheckOptions, mended: int) -> None:
-    # With --fix, standard output has the new text of standard input, so the report goes to standard error.
-    stream = sys.stderr if options.fix and STDIN in options.paths else sys.stdout
-    colour = options.color == "always" or (options.color == "auto" and wants_colour(stream.isatty(), os.environ))
-    width = _width() if stream.isatty() else 120
-    for piece in render(options.output_format, report, colour=colour, width=width):
-        stream.write(piece)
-    if mended and options.output_format in ("full", "concise"):
-        print(f"Fixed {mended} problem{'s' if mended > 1 else ''}", file=stream)
-
-
 def _configured(workspace: Workspace, options: CheckOptions) -> Workspace:
     """The workspace with the command line's selection of rules on top of the project file's."""
     project: Project = workspace.project
@@ -176,10 +167,3 @@ def _rules(given: Iterable[str]) -> tuple[str, ...]:
 
 def _is_wanted(diagnostic: Diagnostic, options: CheckOptions) -> bool:
     return _ORDER.index(diagnostic.effective_severity) <= _ORDER.index(Severity(options.severity))
-
-
-def _width() -> int:
-    try:
-        return os.get_terminal_size().columns
-    except OSError:
-        return 120

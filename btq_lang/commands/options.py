@@ -16,7 +16,10 @@ class CheckOptions:
     """
 
     stdin_filename: str | None = None
-    output_format = "full"
+    output_format: str | None = None  # reporting.py says what that means
+    output_file: str | None = None
+    statistics = False
+    exit_zero = False
     select: Sequence[str] = []
     ignore: Sequence[str] = []
     severity = "hint"

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 import sys
-from argparse import Namespace
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from btq_lang.commands.files import write_stdout
 from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, absolute, write_whole
+
+if TYPE_CHECKING:
+    from argparse import Namespace
 
 
 def form_of(options: Namespace, forms: Sequence[str]) -> str:
@@ -23,11 +26,19 @@ def form_problem(options: Namespace, forms: Sequence[str]) -> str | None:
     that btq does not write.
     """
     ending = _ending(options)
-    if ending in SUFFIXES or (ending == ".xml" and options.format != "junit"):
-        return f"-o {options.output} may overwrite a mission; choose another file name"
+    if problem := mission_problem("-o", options.output, options.format):
+        return problem
     if options.format or ending not in _OTHERS:
         return None
     return f"cannot write {ending}; choose one of {', '.join(forms)} with --format, or another file name"
+
+
+def mission_problem(option: str, path: str | None, form: str | None) -> str | None:
+    """The error of an output file whose name is a mission's."""
+    ending = os.path.splitext(path or "")[1].lower()
+    if ending in SUFFIXES or (ending == ".xml" and form != "junit"):
+        return f"{option} {path} may overwrite a mission; choose another file name"
+    return None
 
 
 def write_output(command: str, path: str | None, text: str) -> int:

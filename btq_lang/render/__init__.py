@@ -15,7 +15,7 @@ from btq_lang.render.report import Report as Report
 from btq_lang.render.report import Trouble as Trouble
 from btq_lang.util.record import replace
 
-FORMATS = ("full", "concise", "json", "sarif", "github", "junit")
+FORMATS = ("full", "concise", "json", "sarif", "github", "gitlab", "junit")
 
 
 def render(form: str, report: Report, *, colour: bool = False, width: int = 120) -> Iterator[str]:
@@ -53,6 +53,10 @@ def render(form: str, report: Report, *, colour: bool = False, width: int = 120)
         from btq_lang.render import github
 
         return github.render(report)
+    if form == "gitlab":
+        from btq_lang.render import gitlab
+
+        return gitlab.render(report)
     if form == "junit":
         from btq_lang.render import junit
 

@@ -34,23 +34,31 @@ from btq_lang.util.version import __version__
 
 def render(report: Report) -> Iterator[str]:
     """The document, in one piece."""
-    counts = count(report.findings)
-    counts[Severity.ERROR] += len(report.troubles)
     document = {
-        "format": 1,
-        "tool": "btq",
-        "version": __version__,
+        **head(),
         "diagnostics": [
             *map(_trouble, report.troubles),
             *(_diagnostic(report, finding) for finding in report.findings),
         ],
-        "summary": {
-            **{severity.value: number for severity, number in counts.items()},
-            "fixable": sum(map(is_fixable, report.findings)),
-            "files": len(report.checked),
-        },
+        "summary": summed_up(report),
     }
     yield json.dumps(document, indent=2) + "\n"
+
+
+def head() -> dict[str, object]:
+    """The format's number, and what wrote the document."""
+    return {"format": 1, "tool": "btq", "version": __version__}
+
+
+def summed_up(report: Report) -> dict[str, int]:
+    """The totals of a report."""
+    counts = count(report.findings)
+    counts[Severity.ERROR] += len(report.troubles)
+    return {
+        **{severity.value: number for severity, number in counts.items()},
+        "fixable": sum(map(is_fixable, report.findings)),
+        "files": len(report.checked),
+    }
 
 
 def _trouble(trouble: Trouble) -> dict[str, object]:

@@ -366,7 +366,6 @@ def test_paths_are_shown_as_asked() -> None:
 
 
 def test_an_unknown_format_is_refused() -> None:
-    with pytest.raises(
-        ValueError, match="unknown format 'xml'; expected one of full, concise, json, sarif, github, junit"
-    ):
+    known = "full, concise, json, sarif, github, gitlab, junit"
+    with pytest.raises(ValueError, match=f"unknown format 'xml'; expected one of {known}"):
         render("xml", Report((), {}))

@@ -143,9 +143,9 @@ def test_a_format_loads_only_what_it_needs(form: str) -> None:
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     loaded = set(result.stdout.split())
     module = "json_format" if form == "json" else form
-    ours = {"full", "concise", "json_format", "sarif", "github", "junit"}
+    ours = {"full", "concise", "json_format", "sarif", "github", "gitlab", "junit"}
     # Where nothing was found, the forms for people are one line of summary and need no renderer.
     needed = set() if form in ("full", "concise") else {module}
     assert {name for name in ours if f"btq_lang.render.{name}" in loaded} == needed
-    assert ("json" in loaded) == (form in ("json", "sarif"))
+    assert ("json" in loaded) == (form in ("json", "sarif", "gitlab"))
     assert not loaded & {"dataclasses", "inspect", "pathlib", "difflib", "unicodedata", "xml", "lxml", "tomllib"}

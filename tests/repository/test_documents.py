@@ -292,4 +292,5 @@ def test_ci_knows_its_names() -> None:
     assert re.findall(r"steps\.btq\.outputs\.(\w+)", json.dumps(comment)) == ["diff", "diff"]
     assert "diff" in action["outputs"]
     assert [*simulation["jobs"]] == ["simulation"]  # evidence/test_recipe_pages.py runs it
-    assert gitlab["btq"]["script"][1].startswith("btq check --output-format junit")
+    assert gitlab["btq"]["script"][1] == "btq check --output-file btq.json"
+    assert gitlab["btq"]["artifacts"]["reports"] == {"codequality": "btq.json"}

@@ -1,0 +1,87 @@
+"""Where the report of `btq check` goes, and in which format."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from itertools import chain
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.commands.files import STDIN
+from btq_lang.commands.output import mission_problem, terminal_width, write_output
+from btq_lang.render import Report, render, with_paths
+from btq_lang.render.colour import wants_colour
+from btq_lang.workspace.loader import absolute, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.commands.options import CheckOptions
+
+FOR_PEOPLE: Final = ("full", "concise")
+
+
+def form_of(options: CheckOptions, environment: Mapping[str, str]) -> str:
+    """The requested format; else one that a code host reads by itself there, else `full`.
+
+    GitHub reads annotations in the output of a job; GitLab does not, but reads a file that the job names.
+    """
+    if options.output_format or options.statistics:
+        return options.output_format or "full"
+    if environment.get("GITHUB_ACTIONS") == "true" and not options.output_file:
+        return "github"
+    if environment.get("GITLAB_CI") == "true" and options.output_file:
+        return "gitlab"
+    return "full"
+
+
+def report_problem(options: CheckOptions) -> str | None:
+    """The usage error in what is to be written, and where."""
+    if options.statistics:
+        from btq_lang.render.rule_counts import FORMATS
+
+        if options.output_format and options.output_format not in FORMATS:
+            return f"--statistics cannot be written as {options.output_format}; choose one of {', '.join(FORMATS)}"
+    if options.output_file is not None:
+        return mission_problem("--output-file", options.output_file, options.output_format)
+    return None
+
+
+def write_report(report: Report, options: CheckOptions, mended: int) -> bool:
+    """Write the report where the options say; False if that failed, with the reason on standard error.
+
+    Args:
+        mended: the number of applied fixes.
+    """
+    form = form_of(options, os.environ)
+    # With --fix, standard output has the new text of standard input, so the report goes to standard error.
+    stream = sys.stderr if options.fix and STDIN in options.paths else sys.stdout
+    is_coloured = options.color == "always" or (
+        options.color == "auto" and not options.output_file and wants_colour(stream.isatty(), os.environ)
+    )
+    width = terminal_width() if stream.isatty() and not options.output_file else 120
+    pieces = _pieces(_named(report, form), form, options.statistics, is_coloured, width)
+    last = f"Fixed {mended} problem{'s' if mended > 1 else ''}\n" if mended and form in FOR_PEOPLE else ""
+    if options.output_file:
+        return write_output("check", options.output_file, "".join((*pieces, last))) == 0
+    for piece in chain(pieces, (last,)):
+        stream.write(piece)
+    return True
+
+
+def _pieces(report: Report, form: str, is_counted: bool, colour: bool, width: int) -> Iterator[str]:
+    if is_counted:
+        from btq_lang.render import rule_counts
+
+        return rule_counts.render(form, report)
+    return render(form, report, colour=colour, width=width)
+
+
+def _named(report: Report, form: str) -> Report:
+    """The report with paths relative to the current folder, or, for GitLab, to its checkout."""
+    checkout = os.environ.get("CI_PROJECT_DIR") if form == "gitlab" else None
+    if not checkout:
+        return with_paths(report, shown)
+    inside = absolute(checkout).rstrip("/") + "/"
+    return with_paths(report, lambda path: path.removeprefix(inside))
