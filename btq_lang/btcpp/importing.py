@@ -9,7 +9,7 @@ version 3 called otherwise (`version3`).
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import accumulate
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -50,6 +50,7 @@ class Imported(Record):
         diagnostics: what is wrong with the XML itself; spans count from its start.
         places: which part of `text` was made of which part of the XML; empty for a text for people.
         described: number of elements whose requirements or qualities a build had described; they are left out.
+        defines: the IDs of the trees and models in the XML.
     """
 
     text: str
@@ -57,6 +58,7 @@ class Imported(Record):
     diagnostics: tuple[Diagnostic, ...]
     places: Places
     described: int = 0
+    defines: frozenset[str] = frozenset()
 
     @property
     def is_complete(self) -> bool:
@@ -104,7 +106,14 @@ def import_xml(
         changes = tuple(sorted(writer.changes, key=_start))
         problems = (*done.problems, *writer.ignored)
         places = Places() if writer.marks is None else Places(writer.marks, writer.out, located)
-        return Imported("".join(writer.out), changes, problems, places, described)
+        return Imported("".join(writer.out), changes, problems, places, described, frozenset(_defined(root)))
+
+
+def _defined(root: Element) -> Iterator[str]:
+    for element in root.elements:
+        for each in (element,) if element.tag == "BehaviorTree" else element.elements:
+            if (ID := each.get("ID")) is not None:
+                yield ID
 
 
 def _as_it_is(path: str) -> str:

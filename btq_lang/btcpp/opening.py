@@ -52,4 +52,4 @@ def file_of(path: str, text: str) -> File:
     from btq_lang.btcpp.importing import import_xml  # needs lxml, which most missions do without
 
     done = import_xml(text, keep_v3=True, for_people=False)
-    return File(path, done.text, Origin(text, done.places, done.diagnostics, done.is_complete))
+    return File(path, done.text, Origin(text, done.places, done.diagnostics, done.is_complete, done.defines))

@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 from typing import Final
 
+from btq_lang.btcpp.document import unescape
+
 
 def may_be_mission(head: str) -> bool:
     """Whether a file that begins with a text may be XML of the engine.
@@ -26,6 +28,13 @@ def is_mission(xml: str) -> bool:
     return _ROOT.match(xml, _prolog(xml)) is not None
 
 
+def defined_in(xml: str) -> frozenset[str]:
+    """The names that a text may define as trees or models, and perhaps some more."""
+    models = xml.find("<TreeNodesModel")
+    found = [*_TREE.finditer(xml), *(_ID.finditer(xml, models) if models >= 0 else ())]
+    return frozenset(unescape(match[1] if match[1] is not None else match[2]) for match in found)
+
+
 def _prolog(xml: str) -> int:
     """Where the document element begins."""
     found = _PROLOG.match(xml)
@@ -33,6 +42,9 @@ def _prolog(xml: str) -> int:
 
 
 _PROLOG: Final = re.compile(r"(?:[^<]+|<\?.*?\?>|<!--.*?-->|<!(?!--)[^>]*>)*", re.DOTALL)
+_VALUE: Final = r"""\bID\s*=\s*(?:"([^"]*)"|'([^']*)')"""
+_ID: Final = re.compile(_VALUE)
+_TREE: Final = re.compile(rf"<BehaviorTree\b[^>]*?{_VALUE}")
 _ROOT: Final = re.compile(
     r"<root(?=[\s/>])(?:[^>]*\s(?:BTCPP_format|main_tree_to_execute)\s*="
     r"|.*?<(?:BehaviorTree\b|TreeNodesModel\b|include\s[^>]*\bpath\s*=))",

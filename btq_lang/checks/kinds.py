@@ -18,10 +18,10 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES
-from btq_lang.syntax.tree import Entry, Include, Model, Word, is_name, quote, shape
+from btq_lang.syntax.tree import Entry, Include, Model, Word, is_name, quote
 from btq_lang.util.spelling import did_you_mean, distance
 from btq_lang.util.text import Span
-from btq_lang.workspace.symbols import Symbol
+from btq_lang.workspace.symbols import Symbol, interface
 
 if TYPE_CHECKING:
     from btq_lang.workspace.custom_nodes import LikelyPort
@@ -54,6 +54,8 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         elif view.defines(Kind.TREE, name.text):
             yield _tree_as_node(view, seen, name)
+        elif view.is_pooled(Kind.MODEL, name.text):
+            continue  # models that differ: whichever the program means, it is known
         elif name.text in KNOWN_WORDS or _quoted_alias(seen, name) is not None:
             continue  # not a node of the engine, which is reported
         elif (category := _category_meant(view, seen)) is not None:
@@ -377,16 +379,9 @@ def _second(symbol: Symbol, span: Span, related: tuple[Related, ...], what: str)
 
 
 def _is_same_model(first: Symbol, second: Symbol) -> bool:
-    """Whether two models give a node the same interface; palettes that tools write repeat each other."""
-    return _interface(first) is not None and _interface(first) == _interface(second)
-
-
-def _interface(symbol: Symbol) -> object:
-    model = symbol.target
-    if not isinstance(model, Model):
-        return None
-    ports = [(port.direction, port.name, port.type, port.default) for port in model.ports]
-    return model.category.raw, shape(tuple(ports))
+    """Whether two symbols are models that give a node the same interface."""
+    one, other = first.target, second.target
+    return isinstance(one, Model) and isinstance(other, Model) and interface(one) == interface(other)
 
 
 # A file with so many nodes with ports should declare them.

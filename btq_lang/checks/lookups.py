@@ -64,9 +64,15 @@ def is_defined(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> b
 
 
 @of_name
+def is_pooled(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
+    """Whether a name is defined in the pool of an XML file."""
+    return bool(workspace.pooled(viewpoint, kind, name))
+
+
+@of_name
 def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Meaning | None:
     """What a name means."""
-    found = workspace.scope(viewpoint).find(kind, name)
+    found = workspace.find(viewpoint, kind, name)
     if found is None:
         return None
     target = found.symbol.target
@@ -80,14 +86,14 @@ def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Mean
 @of_name
 def declaration(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Declaration | None:
     """Where a name is defined."""
-    found = workspace.scope(viewpoint).find(kind, name)
+    found = workspace.find(viewpoint, kind, name)
     return _declaration(workspace, found) if found is not None else None
 
 
 @of_name
 def is_torn(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether something could not be read in the tree or model of a name, which may be a port."""
-    found = workspace.scope(viewpoint).find(kind, name)
+    found = workspace.find(viewpoint, kind, name)
     if found is None or not found.entry.diagnostics:
         return False
     target, item = found.symbol.target, found.entry.item

@@ -36,7 +36,7 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if word is not None and is_nameless and not is_torn(view, entry, seen):
             yield Diagnostic("unknown-tree", word.span, "missing tree of this SubTree: write `SubTree <ID>`")
     for use in view.uses(Kind.TREE):
-        if use.name == "" or view.defines(Kind.TREE, use.name):
+        if use.name == "" or view.defines(Kind.TREE, use.name) or view.is_pooled(Kind.TREE, use.name):
             continue
         if not view.is_complete or view.has_torn_tree:
             return
@@ -204,7 +204,7 @@ def tree_named_like_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if not isinstance(entry.item, Tree) or entry.item.name is None:
         return
     name = entry.item.name
-    model = view.find(Kind.MODEL, name.text)
+    model = view.find(Kind.MODEL, name.text) if view.defines(Kind.MODEL, name.text) else None
     if name.text in BUILTINS:
         message = f"a tree cannot have the name `{name.text}`: a built-in node has it"
         yield Diagnostic("tree-named-like-node", name.span, message)

@@ -116,8 +116,12 @@ class View:
         """Whether a name in scope is defined."""
         return self.look_up(lookups.is_defined, kind, name)
 
+    def is_pooled(self, kind: Kind, name: str) -> bool:
+        """Whether a name of this XML file is defined in its pool, once or several times."""
+        return self.is_xml and self.look_up(lookups.is_pooled, kind, name)
+
     def find(self, kind: Kind, name: str) -> Meaning | None:
-        """What a name in scope means."""
+        """What a name in scope means, or in the pool of an XML file."""
         return self.look_up(lookups.meaning, kind, name)
 
     def definition(self, kind: Kind, name: str) -> Placed | None:

@@ -55,7 +55,7 @@ def _usage_problem(options: CheckOptions) -> str | None:
 
 def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     """Check once; returns the exit code and the files that another run depends on."""
-    groups, problems = files.groups(options.paths, options.stdin_filename, with_xml=True)
+    groups, problems = files.groups(options.paths, options.stdin_filename, with_xml=True, with_pools=True)
     groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
     mended = 0
     if options.fix:

@@ -4,13 +4,26 @@ from __future__ import annotations
 
 import os.path
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.opening import file_of
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.file import SUFFIXES
-from btq_lang.workspace.loader import Found, LoadProblem, absolute, collect, decoded, excluder, find_project, load
+from btq_lang.workspace.loader import (
+    Found,
+    LoadProblem,
+    absolute,
+    collect,
+    decoded,
+    excluder,
+    find_project,
+    load,
+    pool_of,
+    read,
+)
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -30,6 +43,7 @@ class Group(Record):
         damaged: the paths of files that are not UTF-8 and are never written back.
         absent: the paths of missing includes.
         project_file: from which the project was read, if any.
+        pooled: the paths in `workspace` of files that define what requested XML lacks, and are not checked with it.
     """
 
     workspace: Workspace
@@ -37,6 +51,7 @@ class Group(Record):
     damaged: tuple[str, ...]
     absent: tuple[str, ...]
     project_file: str | None
+    pooled: frozenset[str] = frozenset()
 
 
 def usage_problem(paths: Iterable[str]) -> str | None:
@@ -80,7 +95,12 @@ class Files:
         self._xml: XmlBelow | None = None
 
     def groups(
-        self, paths: Iterable[str], stdin_filename: str | None = None, *, with_xml: bool = False
+        self,
+        paths: Iterable[str],
+        stdin_filename: str | None = None,
+        *,
+        with_xml: bool = False,
+        with_pools: bool = False,
     ) -> tuple[tuple[Group, ...], tuple[LoadProblem, ...]]:
         """The files that paths denote, by project, and read errors.
 
@@ -88,10 +108,11 @@ class Files:
 
         Args:
             with_xml: below folders, the engine's XML counts too, and not only this language.
+            with_pools: add the files of a project that define what a requested XML file lacks.
         """
         problems: list[LoadProblem] = []
         projects: dict[str, Found] = {}
-        members: dict[str, dict[str, None]] = {}
+        members: dict[str, dict[str, str]] = {}  # each with the folder that was requested
 
         def project_of(path: str) -> Found:
             folder = path if os.path.isdir(path) else os.path.dirname(path)
@@ -108,7 +129,7 @@ class Files:
                 if path not in self.overlay:
                     continue
             if path in self.overlay:
-                members.setdefault(project_of(path).path or "", {})[path] = None
+                members.setdefault(project_of(path).path or "", {})[path] = os.path.dirname(path)
                 continue
             suffixes = (*SUFFIXES, ".xml") if with_xml else SUFFIXES
             found, unreachable = collect([path], project_of(path).project, suffixes)
@@ -118,23 +139,52 @@ class Files:
             for file in found:
                 home = project_of(file)
                 if file == path or not excluder(home.project)(file):
-                    members.setdefault(home.path or "", {})[file] = None
+                    members.setdefault(home.path or "", {})[file] = path if file != path else os.path.dirname(path)
         by_path = {found.path or "": found.project for found in projects.values()}
         groups = []
         for key, files in members.items():
             group, found_problems = self._load(tuple(files), by_path[key], key or None)
-            groups.append(group)
+            groups.append(self._with_pool(group, files, project_of) if with_pools else group)
             problems += found_problems
         return tuple(groups), tuple(problems)
 
-    def _missions(self, folder: str, found: tuple[str, ...]) -> tuple[str, ...]:
+    def _with_pool(self, group: Group, tops: Mapping[str, str], project_of: Callable[[str], Found]) -> Group:
+        """The group with the files of its pools that define what its XML lacks.
+
+        Args:
+            tops: the requested files, each with the folder in which it was.
+            project_of: returns the project of a file.
+        """
+        workspace = group.workspace
+        xml = [path for path in group.given if workspace.files[path].origin is not None]
+        if not xml:
+            return group
+        project = workspace.project
+        pools = {pool_of(*each) for each in {(os.path.dirname(path), tops[path]) for path in xml}}
+        project = replace(project, pools=(project.root,) if group.project_file else tuple(sorted(pools)))
+        lacking = lacking_names(workspace, xml)
+        files = dict(workspace.files)
+        for pool in project.pools if lacking else ():
+            found, _ = collect([pool], project, (*SUFFIXES, ".xml"))
+            wanted = tuple(path for path in found if path not in files and project_of(path).path == group.project_file)
+            for path in self._missions(pool, wanted):
+                if self.xml.may_define(path, lacking) and (text := self.overlay.get(path) or read(path)[0]) is not None:
+                    files[path] = self._file(path, text)
+        pooled = frozenset(files.keys() - workspace.files.keys())
+        return replace(group, workspace=Workspace(files, project), pooled=pooled)
+
+    @property
+    def xml(self) -> XmlBelow:
+        """What is known of XML below folders."""
         if self._xml is None:
-            if all(path.endswith(SUFFIXES) for path in found):
-                return found
             from btq_lang.commands.xml_below import XmlBelow  # many projects have no XML
 
             self._xml = XmlBelow()
-        return self._xml.missions(folder, found)
+        return self._xml
+
+    def _missions(self, folder: str, found: tuple[str, ...]) -> tuple[str, ...]:
+        """Those of a folder's files that are missions."""
+        return found if all(path.endswith(SUFFIXES) for path in found) else self.xml.missions(folder, found)
 
     def know(self, files: Iterable[File]) -> None:
         """Reuse files parsed elsewhere, while their texts are the same."""
@@ -169,3 +219,13 @@ class Files:
         if known is None or known.source != text:
             known = self._known[path] = file_of(path, text)
         return known
+
+
+def lacking_names(workspace: Workspace, xml: Iterable[str]) -> frozenset[str]:
+    """The trees and nodes that XML files and their includes lack."""
+    found: set[str] = set()
+    for path in xml:
+        scope, file = workspace.scope(path), workspace.files[path]
+        for kind in (Kind.TREE, Kind.MODEL):
+            found.update(name for name in file.used(kind) if not scope.defines(kind, name))
+    return frozenset(found.difference(BUILTINS))

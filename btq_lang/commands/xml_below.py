@@ -6,20 +6,20 @@ One invariant: a file that somebody has written for the engine is among them, un
 from __future__ import annotations
 
 import os
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Set
 
 from btq_lang.btcpp.marks import is_built_of, is_generated
-from btq_lang.btcpp.recognition import is_mission, may_be_mission
+from btq_lang.btcpp.recognition import defined_in, is_mission, may_be_mission
 from btq_lang.commands.ignored import ignored
 from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import absolute, head, read, stamp
 
 
 class XmlBelow:
-    """Looks at files, and remembers those that are not the engine's until they change."""
+    """Looks at files, and remembers what they are until they change."""
 
     def __init__(self) -> None:
-        self._others: dict[str, Hashable] = {}
+        self._seen: dict[str, tuple[Hashable, frozenset[str] | None, bool]] = {}  # stamp, IDs, whether it is generated
 
     def missions(self, top: str, paths: Iterable[str]) -> tuple[str, ...]:
         """All but the XML files that are not the engine's, that git ignores, or that were built from a .btq file that
@@ -36,22 +36,35 @@ class XmlBelow:
         kept = {path for path in xml if top in left_out or path not in left_out}
         return tuple(path for path in paths if path in kept or path.endswith(SUFFIXES))
 
+    def may_define(self, path: str, names: Set[str]) -> bool:
+        """Whether a file may define a tree or model of one of some names."""
+        if path.endswith(SUFFIXES):
+            text = read(path)[0] or ""
+            return any(name in text for name in names)
+        ids, _ = self._look(path)
+        return ids is not None and not ids.isdisjoint(names)
+
     def _is_written(self, path: str, sources: set[str]) -> bool:
         """Whether an XML file is a mission that no build has made of a file that is there."""
+        ids, generated = self._look(path)
+        if ids is None or not generated:
+            return ids is not None
+        text = read(path)[0] or ""
+        return not (is_built_of(text, sources) or _is_built(path))
+
+    def _look(self, path: str) -> tuple[frozenset[str] | None, bool]:
+        """The IDs of trees and models in an XML file, None if it is not the engine's, and whether a build wrote it."""
         now = stamp(path)
-        if self._others.get(path) == now:
-            return False
-        text = read(path)[0] or "" if may_be_mission(head(path)) else ""
-        if not is_mission(text):
-            self._others[path] = now
-            return False
-        return not (is_built_of(text, sources) or _is_built(path, text))
+        known = self._seen.get(path)
+        if known is None or known[0] != now:
+            text = read(path)[0] or "" if may_be_mission(head(path)) else ""
+            ids = defined_in(text) if is_mission(text) else None
+            known = self._seen[path] = now, ids, is_generated(text)
+        return known[1:]
 
 
-def _is_built(path: str, text: str) -> bool:
+def _is_built(path: str) -> bool:
     """Whether the side file of built XML names a mission that is there."""
-    if not is_generated(text):
-        return False
     import json
 
     from btq_lang.btcpp.side_file import is_side_file, side_path  # little XML is built

@@ -46,6 +46,7 @@ class Session:
         self._read_for: tuple[tuple[str, ...], dict[str, object]] | None = None  # which folders and settings
         self._workspaces: list[Workspace] = []  # their caches are for open files
         self._home: dict[str, int] = {}
+        self._pooled: frozenset[str] = frozenset()  # files that only define what open XML lacks
         # Weak: a file's findings must not keep an old workspace alive until its next check.
         self._checked: dict[str, tuple[ReferenceType[Workspace], Findings]] = {}
 
@@ -72,6 +73,8 @@ class Session:
             return (path, *self.reload())
         linked = set(after.linked(path))  # uses are known in both directions
         if renamed := old.defined_names ^ new.defined_names:
+            if any(after.files[other].origin is not None for other in linked):
+                return (path, *self.reload())  # XML that includes it may need another pool
             linked.update(other for other in after.files if other != path and _lacks_definition(after, other, renamed))
         return self._in_order(path, linked)
 
@@ -105,11 +108,12 @@ class Session:
         self._files.know(workspace.files[path] for path in self.open if (workspace := self.workspace_of(path)))
         severities = self._severities()
         missions = (path for path in self.open if not is_project_file(path))
-        groups, problems = self._files.groups((*self.folders, *missions))
+        groups, problems = self._files.groups((*self.folders, *missions), with_pools=True)
         self._read_projects(problems)
         before = {tuple(workspace.files): workspace for workspace in self._workspaces}
         self._workspaces = []
         self._home = {}
+        self._pooled = frozenset().union(*(group.pooled for group in groups))
         for index, group in enumerate(groups):
             workspace = group.workspace
             if severities:
@@ -202,8 +206,9 @@ class Session:
         return tuple(self._workspaces)
 
     def paths(self) -> tuple[str, ...]:
-        """All known files, open ones first."""
-        return tuple(sorted((*self._home, *self.projects), key=lambda path: (path not in self.open, path)))
+        """All known files that are reported on, open ones first."""
+        known = (*(self._home.keys() - self._pooled), *self.projects)
+        return tuple(sorted(known, key=lambda path: (path not in self.open, path)))
 
     def places(self) -> set[str]:
         """All known files, and all folders above them."""

@@ -51,6 +51,7 @@ class Project(Record):
         ignore: rules not to apply.
         exclude: patterns of paths that the check of a folder leaves out.
         folders: working folders: an editor's, or the current one.
+        pools: folders in which an XML file finds the trees and models that it lacks; the loader finds them.
         evidence: its table about logs, if it has one.
     """
 
@@ -64,6 +65,7 @@ class Project(Record):
     ignore: tuple[str, ...] = ()
     exclude: tuple[str, ...] = ()
     folders: tuple[str, ...] = ()
+    pools: tuple[str, ...] = ()
     evidence: Evidence | None = None
 
     def shown(self, path: str) -> str:
@@ -74,6 +76,11 @@ class Project(Record):
             if path.startswith(f"{folder.rstrip('/')}/"):
                 return path[len(folder.rstrip("/")) + 1 :]
         return path
+
+    def pool_of(self, path: str) -> str | None:
+        """The innermost of the pools that contain a file, with a `/` at its end."""
+        pools = (f"{pool.rstrip('/')}/" for pool in self.pools)
+        return max((pool for pool in pools if path.startswith(pool)), key=len, default=None)
 
     @property
     def pinned(self) -> bool:

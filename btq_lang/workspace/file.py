@@ -379,12 +379,14 @@ class Origin(Record):
         places: maps the file's text to this one.
         diagnostics: what is wrong with it in its own language; spans count from its start.
         is_complete: whether all of it could be read, so that a name that is not in the file's text is not in this one.
+        defines: the names of its trees and models.
     """
 
     text: str
     places: Places
     diagnostics: tuple[Diagnostic, ...]
     is_complete: bool
+    defines: frozenset[str] = frozenset()
 
 
 def is_btq(path: str) -> bool:

@@ -185,7 +185,10 @@ def _category(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> st
         if found := file.names.found.get((kind, name)):
             model = found[0][1].target
             return model.category.raw if isinstance(model, Model) else None
-    return None
+    pooled = workspace.find(viewpoint, kind, name)
+    target = pooled.symbol.target if pooled is not None else None
+    is_of_node = isinstance(target, Model) and target.category.raw != "SubTree"  # else of a tree of that name
+    return target.category.raw if isinstance(target, Model) and is_of_node else None
 
 
 def symbol(facts: Facts, kind: Kind, name: str) -> Symbol:

@@ -92,6 +92,16 @@ def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:
     return Found(Project(folder), None)
 
 
+def pool_of(folder: str, top: str) -> str:
+    """The folder in whose files the XML of a folder finds what it lacks: the repository, else the package, else `top`,
+    where there is no project file."""
+    for name in (".git", "package.xml"):
+        for above in _upwards(folder):
+            if os.path.exists(f"{above}/{name}"):
+                return above
+    return top
+
+
 def is_project_file(path: str) -> bool:
     """Whether a file has the name of a project file."""
     return path.rpartition("/")[2] in PROJECT_FILES

@@ -114,6 +114,12 @@ def same_requirement(first: syntax.Requirement, second: syntax.Requirement) -> b
     return _saying(first) == _saying(second)
 
 
+def interface(model: syntax.Model) -> object:
+    """What a model says of its node; equal for equivalent models, as palettes that tools write repeat them."""
+    ports = tuple([(port.direction, port.name, port.type, port.default) for port in model.ports])
+    return model.category.raw, syntax.shape(ports)
+
+
 def _asked_by(requirement: syntax.Requirement) -> frozenset[str]:
     """The names in a requirement's clauses; without any, its text may hold some after `FailureIf`."""
     if requirement.clauses or requirement.text is None:

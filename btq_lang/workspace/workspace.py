@@ -4,24 +4,26 @@ One invariant: a workspace is a function of its texts and its project; one reach
 with its predecessor all files that did not change.  It does not use the disk: the loader provides the texts, included
 ones too.
 
-Names are looked up in a file's scope: the file and what it includes.  The project's other files are known as well, but
-only to suggest where a name could be defined.
+Names are looked up in a file's scope: the file and what it includes.  The project's other files are known as well: an
+XML file has them as its pool, for its program may register them too, and for others they only suggest where a name
+could be defined.
 """
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.syntax.tree import Entry, Include, Root, Word
+from btq_lang.syntax.tree import Entry, Include, Model, Root, Word
 from btq_lang.util.record import Record
 from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import Definition, File, is_of_package
 from btq_lang.workspace.queries import Store
-from btq_lang.workspace.symbols import Use
+from btq_lang.workspace.symbols import Use, interface
 
 if TYPE_CHECKING:
     from btq_lang.util.text import Span
@@ -202,7 +204,23 @@ class Workspace:
     def files_defining(self, kind: Kind, name: str) -> tuple[str, ...]:
         """The files of the project that define a name, to suggest where it could come from; this is known even if a
         file's tree was released."""
-        return tuple([path for path, file in self.files.items() if file.defines(kind, name)])
+        foreign = [path for path in self._foreign.get(name, ()) if self.files[path].defines(kind, name)]
+        own = [path for path in self._own if self.files[path].defines(kind, name)]
+        return (*own, *foreign)
+
+    @cached_property
+    def _foreign(self) -> Mapping[str, list[str]]:
+        """The files in another language that define a tree or model of a name."""
+        found: dict[str, list[str]] = {}
+        for path, origin in self.origins.items():
+            for name in origin.defines:
+                found.setdefault(name, []).append(path)
+        return found
+
+    @cached_property
+    def _own(self) -> tuple[str, ...]:
+        """The files in this language."""
+        return tuple([path for path in self.files if path not in self.origins])
 
     def defined_anywhere(self, kind: Kind, name: str) -> tuple[Definition, ...]:
         """Every definition of a name in the project."""
@@ -211,6 +229,32 @@ class Workspace:
             files = [self.files[path] for path in self.files_defining(kind, name)]
             self._everywhere[key] = tuple([each for file in files for each in file.definitions(kind, name)])
         return self._everywhere[key]
+
+    def find(self, path: str, kind: Kind, name: str) -> Definition | None:
+        """The definition that a name means in a file: the first one in scope, else that in the pool, if all agree."""
+        found = self.scope(path).find(kind, name)
+        if found is not None:
+            return found
+        pooled = self.pooled(path, kind, name)
+        if len(pooled) < 2:
+            return pooled[0] if pooled else None
+        models = [each.symbol.target for each in pooled]
+        agree = len({interface(model) if isinstance(model, Model) else id(model) for model in models}) == 1
+        return pooled[0] if agree else None
+
+    def pooled(self, path: str, kind: Kind, name: str) -> tuple[Definition, ...]:
+        """What an XML file may mean by a name outside its scope: a tree of its folder's XML, else of its project; the
+        project's models of a node.  A program may register all of these files, or only some."""
+        pool = self.project.pool_of(path)
+        if self.files[path].origin is None or pool is None:
+            return ()
+        scope = self.scope(path).paths
+        found = [
+            each for each in self.defined_anywhere(kind, name) if each.path.startswith(pool) and each.path not in scope
+        ]
+        folder = posixpath.dirname(path)
+        near = [each for each in found if posixpath.dirname(each.path) == folder and each.path in self.origins]
+        return tuple((near or found) if kind is Kind.TREE else found)
 
     def uses_in(self, path: str) -> Iterator[Reference]:
         """The references in a file, in the order of its text."""

@@ -114,3 +114,47 @@ def test_built_xml_is_not_looked_at_beside_its_mission(tmp_path: Path, write: Wr
     assert run_btq("check", "out", cwd=tmp_path)[0] == 2
     (tmp_path / "missions" / "main.btq").unlink()
     assert run_btq("check", cwd=tmp_path)[1] == "No problems found in 1 file\n"  # the XML
+
+
+# ---- the pool: where XML finds what it lacks ----
+
+MAIN = '<root BTCPP_format="4"><BehaviorTree ID="Main"><SubTree ID="Dock"/></BehaviorTree></root>\n'
+DOCK = '<root BTCPP_format="4"><BehaviorTree ID="Dock"><AlwaysSuccess/></BehaviorTree></root>\n'
+CLEAN = "No problems found in 1 file\n"
+
+
+@pytest.mark.parametrize(
+    ("place", "mark", "is_found"),
+    [
+        ("trees/dock.xml", None, True),
+        ("trees/deep/dock.xml", None, True),
+        ("dock.xml", None, False),
+        ("dock.xml", "btq.toml", True),
+        ("dock.xml", ".git/HEAD", True),
+        ("dock.xml", "package.xml", True),
+        ("dock.xml", "trees/btq.toml", False),
+        ("other/build/dock.xml", "btq.toml", False),
+    ],
+)
+def test_what_a_named_file_lacks_is_looked_for(
+    tmp_path: Path, write: Write, place: str, mark: str | None, is_found: bool
+) -> None:
+    write("trees/main.xml", text=MAIN)
+    write(place, text=DOCK)
+    if mark is not None:
+        write(mark, text="")
+    assert (run_btq("check", "trees/main.xml", cwd=tmp_path)[1] == CLEAN) is is_found
+
+
+def test_a_repository_counts_before_a_package(tmp_path: Path, write: Write) -> None:
+    write("a/trees/main.xml", text=MAIN)
+    write("b/dock.xml", text=DOCK)
+    write("a/package.xml", ".git/HEAD", text="")
+    assert run_btq("check", "a", cwd=tmp_path)[1] == CLEAN
+
+
+def test_a_folder_that_is_named_is_a_pool(tmp_path: Path, write: Write) -> None:
+    write("a/main.xml", text=MAIN)
+    write("b/dock.xml", text=DOCK)
+    assert run_btq("check", cwd=tmp_path)[1] == "No problems found in 2 files\n"
+    assert run_btq("check", "a", cwd=tmp_path)[0] == 1

@@ -40,6 +40,10 @@ XML = """<root BTCPP_format="4">
   </BehaviorTree>
 </root>
 """
+TOP = """<root BTCPP_format="4">
+  <BehaviorTree ID="Top"><Sequence><SubTree ID="Nav"/><SubTree ID="Carry" ot="x"/><Pick/></Sequence></BehaviorTree>
+</root>
+"""  # of which nav.xml and the other files are the pool
 PROJECTS = (
     "",
     'include-paths = ["lib"]\n',
@@ -135,7 +139,7 @@ def test_files_come_and_go_and_the_project_changes(folder: Path, seed: int, monk
     monkeypatch.setattr("btq_lang.workspace.queries._FEW", 0 if seed % 2 else 10_000)
     chance = random.Random(seed)
     (folder / "lib").mkdir()
-    texts = {f"{folder}/main.btq": MAIN, f"{folder}/skills.btq": SKILLS}
+    texts = {f"{folder}/main.btq": MAIN, f"{folder}/skills.btq": SKILLS, f"{folder}/top.xml": TOP}
     session = session_of(folder, texts)
     places = [folder / name for name in (*FILES, "lib/skills.btq", "lib/requirements.btq", "nav.xml")]
     for step in range(60):
@@ -152,8 +156,8 @@ def test_files_come_and_go_and_the_project_changes(folder: Path, seed: int, monk
             path = chance.choice(sorted(texts))
             at = chance.randrange(len(texts[path]) + 1)
             texts[path] = texts[path][:at] + chance.choice((*PIECES, 'include "nav.xml"\n')) + texts[path][at:]
-            if chance.random() < 0.2:
-                texts[path] = MAIN
+            if chance.random() < (0.6 if path.endswith(".xml") else 0.2):
+                texts[path] = TOP if path.endswith(".xml") else MAIN
             session.edit(path, texts[path])
         if change < 4:
             session.reload()
@@ -365,3 +369,20 @@ def test_a_check_after_all_was_read_again_asks_nothing_again(folder: Path) -> No
     assert found != ()
     assert session.diagnostics(path) == found
     assert [id(each) for each, _ in session.findings(path).of_items] == [*map(id, kept)]
+
+
+# ---- XML ----
+
+
+def test_open_xml_finds_what_it_lacks_in_its_folder(tmp_path: Path) -> None:
+    main, dock = (str(tmp_path / name) for name in ("main.xml", "dock.xml"))
+    tree = '<root BTCPP_format="4"><BehaviorTree ID="{}">{}</BehaviorTree></root>'.format
+    Path(dock).write_text(tree("Dock", "<AlwaysSuccess/>"))
+    session = Session()
+    session.edit(main, tree("Main", '<SubTree ID="Dock"/>'))
+    assert session.diagnostics(main) == ()
+    assert session.paths() == (main,)  # the other is not reported on
+    session.edit(main, tree("Main", '<SubTree ID="Undock"/>'))
+    assert [each.rule for each in session.diagnostics(main)] == ["unknown-tree"]
+    session.edit(dock, tree("Undock", "<AlwaysSuccess/>"))
+    assert session.diagnostics(main) == ()
