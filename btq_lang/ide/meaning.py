@@ -19,7 +19,7 @@ from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.file import Definition
-from btq_lang.workspace.node_names import kind_of, meaning_of
+from btq_lang.workspace.node_names import meaning_of
 from btq_lang.workspace.references import Mention, What, called
 from btq_lang.workspace.workspace import Workspace
 
