@@ -14,6 +14,15 @@ from btq_lang.util.record import Record
 Category: TypeAlias = "Literal['Action', 'Condition', 'Control', 'Decorator', 'SubTree']"
 CATEGORIES: Final[tuple[Category, ...]] = ("Action", "Condition", "Control", "Decorator", "SubTree")
 
+# The number of children of the nodes of a category; None: any number.
+CHILDREN: Final[dict[str, tuple[int, int | None]]] = {
+    "Action": (0, 0),
+    "Condition": (0, 0),
+    "SubTree": (0, 0),
+    "Decorator": (1, 1),
+    "Control": (1, None),
+}
+
 # Where a port's value flows, as in a model's Port.
 Direction: TypeAlias = "Literal['input', 'output', 'inout']"
 

@@ -64,6 +64,11 @@ def plain_type(port_type: str) -> str:
     return "std::string" if plain == "string" else plain
 
 
+def values_of(port_type: str) -> tuple[str, ...]:
+    """All literals that a type accepts, the usual spellings first; empty if they cannot be listed."""
+    return _CLOSED.get(_plain(port_type), ())
+
+
 def is_known_type(plain: str) -> bool:
     """Whether it is a type of the engine or of C++ itself, by the name that `plain_type` gives it.  Any other is the
     user's, and may be an alias for one of these."""
@@ -75,16 +80,14 @@ def _check_one(plain: str, text: str, version: str) -> LiteralProblem | None:
         return _check_integer(plain, text)
     if plain in ("double", "float"):
         return _check_real(plain, text, version)
-    if plain == "bool":
-        known = text in ("0", "1", "true", "True", "TRUE", "false", "False", "FALSE")
-        return None if known else LiteralProblem("refused", "true, false, 1 or 0")
-    if plain == RESULT:
-        known = text in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
-        return None if known else LiteralProblem("refused", "SUCCESS, FAILURE, RUNNING or SKIPPED")
-    if plain == "BT::NodeStatus":
-        known = text in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED", "IDLE")
-        return None if known else LiteralProblem("refused", "SUCCESS, FAILURE, RUNNING, SKIPPED or IDLE")
+    values = _CLOSED.get(plain)
+    if values is not None and text not in values:
+        return LiteralProblem("refused", _one_of(values if plain != "bool" else _SHOWN_OF_BOOL))
     return None
+
+
+def _one_of(values: tuple[str, ...]) -> str:
+    return f"{', '.join(values[:-1])} or {values[-1]}"
 
 
 def _check_integer(plain: str, text: str) -> LiteralProblem | None:
@@ -259,6 +262,13 @@ _JSON_ITEMS: Final = {
     "double": "a number",
     "bool": "true or false",
     "std::string": "a string",
+}
+_SHOWN_OF_BOOL: Final = ("true", "false", "1", "0")
+_RESULTS: Final = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
+_CLOSED: Final = {
+    "bool": (*_SHOWN_OF_BOOL, "True", "TRUE", "False", "FALSE"),
+    RESULT: _RESULTS,
+    "BT::NodeStatus": (*_RESULTS, "IDLE"),
 }
 _OTHER_TYPES: Final = frozenset(("double", "float", "bool", "std::string", "BT::NodeStatus"))
 # Numbers other than 0 become 0 below the first limit and infinite above the second: the engine refuses both.

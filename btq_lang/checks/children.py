@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.nodes import is_by_children
-from btq_lang.checks.kinds import CHILDREN, declared_category, model_related
+from btq_lang.checks.kinds import declared_category, model_related
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix

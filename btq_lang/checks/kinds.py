@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
@@ -29,15 +30,6 @@ if TYPE_CHECKING:
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
-
-# The number of children of the nodes of a category; None: any number.
-CHILDREN: dict[str, tuple[int, int | None]] = {
-    "Action": (0, 0),
-    "Condition": (0, 0),
-    "SubTree": (0, 0),
-    "Decorator": (1, 1),
-    "Control": (1, None),
-}
 
 
 def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:

@@ -245,7 +245,7 @@ def _builtin_ports(tag: str) -> KnownPorts:
 
 
 def _declared_port(port: Port, required: bool) -> KnownPort:
-    name = port.name or next((pair.value for pair in port.attributes if pair.key.text == "name"), None)
+    name = port.id
     return KnownPort(name.text if name else "", required and name is not None, port.text.text if port.text else "")
 
 

@@ -87,7 +87,7 @@ def declared_ports(target: object) -> tuple[NodePort, ...]:
 
 
 def _declared(port: Port) -> NodePort:
-    name = port.name or next((pair.value for pair in port.attributes if pair.key.text == "name"), None)
+    name = port.id
     return NodePort(
         name.text if name else "",
         port.direction.raw,

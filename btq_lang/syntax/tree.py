@@ -106,6 +106,11 @@ class Port(Record):
     attributes: tuple[Pair, ...]
     text: Word | None
 
+    @property
+    def id(self) -> Word | None:
+        """Its name, wherever it is written: XML may have it after other attributes."""
+        return self.name or next((pair.value for pair in self.attributes if pair.key.text == "name"), None)
+
 
 class Meta(Record):
     """`metadata (color = "red")` of a model."""

@@ -197,7 +197,7 @@ def _model(model: syntax.Model, to: Listener) -> None:
 def _ports(ports: Iterable[syntax.Port], owner: syntax.Model | syntax.Tree, to: Listener) -> None:
     """The port of a tree is an entry of its blackboard."""
     for port in ports:
-        name = port.name or next((pair.value for pair in port.attributes if pair.key.text == "name"), None)
+        name = port.id
         what = What.KEY if isinstance(owner, syntax.Tree) else What.PORT
         to.word(what, name, defines=True, owner=owner)
         if port.default is not None:
