@@ -15,6 +15,7 @@ outputs     the texts that a build writes; `as_built` finds the mission that suc
 opening     files from the disk, XML too, as a workspace
 side_file   what of a mission its XML cannot hold; `instances` numbers the nodes as the engine does
 restoring   a mission from its XML and its side file
+xsd         a schema of XML files with a project's nodes; `interfaces`: what these may have inside and beside them
 marks       what a build puts into the XML so that an import knows it
 recognition which XML is the engine's
 

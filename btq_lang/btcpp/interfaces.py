@@ -1,0 +1,140 @@
+"""What XML may say of each node that a project knows: its children, its ports, and by which categories it is named.
+
+One invariant: a node that has several models has the ports of all of them, so no file that keeps to one is refused.
+Known are the engine's nodes, the models of all files, and the nodes that no model declares, as their uses show them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from btq_lang.btcpp.undeclared import undeclared
+from btq_lang.catalog.kinds import CHILDREN
+from btq_lang.catalog.literals import values_of
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.names import is_port_name, is_xml_name
+from btq_lang.catalog.nodes import BUILTINS, available, port_type
+from btq_lang.syntax.tree import Model, Port
+from btq_lang.util.record import Record
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import NodeKind, PortKind
+    from btq_lang.workspace.workspace import Workspace
+
+
+class PortInterface(Record):
+    """A port.
+
+    Attributes:
+        values: all literals that it accepts; empty if they cannot be listed.
+        required: whether the engine refuses the node without it.
+    """
+
+    name: str
+    values: tuple[str, ...] = ()
+    required: bool = False
+    doc: str = ""
+
+
+class Interface(Record):
+    """A node.
+
+    Attributes:
+        categories: under which the explicit form may name it.
+        least, most: the number of children; None: any number.
+        ports: by name.
+        is_open: whether it may have other ports: nothing declares them.
+    """
+
+    name: str
+    categories: tuple[str, ...]
+    least: int
+    most: int | None
+    ports: dict[str, PortInterface]
+    is_open: bool = False
+    doc: str = ""
+
+
+def interfaces(workspaces: Iterable[Workspace], version: str, unknown: Container[str]) -> dict[str, Interface]:
+    """The nodes that the files of some workspaces know, by name: the engine's in its order, then the others by name.
+
+    Args:
+        version: of the engine.
+        unknown: names that are used and that the checks call unknown; they are left out unless a model declares them.
+    """
+    found = {kind.tag: _of_engine(kind, version) for kind in BUILTINS.values() if available(kind, version)}
+    declared: dict[str, Interface] = {}
+    used: dict[str, Interface] = {}
+    for workspace in workspaces:
+        for path in sorted(workspace.files):
+            for model in _models(workspace, path):
+                if model.name not in BUILTINS:
+                    before = declared.get(model.name)
+                    declared[model.name] = model if before is None else _merged(before, model)
+            for name, node in undeclared(workspace, path).items():
+                ports = {port.name: PortInterface(port.name) for port in node.ports if is_xml_name(port.name)}
+                used[name] = Interface(name, (node.category,), 0, None, ports, is_open=True)
+    others = {**{name: each for name, each in used.items() if name not in unknown}, **declared}
+    return {**found, **{name: others[name] for name in sorted(others)}}
+
+
+def tree_names(workspaces: Iterable[Workspace]) -> list[str]:
+    """The names of the trees of all files, sorted."""
+    summaries = (each for workspace in workspaces for file in workspace.files.values() for each in file.summaries)
+    return sorted({symbol.name for each in summaries for symbol in each.symbols if symbol.kind is Kind.TREE})
+
+
+def _of_engine(kind: NodeKind, version: str) -> Interface:
+    ports = {port.name: _port_of_engine(port, version) for port in kind.ports if is_port_name(port.name)}
+    doc = f"{kind.doc} {kind.semantics}"
+    return Interface(kind.tag, (kind.category,), *kind.children, ports, kind.category == "SubTree", doc)
+
+
+def _port_of_engine(port: PortKind, version: str) -> PortInterface:
+    values = values_of(port.literal or port_type(port, version)) if port.direction == "input" else ()
+    default = f"; default: {port.default}" if port.default is not None else ""
+    return PortInterface(port.name, values, port.required, f"{port.doc}{default}")
+
+
+def _models(workspace: Workspace, path: str) -> Iterator[Interface]:
+    for summary in workspace.files[path].summaries:
+        for symbol in summary.symbols:
+            model = symbol.target
+            if symbol.kind is Kind.MODEL and isinstance(model, Model) and model.category.raw != "SubTree":
+                ports = {port.name: port for port in map(_port_of_model, model.ports) if _is_attribute(port.name)}
+                doc = model.text.text if model.text is not None else ""
+                category = model.category.raw
+                # A model without ports is often unfinished; the checks warn of ports then, and do not refuse them.
+                yield Interface(symbol.name, (category,), *CHILDREN[category], ports, not ports, doc)
+
+
+def _port_of_model(port: Port) -> PortInterface:
+    type_ = port.type.text if port.type is not None else ""
+    values = values_of(type_) if port.direction.raw == "input" else ()
+    doc = port.text.text if port.text is not None else ""
+    # Only the robot's program knows whether it requires an input.
+    return PortInterface(port.id.text if port.id is not None else "", values, doc=doc)
+
+
+def _merged(one: Interface, other: Interface) -> Interface:
+    most = None if one.most is None or other.most is None else max(one.most, other.most)
+    categories = tuple(dict.fromkeys((*one.categories, *other.categories)))
+    ports = merged_ports((one, other))
+    is_open = one.is_open or other.is_open
+    return Interface(one.name, categories, min(one.least, other.least), most, ports, is_open, one.doc or other.doc)
+
+
+def merged_ports(nodes: Iterable[Interface]) -> dict[str, PortInterface]:
+    """The ports of several nodes, as one that may be any of them has them: none is required."""
+    found: dict[str, PortInterface] = {}
+    for node in nodes:
+        for name, port in node.ports.items():
+            before = found.get(name, port)
+            values = port.values if port.values == before.values else ()
+            found[name] = PortInterface(name, values, doc=before.doc if before.doc == port.doc else "")
+    return found
+
+
+def _is_attribute(name: str) -> bool:
+    return is_port_name(name) and is_xml_name(name)
