@@ -45,6 +45,7 @@ def build_parser() -> Parser:
     _add_preview(commands)
     _add_diff(commands)
     _add_explain(commands)
+    _add_schema(commands)
     _add_init(commands)
     _add_completion(commands)
     _add_lsp(commands)
@@ -330,6 +331,24 @@ def _add_explain(commands: _SubParsersAction[Parser]) -> None:
     )
     parser.add_argument("subject", nargs="*", metavar="RULE|NODE|QUALITY|WORD", help="default: list them all")
     _add_color(parser)
+
+
+def _add_schema(commands: _SubParsersAction[Parser]) -> None:
+    from btq_lang.catalog.versions import targets  # as above
+
+    parser = _command(
+        commands,
+        "schema",
+        "write the schema by which other editors check XML or btq.toml",
+        epilog="exit codes: 0 written; 1 written, but of files that cannot be read whole; 2 usage or I/O\n\n"
+        "examples:\n  btq schema xsd -o btq.xsd                an XSD with the nodes of the project in this folder\n"
+        "  btq schema xsd missions --target 4.6     for an older engine\n"
+        "  btq schema project -o btq.schema.json    a JSON schema of btq.toml\n",
+    )
+    parser.add_argument("format", choices=("xsd", "project"), help="an XSD of the nodes, or a JSON schema of btq.toml")
+    parser.add_argument("paths", nargs="*", metavar="PATH", help="of xsd: files and folders with nodes; default: .")
+    parser.add_argument("--target", choices=targets(), help="the engine's version; default: the project's newest")
+    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 
 def _add_init(commands: _SubParsersAction[Parser]) -> None:

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from lxml import etree
 from xml_elements import elements
 
 from btq_lang.btcpp.document import write
@@ -15,7 +16,9 @@ from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.reader import read
+from btq_lang.btcpp.xsd import xsd
 from btq_lang.checks import check
+from btq_lang.commands.schema import unknown_nodes
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.formatter import format_text
@@ -137,3 +140,24 @@ def test_verdicts_as_the_engine_has_them(found: dict[str, tuple[Diagnostic, ...]
             passed.append(name)
     assert set(cried_wolf) == TRULY_WRONG
     assert passed == []
+
+
+# What the checks only warn of, and an XSD cannot let pass.
+REFUSED_BY_XSD = {"unknown-node", "not-an-engine-node", "xml-ignored"}
+
+
+def test_files_without_an_error_are_valid_by_the_xsd_of_their_nodes(
+    corpus: dict[str, str], found: dict[str, tuple[Diagnostic, ...]]
+) -> None:
+    checked = 0
+    for name, text in corpus.items():
+        severe = [each for each in found[name] if each.effective_severity in (Severity.ERROR, Severity.WARNING)]
+        if any(each.effective_severity is Severity.ERROR for each in severe):
+            continue
+        file = file_of(name, text)
+        schema = xsd([Workspace({name: file}, Project())], "4.10", unknown_nodes(file, found[name]))
+        validator = etree.XMLSchema(etree.fromstring(schema.encode()))
+        is_valid = validator.validate(etree.fromstring(text.encode()))
+        assert is_valid == REFUSED_BY_XSD.isdisjoint(each.rule for each in severe), (name, validator.error_log)
+        checked += 1
+    assert checked > 200

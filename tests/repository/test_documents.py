@@ -239,11 +239,13 @@ def test_editors_recipes_are_well_formed() -> None:
     else:
         import tomli as tomllib
     text = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8")
-    (kate,) = (json.loads(match[2]) for match in BLOCK.finditer(text) if match[1] == "json")
-    (helix,) = (tomllib.loads(match[2]) for match in BLOCK.finditer(text) if match[1] == "toml")
+    kate, xml = (json.loads(match[2]) for match in BLOCK.finditer(text) if match[1] == "json")
+    helix, project = (tomllib.loads(match[2]) for match in BLOCK.finditer(text) if match[1] == "toml")
     assert kate["servers"]["btq"]["command"] == ["btq-lsp"]
     assert helix["language-server"]["btq"]["command"] == "btq-lsp"
     assert helix["language"][0]["file-types"] == ["btq", "qualitybtcpp"]
+    assert xml == {"xml.fileAssociations": [{"pattern": "missions/*.xml", "systemId": "btq.xsd"}]}
+    assert project == {}
 
 
 @pytest.mark.skipif(os.name == "nt", reason="the commands are for a POSIX shell")

@@ -1,0 +1,73 @@
+"""`btq schema`: schemas by which other tools complete and check the XML of a project, and its btq.toml."""
+
+from __future__ import annotations
+
+import json
+import sys
+from argparse import Namespace
+from collections.abc import Iterable
+
+from btq_lang.btcpp.xsd import xsd
+from btq_lang.catalog.versions import targets as engine_lines
+from btq_lang.checks import check
+from btq_lang.commands.files import Files, Group, no_mission_below, usage_problem
+from btq_lang.commands.output import form_problem, write_output
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.rules import UNREADABLE, Severity
+from btq_lang.workspace.file import File
+from btq_lang.workspace.loader import find_project, shown
+from btq_lang.workspace.project_schema import project_schema
+
+FORMATS = ("xsd", "project")
+
+
+def run(options: Namespace) -> int:
+    """Write a schema."""
+    problem = usage_problem(options.paths) or form_problem(options, FORMATS)
+    if options.format == "project" and options.paths:
+        problem = "`project` takes no path: its schema is the same for every project"
+    if problem:
+        print(f"btq schema: {problem}", file=sys.stderr)
+        return 2
+    if options.format == "project":
+        return write_output("schema", options.output, f"{json.dumps(project_schema(), indent=2)}\n")
+    return _write_xsd(options)
+
+
+def _write_xsd(options: Namespace) -> int:
+    """Write the schema of a project's nodes; of files with errors, those that can be read."""
+    paths = options.paths or ["."]
+    groups, problems = Files().groups(paths, with_xml=True)
+    for each in problems:
+        print(f"btq: {each}", file=sys.stderr)
+    if problems:
+        return 2
+    if empty := no_mission_below(paths, groups, "no .btq file and no BehaviorTree.CPP XML"):
+        print(f"btq schema: {empty}; the schema has only the nodes of the engine", file=sys.stderr)
+    checked = [(group, path, check(group.workspace, path)) for group in groups for path in group.given]
+    unknown = frozenset().union(*(unknown_nodes(group.workspace.files[path], found) for group, path, found in checked))
+    text = xsd([group.workspace for group in groups], options.target or _target(groups, paths), unknown)
+    if code := write_output("schema", options.output, text):
+        return code
+    unread = [path for _, path, found in checked if any(each.rule in UNREADABLE for each in found)]
+    for path in unread:
+        print(f"btq schema: {shown(path)} has errors, so nodes may be missing; run btq check", file=sys.stderr)
+    return int(bool(unread))
+
+
+def _target(groups: Iterable[Group], paths: list[str]) -> str:
+    """The newest version of the engine that the projects are for."""
+    targets = {group.workspace.project.target for group in groups} or {find_project(paths[0]).project.target}
+    return next(version for version in reversed(engine_lines()) if version in targets)
+
+
+def unknown_nodes(file: File, found: Iterable[Diagnostic]) -> frozenset[str]:
+    """The names in a file that the checks call unknown nodes."""
+    return frozenset(
+        file.source[each.span.start : each.span.end].strip("\"'")
+        for each in found
+        if each.rule in _UNKNOWN and each.effective_severity in (Severity.ERROR, Severity.WARNING)
+    )
+
+
+_UNKNOWN = ("unknown-node", "not-an-engine-node")
