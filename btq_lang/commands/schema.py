@@ -18,12 +18,10 @@ from btq_lang.workspace.file import File
 from btq_lang.workspace.loader import find_project, shown
 from btq_lang.workspace.project_schema import project_schema
 
-FORMATS = ("xsd", "project")
-
 
 def run(options: Namespace) -> int:
     """Write a schema."""
-    problem = usage_problem(options.paths) or form_problem(options, FORMATS)
+    problem = usage_problem(options.paths) or form_problem(options, (options.format,))
     if options.format == "project" and options.paths:
         problem = "`project` takes no path: its schema is the same for every project"
     if problem:
