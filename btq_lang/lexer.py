@@ -36,17 +36,18 @@ from btq_lang.syntax.scan import (
     SMALL_Z,
     SPACE,
     ZERO,
+    Maps,
     begins_name,
     blanks_end,
     braced_end,
     line_end,
     line_opening,
+    maps_of,
     name_end,
     number_at,
     string_end,
     symbol_end,
     unit_run,
-    word_map,
 )
 from btq_lang.syntax.strange import StrangeCharacters, has_line_end
 from btq_lang.syntax.suggestions import (
@@ -127,15 +128,13 @@ class Lexer(StrangeCharacters):
     """A place in a text, and the logical line that begins there.
 
     Attributes:
-        words: the map of the text that shows where words end (`word_map`).
         comments: start and end of every comment so far.
         ends_early: the line ends brackets that have no `)`, and nothing follows them.
         ended_early: how many brackets ended before a line with less indentation, if no other has opened since.
     """
 
-    def __init__(self, text: str) -> None:
-        super().__init__(text)
-        self.words: Final = word_map(text)
+    def __init__(self, text: str, maps: Maps | None = None) -> None:
+        super().__init__(text, maps or maps_of(text))
         self.comments: list[tuple[int, int]] = []
         self.ends_early = False
         self.ended_early = 0
@@ -152,13 +151,13 @@ class Lexer(StrangeCharacters):
     def open_line(self) -> bool:
         """Go to the next line with tokens and find its level; False at the end of the text."""
         text, size = self.text, self.size
-        start, position = line_opening(text, self.ink, self.position)
+        start, position = line_opening(text, self.maps.ink, self.position)
         blanks = text[start:position]
         while position < size and ord(text[position]) in (HASH, SLASH):
             end = self._comment(position)
             if end == position:
                 break
-            start_after, position = line_opening(text, self.ink, end)
+            start_after, position = line_opening(text, self.maps.ink, end)
             if start_after > end:
                 start = start_after
                 blanks = text[start:position]
@@ -195,7 +194,7 @@ class Lexer(StrangeCharacters):
         """Tokenize the opened line, through all lines that its brackets join."""
         self._begin_line()
         kinds, starts, raws, brackets = self.kinds, self.starts, self.raws, self._brackets
-        text, words = self.text, self.words
+        text, words = self.text, self.maps.words
         size: i64 = self.size
         position: i64 = self.position
         while position < size:
@@ -270,7 +269,7 @@ class Lexer(StrangeCharacters):
 
     def first_word(self) -> str:
         """The NAME that the opened line begins with; any other text if it begins with none."""
-        return self.text[self.position : name_end(self.text, self.words, self.position)]
+        return self.text[self.position : name_end(self.text, self.maps.words, self.position)]
 
     def line_end(self) -> int:
         """The end of the current physical line."""
@@ -461,7 +460,7 @@ class Lexer(StrangeCharacters):
         brackets early.
         """
         text = self.text
-        start, at = line_opening(text, self.ink, position)
+        start, at = line_opening(text, self.maps.ink, position)
         blanks = self._line_blanks = text[start:at]
         if at >= self.size:
             return at

@@ -16,6 +16,7 @@ from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS, item_word_meant, read_as
 from btq_lang.grammar.items import ItemParser
+from btq_lang.lexer import Lexer, tokens
 from btq_lang.syntax.scan import line_end, path_end
 from btq_lang.syntax.tokens import (
     CATEGORIES,
@@ -44,6 +45,7 @@ from btq_lang.util.text import Span, changed
 
 if TYPE_CHECKING:
     from btq_lang.lexer import State
+    from btq_lang.syntax.scan import Maps
 
 # The state at the start of an item: that of the lexer, the levels of the open Roots, and whether there was a Root.
 Start: TypeAlias = "tuple[State, tuple[int, ...], bool]"
@@ -56,12 +58,14 @@ class Parsed:
         text: of the file.
         entries: its items in order; those in the block of a `Root` follow their Root.
         starts: for each entry, the parser's state at its start; None if parsing cannot restart there.
+        maps: of the text, for the next parse.
     """
 
-    __slots__ = ("_diagnostics", "_tokens", "entries", "starts", "text")
+    __slots__ = ("_diagnostics", "_tokens", "entries", "maps", "starts", "text")
 
-    def __init__(self, text: str, entries: tuple[Entry, ...], starts: tuple[Start | None, ...]) -> None:
+    def __init__(self, text: str, maps: Maps, entries: tuple[Entry, ...], starts: tuple[Start | None, ...]) -> None:
         self.text: Final = text
+        self.maps: Final = maps
         self.entries: Final = entries
         self.starts: Final = starts
         self._tokens: tuple[Token, ...] | None = None
@@ -70,8 +74,6 @@ class Parsed:
     @property
     def tokens(self) -> tuple[Token, ...]:
         """All tokens, blanks and comments included: joined, their texts are the file.  Computed on first use."""
-        from btq_lang.lexer import tokens  # a check does not need it
-
         if self._tokens is None:
             self._tokens = tokens(self.text)
         return self._tokens
@@ -106,8 +108,8 @@ def parse(text: str) -> Parsed:
         The tree of all valid parts, with a diagnostic for every mistake.
     """
     with NotCollecting():
-        parser = Parser(text)
-        return Parsed(text, parser.file(), tuple(parser.begun))
+        parser = Parser(Lexer(text))
+        return Parsed(text, parser.lexer.maps, parser.file(), tuple(parser.begun))
 
 
 def reparse(before: Parsed, text: str, change: Span | None = None) -> Parsed:
@@ -121,6 +123,7 @@ def reparse(before: Parsed, text: str, change: Span | None = None) -> Parsed:
         return before
     first = _first_touched(before, change.start)
     by = len(text) - len(before.text)
+    maps = before.maps.edited(change.start, change.end, text[change.start : change.end + by])
     old = before.entries
     after = {
         old[index].start + by: index
@@ -128,15 +131,16 @@ def reparse(before: Parsed, text: str, change: Span | None = None) -> Parsed:
         if before.starts[index] is not None
     }
     with NotCollecting():
-        parser = Parser(text)
+        parser = Parser(Lexer(text, maps))
         if first:
             parser.begin_at(old[first].start, before.starts[first])
         entries = parser.file({start: before.starts[index] for start, index in after.items()})
     if not parser.has_met:
-        return Parsed(text, old[:first] + entries, (*before.starts[:first], *parser.begun))
+        return Parsed(text, maps, old[:first] + entries, (*before.starts[:first], *parser.begun))
     last = after[parser.lexer.line_start]
     moved = tuple([entry if by == 0 else moved_by(entry, by) for entry in old[last:]])
-    return Parsed(text, old[:first] + entries + moved, (*before.starts[:first], *parser.begun, *before.starts[last:]))
+    starts = (*before.starts[:first], *parser.begun, *before.starts[last:])
+    return Parsed(text, maps, old[:first] + entries + moved, starts)
 
 
 def _first_touched(before: Parsed, change: int) -> int:
@@ -161,8 +165,8 @@ class Parser(ItemParser):
         has_met: it has reached a place and state of an earlier parse, and can stop.
     """
 
-    def __init__(self, text: str) -> None:
-        super().__init__(text)
+    def __init__(self, lexer: Lexer) -> None:
+        super().__init__(lexer)
         self.entries: list[Entry] = []
         self.begun: list[Start | None] = []
         self.has_met = False

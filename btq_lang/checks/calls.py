@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
+from btq_lang.workspace.queries import hub
 from btq_lang.workspace.symbols import Use
 
 if TYPE_CHECKING:
@@ -48,11 +49,13 @@ def has_gaps(store: Store[Workspace], viewpoint: str) -> bool:
     return not View(store, viewpoint).is_complete or store.ask(calls, viewpoint).has_gaps
 
 
+@hub
 def _circles(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ...]]:
     """All circles: hardly any mission has one, so that after an edit no tree looks for its own again."""
     return store.ask(calls, viewpoint).circles
 
 
+@hub
 def _missed(store: Store[Workspace], viewpoint: str) -> Set[str]:
     view = View(store, viewpoint)
     main = view.main_tree

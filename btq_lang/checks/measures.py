@@ -11,6 +11,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Entry, Requirement
+from btq_lang.workspace.queries import hub
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Claim
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
 
+@hub
 def is_measured(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether any requirement in scope has a clause, or anything is declared for one: else nothing needs to be
     resolved."""

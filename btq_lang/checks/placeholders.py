@@ -18,6 +18,7 @@ from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.queries import hub
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
@@ -75,6 +76,7 @@ def _first_name(store: Store[Workspace], viewpoint: str, legal: str) -> str | No
     return store.ask(_first_names, viewpoint).get(legal)
 
 
+@hub
 def _first_names(store: Store[Workspace], viewpoint: str) -> dict[str, str]:
     found: dict[str, str] = {}
     for _, tree in reversed(inputs.trees(store, viewpoint)):

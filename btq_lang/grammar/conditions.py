@@ -9,6 +9,7 @@ from typing import Final
 
 from btq_lang.diagnostics.model import replace_fix
 from btq_lang.grammar.cursor import Cursor
+from btq_lang.lexer import Lexer
 from btq_lang.syntax.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
 from btq_lang.syntax.tree import (
     Binary,
@@ -51,8 +52,8 @@ MAX_OPERATORS: Final = 100  # in one condition
 class ConditionParser(Cursor):
     """A cursor that can read conditions."""
 
-    def __init__(self, text: str) -> None:
-        super().__init__(text)
+    def __init__(self, lexer: Lexer) -> None:
+        super().__init__(lexer)
         self._nesting = 0  # how many conditions are open, nested in brackets
         self._operators = 0  # how many operators the outermost has so far
 

@@ -35,9 +35,10 @@ class Cursor:
         more: another line is open (the lexer is at its first character) but not yet scanned.
     """
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, lexer: Lexer) -> None:
+        text = lexer.text
         self.text: Final = text
-        self.lexer: Final = Lexer(text)
+        self.lexer: Final = lexer
         self.base = 0
         self.kinds: list[int] = [NEWLINE]
         self.starts: list[int] = [0]

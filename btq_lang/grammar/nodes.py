@@ -14,6 +14,7 @@ from btq_lang.grammar.blocks import MAX_DEPTH, OF_ITS_OWN, Block
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.grammar.cursor import VALUES, shown
+from btq_lang.lexer import Lexer
 from btq_lang.syntax.scan import line_end, line_start
 from btq_lang.syntax.suggestions import ATTRIBUTES, CHILDREN, attributes_in_braces
 from btq_lang.syntax.tokens import (
@@ -52,8 +53,8 @@ from btq_lang.util.text import Span
 class NodeParser(AttributeParser):
     """A cursor that can read the block of a tree."""
 
-    def __init__(self, text: str) -> None:
-        super().__init__(text)
+    def __init__(self, lexer: Lexer) -> None:
+        super().__init__(lexer)
         self.bare_until = -1  # the end of the last line `key = value` without brackets
 
     def tree_block(self, level: int) -> tuple[tuple[Port, ...], tuple[NodeClause, ...], tuple[Node | Verbatim, ...]]:

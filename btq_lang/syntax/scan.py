@@ -46,23 +46,40 @@ RIGHT_BRACE: Final = 0x7D
 ASCII: Final = 0x80  # the first character that is not ASCII
 
 
-def word_map(text: str) -> str:
-    """The text with a NUL for each character but ASCII letters, digits and `_`: the end of a word is found there in one
-    step.  It takes 1 ms for a million characters.
+class Maps:
+    """Where words and blanks end in a text, found in one step.
+
+    Attributes:
+        words: the text with a NUL for each character but ASCII letters, digits and `_`.
+        ink: with a NUL for each blank and tab, and `x` for all else.
     """
-    return text.encode("ascii", "replace").translate(_WORDS).decode("ascii")
+
+    __slots__ = ("ink", "words")
+
+    def __init__(self, words: str, ink: str) -> None:
+        self.words: Final = words
+        self.ink: Final = ink
+
+    def edited(self, start: int, end: int, text: str) -> Maps:
+        """The maps after an edit that replaces the text from `start` to `end`."""
+        new = maps_of(text)
+        return Maps(
+            self.words[:start] + new.words + self.words[end:],
+            self.ink[:start] + new.ink + self.ink[end:],
+        )
 
 
-def ink_map(text: str) -> str:
-    """The text with a NUL for each blank and tab, and `x` for all else, to find where blanks end."""
-    return text.encode("ascii", "replace").translate(_INK).decode("ascii")
+def maps_of(text: str) -> Maps:
+    """The maps of a text, in 2 ms for a million characters."""
+    characters = text.encode("ascii", "replace")
+    return Maps(characters.translate(_WORDS).decode("ascii"), characters.translate(_INK).decode("ascii"))
 
 
 def name_end(text: str, words: str, start: i64) -> i64:
     """The end of the NAME that begins at `start`, which is a letter or `_`.
 
     Args:
-        words: the `word_map` of the text.
+        words: of the `Maps` of the text.
     """
     size: i64 = len(text)
     end: i64 = words.find("\0", start + 1)
@@ -85,7 +102,7 @@ def is_name(text: str) -> bool:
     """Whether a text can be written as a NAME, without quotes."""
     if text == "" or not begins_name(ord(text[0])) or text in ("R?", "A?"):
         return False
-    return name_end(text, word_map(text), 0) == len(text)
+    return name_end(text, maps_of(text).words, 0) == len(text)
 
 
 def begins_name(code: i64) -> bool:
@@ -117,7 +134,7 @@ def line_opening(text: str, ink: str, start: i64) -> tuple[i64, i64]:
     and where its blanks end.
 
     Args:
-        ink: the `ink_map` of the text.
+        ink: of the `Maps` of the text.
     """
     at: i64 = ink.find("x", start)
     while at >= 0:

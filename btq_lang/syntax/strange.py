@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.syntax.indentation import Indentation
-from btq_lang.syntax.scan import blanks_end, ink_map, line_end, line_opening, line_start
+from btq_lang.syntax.scan import Maps, blanks_end, line_end, line_opening, line_start
 from btq_lang.syntax.suggestions import ATTRIBUTES, INSTEAD, attributes_in_braces, no_token, value_meant
 from btq_lang.syntax.tokens import CLOSE, ERROR, NAME, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.util.text import Span
@@ -23,13 +23,13 @@ class StrangeCharacters(Indentation):
     """The tokens of a logical line so far, with the handling of invalid characters.
 
     Attributes:
-        ink: the map of the text that shows where blanks end (`ink_map`).
+        maps: of the text.
         kinds, starts, raws: the tokens; after the line is scanned, the last is always a NEWLINE.
     """
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, maps: Maps) -> None:
         super().__init__(text)
-        self.ink: Final = ink_map(text)
+        self.maps: Final = maps
         self.kinds: list[int] = []
         self.starts: list[int] = []
         self.raws: list[str] = []
@@ -125,7 +125,7 @@ class StrangeCharacters(Indentation):
         text = self.text
         at = line_end(text, start)
         while at < self.size:
-            first, at = line_opening(text, self.ink, at)
+            first, at = line_opening(text, self.maps.ink, at)
             if at - first <= len(self.blanks):
                 after = blanks_end(text, at + 1, self.size)
                 is_alone = after >= self.size or text[after] in "\r\n"

@@ -341,7 +341,7 @@ def _sharing(before: Parsed, now: Parsed, change: Span | None) -> Parsed:
     is_first_one = 0 <= at < len(new) - 1 and new[at] is not old[at] and (at == 0 or new[at - 1] is old[at - 1])
     if not is_first_one or new[at + 1].start != old[at + 1].start or new[at] != old[at]:
         return now  # and changed ones stay consecutive
-    return Parsed(now.text, (*new[:at], old[at], *new[at + 1 :]), now.starts)
+    return Parsed(now.text, now.maps, (*new[:at], old[at], *new[at + 1 :]), now.starts)
 
 
 def _start_of(entry: Entry) -> int:

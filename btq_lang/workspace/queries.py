@@ -14,6 +14,9 @@ their order: if none differs, it is kept; the first that differs makes it stale.
 equals the old one, that is kept and its dependents stay valid: the wave stops there.  (The "red-green" algorithm of
 salsa and rust-analyzer, with the cone of an edit marked from below.)
 
+*Hubs.*  If many answers depend on one that seldom changes, each of them would be suspect after most edits.  So a query
+declared a `hub` is settled before the next question, and its dependents become suspect only if it has changed.
+
 *Circles.*  A query that depends on itself gets the answer declared with `on_circle`, and so does every
 query on that circle, whichever was asked first.  An answer computed inside an open circle is part of it if it depends
 on one that is (Tarjan's strongly connected components).  Deep chains do not overflow Python's stack: at the depth
@@ -27,12 +30,14 @@ from typing import Any, Final, Generic, TypeVar
 
 State = TypeVar("State")
 T = TypeVar("T")
+Query = TypeVar("Query", bound=Callable[..., object])
 
 _CLEAN, _SUSPECT, _STALE = range(3)
 _FEW: Final = 2_000  # answers: sweeping fewer is not worth the time
 _DEEPEST: Final = 40  # nested queries; Python allows some twenty calls for each
 _NEAR: Final = 3  # levels of dependencies
 _ON_CIRCLE: dict[Callable[..., Any], object] = {}
+_HUBS: set[Callable[..., Any]] = set()
 
 
 def on_circle(answer: object) -> Callable[[Callable[..., T]], Callable[..., T]]:
@@ -43,6 +48,16 @@ def on_circle(answer: object) -> Callable[[Callable[..., T]], Callable[..., T]]:
         return query
 
     return declare
+
+
+def hub(query: Query) -> Query:
+    """Declare a query whose answer seldom changes, and on which many others depend.
+
+    It must not depend on another hub except directly: a query between them would keep its answer until that hub is
+    settled.
+    """
+    _HUBS.add(query)
+    return query
 
 
 class Cancelled(Exception):  # not an error: a newer request has come
@@ -98,6 +113,7 @@ class Store(Generic[State]):
         self._first = 0  # the last number before the current top-level query
         self._start = 0  # the index on the path where Python's calls begin
         self._circles: list[_Answer] = []  # answers in circles of which another part is open
+        self._hubs: list[_Answer] = []  # those that are not clean, and whose dependents are not suspect yet
 
     # ---- used by queries ----
 
@@ -107,6 +123,11 @@ class Store(Generic[State]):
         Raises:
             LookupError: the query depends on itself, and no answer is declared for that.
         """
+        if self._dependencies is None:
+            while self._hubs:
+                if self._hubs[-1].state != _CLEAN:
+                    self._settle(self._hubs[-1])
+                self._hubs.pop()
         name = (query, *key)
         answer = self._answers.get(name)
         if answer is None:
@@ -185,6 +206,7 @@ class Store(Generic[State]):
             else:  # else answers and their dependents would keep each other alive
                 answer.dependencies, answer.dependents = (), set()
         self._answers = kept_answers
+        self._hubs = [each for each in self._hubs if each in used]
         kept = {topic: [each for each in inputs if each in used] for topic, inputs in self._inputs.items()}
         self._inputs = {topic: inputs for topic, inputs in kept.items() if inputs}
         self._size = len(self._answers)
@@ -298,13 +320,13 @@ class Store(Generic[State]):
         waiting: list[_Answer] = []
         for dependent in answer.dependents:
             if dependent.state == _CLEAN:
-                waiting.append(dependent)
+                (self._hubs if dependent.key[0] in _HUBS else waiting).append(dependent)
             dependent.state = _STALE
         while waiting:
             for dependent in waiting.pop().dependents:
                 if dependent.state == _CLEAN:
                     dependent.state = _SUSPECT
-                    waiting.append(dependent)
+                    (self._hubs if dependent.key[0] in _HUBS else waiting).append(dependent)
 
 
 def _is_as_before(answer: _Answer, levels: int) -> bool:

@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from btq_lang.workspace.queries import Cancelled, Store, on_circle
+from btq_lang.workspace.queries import Cancelled, Store, hub, on_circle
 
 ON_CIRCLE = 7
 
@@ -115,6 +115,47 @@ def test_questions_that_depend_on_answers(seed: int) -> None:
             assert store.ask(total, node) == Store(graph).ask(total, node) == slowly(graph, node)
         graph, touched = edited(random, graph, circles=False)
         store.advance(graph, touched)
+
+
+@hub
+def most(store: Store[Graph]) -> int:
+    """Seldom changes."""
+    return max(store.ask(total, node) for node in range(len(store.state.adds)))
+
+
+def below_most(store: Store[Graph], node: int) -> int:
+    RUNS.append(node)
+    return store.ask(most) - store.ask(total, node)
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_what_depends_on_a_hub(seed: int) -> None:
+    random = Random(seed)
+    graph = drawn(random, random.choice((2, 8, 30)), circles=True, detours=False)
+    store = Store(graph)
+    for _ in range(20):
+        truth = afresh(graph)
+        for node in random.sample(range(len(truth)), random.randrange(1, len(truth) + 1)):
+            assert store.ask(below_most, node) == max(truth.values()) - truth[node]
+        if random.random() < 0.2:
+            store.pin(below_most, random.randrange(len(truth)))
+            store.sweep(always=True)
+        graph, touched = edited(random, graph, circles=True)
+        store.advance(graph, touched)
+
+
+def test_a_hub_that_stays_equal_leaves_its_dependents_valid() -> None:
+    edges: dict[int, tuple[int, ...]] = {0: (), 1: (), 2: ()}
+    store = Store(Graph({0: 1, 1: 3, 2: 0}, edges, {}))
+    assert [store.ask(below_most, node) for node in edges] == [2, 0, 3]
+    RUNS.clear()
+    store.advance(Graph({0: 2, 1: 3, 2: 0}, edges, {}), [0])
+    assert [store.ask(below_most, node) for node in edges] == [1, 0, 3]
+    assert RUNS == [0, 0]  # `total` for the hub, and `below_most`
+    store.advance(Graph({0: 2, 1: 4, 2: 0}, edges, {}), [1])
+    RUNS.clear()
+    assert [store.ask(below_most, node) for node in edges] == [2, 0, 4]
+    assert RUNS == [1, 0, 1, 2]
 
 
 @pytest.mark.parametrize("seed", range(100))
