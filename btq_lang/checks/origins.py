@@ -1,16 +1,17 @@
 """Diagnostics of files that are written in XML, shown on the XML.
 
-One invariant: results count from the start of the file on the disk, whatever its language, and no fix changes a file in
-another language.
+One invariant: results count from the start of the file on the disk, whatever its language, and a fix of a file in
+another language is offered only where exactly that edit can be made there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from btq_lang.diagnostics.model import Diagnostic, Place, Related
+from btq_lang.btcpp.exact_edits import declares_version_4, exact_edits
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 from btq_lang.util.record import replace
-from btq_lang.util.text import Span
+from btq_lang.util.text import Edit, Span
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -33,11 +34,28 @@ def shown_on_origins(workspace: Workspace, path: str, found: Iterable[Diagnostic
                 Related(Place(on_origin(near.place.span, near.place.path), near.place.path), near.message)
                 for near in related
             )
-        fixes = tuple(
-            fix for fix in each.fixes if not any((change.place.path or path) in foreign for change in fix.changes)
-        )
+        fixes = tuple(placed for fix in each.fixes if (placed := _placed(workspace, path, fix)) is not None)
         shown.append(replace(each, span=on_origin(each.span, path), related=related, fixes=fixes))
     return shown if origin is None else [*origin.diagnostics, *shown]
+
+
+def _placed(workspace: Workspace, path: str, fix: Fix) -> Fix | None:
+    """The fix with its changes of files in XML as changes of the XML; None if they cannot be made there.
+
+    Fixes are safe for version 4 of the engine, so not in XML that may be for version 3.
+    """
+    changes: list[Change] = []
+    is_safe = fix.safe
+    for change in fix.changes:
+        file = workspace.files[change.place.path or path]
+        if file.origin is None:
+            changes.append(change)
+        elif edits := exact_edits(file, Edit(change.place.span, change.text)):
+            changes += [Change(Place(edit.span, change.place.path), edit.text) for edit in edits]
+            is_safe = is_safe and declares_version_4(file.origin.text)
+        else:
+            return None
+    return Fix(fix.title, tuple(changes), is_safe)
 
 
 # What can only be wrong with the spelling of a .btq file.

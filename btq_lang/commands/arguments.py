@@ -89,7 +89,8 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
         commands,
         "check",
         "find mistakes in missions before the robot does",
-        epilog="exit codes: 0 clean, or only infos and hints; 1 errors or warnings; 2 usage or I/O\n\n"
+        epilog="exit codes: 0 clean, or only infos and hints; 1 errors or warnings, or (--diff) changes to make;\n"
+        "2 usage or I/O\n\n"
         "examples:\n  btq check                          the project in this folder\n"
         "  btq check --fix mission.btq        and apply the safe fixes\n"
         "  btq check --statistics             which rules have most findings\n",
@@ -109,6 +110,9 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
     )
     parser.add_argument("--severity", choices=SEVERITIES, help="report this severity and worse; default: hint")
     parser.add_argument("--fix", action="store_true", help="apply the safe fixes")
+    parser.add_argument(
+        "--diff", action="store_true", help="write nothing, show what --fix would change; exit 1 if there is anything"
+    )
     parser.add_argument("--watch", action="store_true", help="check again whenever a file changes")
     parser.add_argument("--jobs", type=int, metavar="N", help="number of processes; default: chosen by btq")
     _add_color(parser)

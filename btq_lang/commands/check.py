@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 from btq_lang.checks import check, check_each
 from btq_lang.checks.includes import is_reported_beside
-from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem, write_stdout
-from btq_lang.commands.reporting import FOR_PEOPLE, form_of, report_problem, write_report
+from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
+from btq_lang.commands.reporting import FOR_PEOPLE, form_of, is_coloured, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.render import Finding, Report, Trouble
 from btq_lang.util.record import replace
 from btq_lang.workspace.config import Project, unknown_rule
 from btq_lang.workspace.file import SUFFIXES
-from btq_lang.workspace.loader import LoadProblem, write_whole
+from btq_lang.workspace.loader import LoadProblem
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 _ORDER = tuple(Severity)
 _FAILS = (Severity.ERROR, Severity.WARNING)
-_ROUNDS = 10  # of fixing: a fix may enable another
 
 
 def run(options: CheckOptions) -> int:
@@ -58,12 +57,17 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     groups, problems = files.groups(options.paths, options.stdin_filename, with_xml=True, with_pools=True)
     groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
     mended = 0
+    if options.diff:
+        _tell(problems)
+        return _show_fixes(groups, options, bool(problems)), _watched(groups)
     if options.fix:
-        groups, mended, trouble = _fix(groups, options, files)
+        from btq_lang.commands.fixing import fix, write_fixes
+
+        after, mended = fix(groups, lambda diagnostic: _is_wanted(diagnostic, options))
+        groups, trouble = write_fixes(groups, after, files.stdin)
         problems += trouble
         mended = 0 if trouble else mended  # fixes that could not be written do not count
-    for problem in problems:
-        print(f"btq: {problem}", file=sys.stderr)
+    _tell(problems)
     checked = tuple(path for group in groups for path in group.given)
     is_checked = frozenset(checked)
     findings: list[Finding] = []
@@ -80,13 +84,33 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     is_written = write_report(report, options, mended)
     if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
         print(f"btq check: {empty}", file=sys.stderr)
-    watched = tuple(
+    if problems or empty or not is_written:
+        return 2, _watched(groups)
+    fails = any(finding.diagnostic.effective_severity in _FAILS for finding in findings)
+    return int(fails and not options.exit_zero), _watched(groups)
+
+
+def _tell(problems: Iterable[LoadProblem]) -> None:
+    for problem in problems:
+        print(f"btq: {problem}", file=sys.stderr)
+
+
+def _watched(groups: Iterable[Group]) -> tuple[str, ...]:
+    """The files that another run depends on."""
+    return tuple(
         path for group in groups for path in (*group.workspace.files, *group.absent, group.project_file) if path
     )
-    if problems or empty or not is_written:
-        return 2, watched
-    fails = any(finding.diagnostic.effective_severity in _FAILS for finding in findings)
-    return int(fails and not options.exit_zero), watched
+
+
+def _show_fixes(groups: tuple[Group, ...], options: CheckOptions, has_problems: bool) -> int:
+    """`--diff`: print what `--fix` would change; returns the exit code."""
+    from btq_lang.commands.fixing import fix, show_fixes
+
+    after, mended = fix(groups, lambda diagnostic: _is_wanted(diagnostic, options))
+    is_changed = show_fixes(groups, after, is_coloured(options, sys.stdout))
+    if mended:
+        print(f"Would fix {mended} problem{'s' if mended > 1 else ''}", file=sys.stderr)
+    return 2 if has_problems else int(is_changed and not options.exit_zero)
 
 
 def _trouble(problem: LoadProblem) -> Trouble:
@@ -112,44 +136,6 @@ def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...
         for path, found in zip(group.given, results, strict=True):
             progress.step()
             yield path, found
-
-
-def _fix(
-    groups: tuple[Group, ...], options: CheckOptions, files: Files
-) -> tuple[tuple[Group, ...], int, tuple[LoadProblem, ...]]:
-    """Apply the safe fixes to the requested files; returns the groups with the new texts, and how many fixes."""
-    from btq_lang.workspace.fixes import fixed
-
-    done: list[Group] = []
-    trouble: list[LoadProblem] = []
-    mended = 0
-    for group in groups:
-        workspace = group.workspace
-        writable = tuple(
-            path for path in group.given if path not in group.damaged and group.workspace.files[path].origin is None
-        )
-        for _ in range(_ROUNDS):
-            each = zip(writable, check_each(workspace, writable), strict=True)
-            found = {path: tuple(d for d in of_file if _is_wanted(d, options)) for path, of_file in each}
-            texts, count = fixed(workspace, found)
-            if not count:
-                break
-            mended += count
-            for path, text in texts.items():
-                workspace = workspace.with_file(path, text)
-        for path in writable:
-            text = workspace.files[path].text
-            if path == files.stdin:
-                write_stdout(text)
-            elif text != group.workspace.files[path].text:
-                try:
-                    write_whole(path, text)
-                except OSError as error:
-                    trouble.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
-                    unchanged = group.workspace.files[path]  # the file on the disk still has its findings
-                    workspace = Workspace({**workspace.files, path: unchanged}, workspace.project)
-        done.append(replace(group, workspace=workspace))
-    return tuple(done), mended, tuple(trouble)
 
 
 def _configured(workspace: Workspace, options: CheckOptions) -> Workspace:

@@ -24,6 +24,7 @@ class CheckOptions:
     ignore: Sequence[str] = []
     severity = "hint"
     fix = False
+    diff = False
     watch = False
     jobs = 0
     color = "auto"

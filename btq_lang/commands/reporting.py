@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Mapping
 from itertools import chain
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TextIO
 
 from btq_lang.commands.files import STDIN
 from btq_lang.commands.output import mission_problem, terminal_width, write_output
@@ -38,6 +38,9 @@ def form_of(options: CheckOptions, environment: Mapping[str, str]) -> str:
 
 def report_problem(options: CheckOptions) -> str | None:
     """The usage error in what is to be written, and where."""
+    if options.diff and (options.statistics or options.output_file):
+        other = "--statistics" if options.statistics else "--output-file"
+        return f"--diff shows changes instead of findings; leave out {other}"
     if options.statistics:
         from btq_lang.render.rule_counts import FORMATS
 
@@ -57,17 +60,20 @@ def write_report(report: Report, options: CheckOptions, mended: int) -> bool:
     form = form_of(options, os.environ)
     # With --fix, standard output has the new text of standard input, so the report goes to standard error.
     stream = sys.stderr if options.fix and STDIN in options.paths else sys.stdout
-    is_coloured = options.color == "always" or (
-        options.color == "auto" and not options.output_file and wants_colour(stream.isatty(), os.environ)
-    )
     width = terminal_width() if stream.isatty() and not options.output_file else 120
-    pieces = _pieces(_named(report, form), form, options.statistics, is_coloured, width)
+    pieces = _pieces(_named(report, form), form, options.statistics, is_coloured(options, stream), width)
     last = f"Fixed {mended} problem{'s' if mended > 1 else ''}\n" if mended and form in FOR_PEOPLE else ""
     if options.output_file:
         return write_output("check", options.output_file, "".join((*pieces, last))) == 0
     for piece in chain(pieces, (last,)):
         stream.write(piece)
     return True
+
+
+def is_coloured(options: CheckOptions, stream: TextIO) -> bool:
+    """Whether to use colours on a stream."""
+    wanted = not options.output_file and wants_colour(stream.isatty(), os.environ)
+    return options.color == "always" or (options.color == "auto" and wanted)
 
 
 def _pieces(report: Report, form: str, is_counted: bool, colour: bool, width: int) -> Iterator[str]:

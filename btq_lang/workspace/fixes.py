@@ -26,7 +26,7 @@ def fixed(workspace: Workspace, found: Mapping[str, Sequence[Diagnostic]]) -> tu
                 count += 1
                 for change in fix.changes:
                     edits[change.place.path or path].append(Edit(change.place.span, change.text))
-    texts = {path: apply_edits(workspace.files[path].text, made) for path, made in edits.items() if made}
+    texts = {path: apply_edits(workspace.files[path].source, made) for path, made in edits.items() if made}
     return texts, count
 
 

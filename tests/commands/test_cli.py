@@ -458,11 +458,11 @@ def test_what_fix_could_not_write_is_still_found(btq: Run, tmp_path: Path) -> No
     file.write_text("BehaviorTree Main\n    SequenceStar\n        Dock\n")
     before = btq("check", "--output-format", "concise", "main.btq").stdout
     code = (
-        "from btq_lang.commands import check\n"
+        "from btq_lang.commands import fixing\n"
         "from btq_lang.cli import main\n"
         "def refuse(path, text):\n"
         "    raise PermissionError(13, 'Permission denied', path)\n"
-        "check.write_whole = refuse\n"
+        "fixing.write_whole = refuse\n"
         "raise SystemExit(main(['check', '--fix', '--output-format', 'concise', 'main.btq']))\n"
     )
     done = subprocess.run(

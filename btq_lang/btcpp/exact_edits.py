@@ -1,0 +1,85 @@
+"""An edit of a text that was imported from XML, as the edit of the XML that has the same effect.
+
+One invariant: importing the edited XML gives the edited text.  So an edit is placed only where it replaces a word that
+both texts have letter by letter, by one that needs no other spelling in either.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.btcpp.marks import is_generated
+from btq_lang.btcpp.wording import kind, name, string, value
+from btq_lang.syntax.tokens import CATEGORIES
+from btq_lang.util.text import Edit, Span
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.file import File
+
+
+def exact_edits(file: File, edit: Edit) -> tuple[Edit, ...] | None:
+    """The edits of a file's XML for one of its text; None if there are none that do exactly that.
+
+    XML that a build wrote has none: its source is to be changed.
+    """
+    origin = file.origin
+    if origin is None or not origin.is_complete or is_generated(origin.text):
+        return None
+    xml = origin.text
+    for start, end, begin, stop in origin.places.pieces:
+        old = file.text[start:end]
+        if start <= edit.span.start < edit.span.end <= end and old == xml[begin:stop]:
+            new = file.text[start : edit.span.start] + edit.text + file.text[edit.span.end : end]
+            if not new or _SPECIAL.search(new):
+                return None
+            if xml[begin - 1] == "<":
+                ends = [Span(begin, stop), *_closing(xml, begin, old)] if _is_tag(old, new) else []
+                return tuple(Edit(span, new) for span in ends) or None
+            if xml[stop : stop + 1] not in _QUOTES and not _PLACED.isdisjoint((old, new)):
+                return None
+            is_quoted = file.text[start - 1 : start] == '"'
+            is_same = string(new) == f'"{new}"' if is_quoted else new in (name(new), value(new))
+            return (Edit(Span(begin, stop), new),) if is_same else None
+    return None
+
+
+def declares_version_4(xml: str) -> bool:
+    """Whether XML says that it is for version 4 of the engine."""
+    return _VERSION_4.search(xml) is not None
+
+
+def _is_tag(old: str, new: str) -> bool:
+    """Whether both tags are written as they are, and neither or both are a category in front of an ID."""
+    if old in CATEGORIES or new in CATEGORIES:
+        return old in CATEGORIES and new in CATEGORIES
+    return all(kind(tag, has_code=False, symbols=False) == tag for tag in (old, new))
+
+
+def _closing(xml: str, begin: int, tag: str) -> Iterator[Span]:
+    """The name in the end tag of the element whose name begins at an offset; nothing if it has none."""
+    depth = 0
+    for match in _TAG.finditer(xml, begin - 1):
+        if match["closing"]:
+            depth -= 1
+        elif match["name"] and not match["empty"]:
+            depth += 1
+        if depth == 0 and match["name"]:
+            if match["closing"] and match["name"] == tag:
+                yield Span(*match.span("name"))
+            return
+
+
+_VERSION_4: Final = re.compile(r"""\bBTCPP_format\s*=\s*["']\s*4\s*["']""")
+_QUOTES: Final = ('"', "'")
+# Attributes whose place in a line says what they are, or that say how others are read.
+_PLACED: Final = frozenset(
+    ("ID", "name", "type", "default", "path", "ros_pkg", "code", "BTCPP_format", "main_tree_to_execute")
+)
+_SPECIAL: Final = re.compile("[<>&\"'\\\\\r\n\t]")
+_TAG: Final = re.compile(
+    r"""<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>"""
+    r"""|<(?P<closing>/?)(?P<name>[^\s/>!?"']+)(?:[^>"'/]|/(?!>)|"[^"]*"|'[^']*')*(?P<empty>/?)>""",
+    re.DOTALL,
+)

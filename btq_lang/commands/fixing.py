@@ -1,0 +1,86 @@
+"""The safe fixes of `btq check --fix`, written to the files or shown as a diff."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.btcpp.opening import file_of
+from btq_lang.checks import check_each
+from btq_lang.commands.files import Group, write_stdout
+from btq_lang.util.record import replace
+from btq_lang.workspace.fixes import fixed
+from btq_lang.workspace.loader import LoadProblem, shown, write_whole
+from btq_lang.workspace.workspace import Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.diagnostics.model import Diagnostic
+
+_ROUNDS: Final = 10  # of fixing: a fix may enable another
+
+
+def fix(groups: Iterable[Group], is_wanted: Callable[[Diagnostic], bool]) -> tuple[tuple[Group, ...], int]:
+    """The groups with the safe fixes of the requested files applied, and how many these are; nothing is written."""
+    done: list[Group] = []
+    count = 0
+    for group in groups:
+        workspace = group.workspace
+        writable = tuple(path for path in group.given if path not in group.damaged)
+        for _ in range(_ROUNDS):
+            each = zip(writable, check_each(workspace, writable), strict=True)
+            texts, applied = fixed(workspace, {path: tuple(filter(is_wanted, found)) for path, found in each})
+            if not applied:
+                break
+            count += applied
+            for path, text in texts.items():
+                workspace = _with_source(workspace, path, text)
+        done.append(replace(group, workspace=workspace))
+    return tuple(done), count
+
+
+def write_fixes(
+    before: Iterable[Group], after: Iterable[Group], stdin: str | None
+) -> tuple[tuple[Group, ...], tuple[LoadProblem, ...]]:
+    """Write what differs, and the new text of standard input to standard output; returns the groups as they are then.
+
+    Args:
+        stdin: the path assigned to standard input.
+    """
+    done: list[Group] = []
+    trouble: list[LoadProblem] = []
+    for old, new in zip(before, after, strict=True):
+        files = {**new.workspace.files}
+        for path in new.given:
+            text = files[path].source
+            if path == stdin and path not in new.damaged:
+                write_stdout(text)
+            elif text != old.workspace.files[path].source:
+                try:
+                    write_whole(path, text)
+                except OSError as error:
+                    trouble.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
+                    files[path] = old.workspace.files[path]  # the file on the disk still has its findings
+        done.append(replace(new, workspace=Workspace(files, new.workspace.project)) if trouble else new)
+    return tuple(done), tuple(trouble)
+
+
+def show_fixes(before: Iterable[Group], after: Iterable[Group], is_coloured: bool) -> bool:
+    """Print what would be written as a unified diff; returns whether there is anything."""
+    from btq_lang.commands.text_diff import text_diff
+
+    is_changed = False
+    for old, new in zip(before, after, strict=True):
+        for path in new.given:
+            texts = old.workspace.files[path].source, new.workspace.files[path].source
+            for line in text_diff(shown(path), *texts, is_coloured=is_coloured):
+                sys.stdout.write(line)
+                is_changed = True
+    return is_changed
+
+
+def _with_source(workspace: Workspace, path: str, text: str) -> Workspace:
+    """The workspace after a change of a file on the disk, whatever its language."""
+    if workspace.files[path].origin is None:
+        return workspace.with_file(path, text)
+    return Workspace({**workspace.files, path: file_of(path, text)}, workspace.project)
