@@ -280,7 +280,7 @@ def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -
         from btq_lang.checks.origins import shown_on_origins  # few workspaces have any
 
         diagnostics = shown_on_origins(workspace, path, diagnostics)
-    return Findings.placed(configured(workspace.project, diagnostics))
+    return Findings.placed(configured(workspace.project, path, diagnostics))
 
 
 def keep(workspace: Workspace, path: str) -> None:
@@ -321,7 +321,7 @@ def _reported(store: Store[Workspace], viewpoint: str, facts: Facts, is_alone: b
         found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
     elif not found:
         return None
-    wanted = tuple(configured(view.project, found))
+    wanted = tuple(configured(view.project, viewpoint, found))
     return Reported(wanted, (viewpoint, facts.item)) if wanted else None
 
 

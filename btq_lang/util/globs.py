@@ -8,7 +8,7 @@ pattern: there are no character classes and no `!`, so no pattern is malformed.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 _PARTS = r"/\*\*/|^\*\*/|/\*\*$|\*\*|\*|\?|[^*?/]+|/"  # compiled on use: most projects exclude nothing
 _MEANINGS = {"/**/": "/(?:.*/)?", "**/": "(?:.*/)?", "/**": "/.+", "**": ".*", "*": "[^/]*", "?": "[^/]"}
@@ -21,6 +21,23 @@ def glob_matcher(patterns: Iterable[str]) -> re.Pattern[str] | None:
     """
     expressions = [_expression(pattern) for pattern in patterns if pattern.strip("/")]
     return re.compile("|".join(expressions), re.DOTALL) if expressions else None
+
+
+def path_matcher(patterns: Iterable[str], root: str) -> Callable[[str], bool]:
+    """A function that tells whether a pattern matches a path below a folder, or a folder that it is in; a folder's path
+    ends with `/`.
+    """
+    matcher = glob_matcher(patterns)
+    above_all = root.rstrip("/") + "/"
+
+    def matches(path: str) -> bool:
+        if matcher is None:
+            return False
+        names = path.removeprefix(above_all).split("/")
+        above = ("/".join(names[:number]) + "/" for number in range(1, len(names)))
+        return any(map(matcher.fullmatch, (*above, "/".join(names))))
+
+    return matches
 
 
 def _expression(pattern: str) -> str:

@@ -18,10 +18,17 @@ _NAME = re.compile(r"""[\w\-]+|"[^"]*"|'[^']*'""")
 
 
 def find_key(text: str, keys: tuple[str, ...], value: str | None = None) -> Position | None:
-    """The position of a key, given from the outermost table's name on, or of a string in its value."""
+    """The position of a key, given from the outermost table's name on, or of a string in its value.
+
+    Args:
+        keys: `[0]` after the name of a list of tables is the first of them.
+    """
     text = _LONG_STRING.sub(lambda string: re.sub(r"[^\n]", " ", string[0]), text)
     found, known, end = -1, 0, len(text)
+    is_numbered = any(key.startswith("[") for key in keys)
     for path, start, stop in _key_lines(text):
+        if not is_numbered:
+            path = tuple(key for key in path if not key.startswith("["))
         shared = min(len(path), len(keys))
         if path[:shared] == keys[:shared] and shared > known:
             found, known, end = start, shared, stop
@@ -41,11 +48,19 @@ def word_end(text: str, start: int) -> int:
 
 
 def _key_lines(text: str) -> Iterator[tuple[tuple[str, ...], int, int]]:
-    """The full name in each line that has one, where it begins, and where the next such line begins."""
+    """The full name in each line that has one, with the number of the table in a list, where it begins, and where the
+    next such line begins.
+    """
     lines = list(_KEY_LINE.finditer(text))
     table: tuple[str, ...] = ()
+    numbers: dict[tuple[str, ...], int] = {}
     for line, following in zip(lines, [*lines[1:], None], strict=True):
         names = tuple(name.strip("\"'") for name in _NAME.findall(line[1] or line[2]))
+        if line[0].lstrip().startswith("[["):
+            numbers[names] = numbers.get(names, -1) + 1
+        within = next((size for size in range(1, len(names) + 1) if names[:size] in numbers), 0) if line[1] else 0
+        if within:
+            names = (*names[:within], f"[{numbers[names[:within]]}]", *names[within:])
         path = names if line[1] else table + names
         table = names if line[1] else table
         yield path, line.start(1 if line[1] else 2), following.start() if following else len(text)

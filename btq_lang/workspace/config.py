@@ -10,6 +10,10 @@
     [rules]
     missing-port = "warning"          # error, warning, info, hint, off
 
+    [[overrides]]                     # other severities in some files: see overrides.py
+    include = ["vendor/"]
+    ignore = ["unknown-node"]
+
     [evidence]                        # logs of what robots did: see project_evidence.py
 
 One invariant: every text gives a project and never an exception; what is wrong in it is left out and reported.  Not
@@ -28,6 +32,8 @@ from btq_lang.diagnostics.rules import RULES, UNREADABLE, Severity
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import LineIndex, Position
+from btq_lang.workspace.overrides import KEYS as OVERRIDE_KEYS
+from btq_lang.workspace.overrides import Override, severities_at
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Diagnostic
@@ -50,6 +56,7 @@ class Project(Record):
         select: the only rules to apply; empty for all.
         ignore: rules not to apply.
         exclude: patterns of paths that the check of a folder leaves out.
+        overrides: of severities in some files; of several that name a rule the last one counts.
         folders: working folders: an editor's, or the current one.
         pools: folders in which an XML file finds the trees and models that it lacks; the loader finds them.
         evidence: its table about logs, if it has one.
@@ -64,6 +71,7 @@ class Project(Record):
     select: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
     exclude: tuple[str, ...] = ()
+    overrides: tuple[Override, ...] = ()
     folders: tuple[str, ...] = ()
     pools: tuple[str, ...] = ()
     evidence: Evidence | None = None
@@ -140,9 +148,9 @@ def has_btq_table(text: str) -> bool:
     return _BTQ_TABLE.search(text) is not None
 
 
-def configured(project: Project, diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """The diagnostics that a project wants, with the severities it gives them."""
-    severities = dict(project.severities)
+def configured(project: Project, path: str, diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """The diagnostics of a file that a project wants, with the severities it gives them."""
+    severities = severities_at(project.root, project.severities, project.overrides, path)
     for diagnostic in diagnostics:
         rule = diagnostic.rule
         if rule in UNREADABLE:
@@ -242,6 +250,36 @@ def _severities(key: str, value: object) -> _Read:
     return tuple(severities), complaints
 
 
+def _overrides(key: str, value: object) -> _Read:
+    if not isinstance(value, list) or not all(isinstance(table, dict) for table in value):
+        return None, [_Complaint(f"`{key}` must be a list of tables")]
+    overrides: list[Override] = []
+    complaints: list[_Complaint] = []
+    for number, table in enumerate(value):
+        override, found = _override(key, table)
+        overrides += [override] if override is not None else []
+        complaints += [_Complaint(each.message, (f"[{number}]", *each.below), each.value) for each in found]
+    return tuple(overrides), complaints
+
+
+def _override(key: str, table: dict[str, object]) -> tuple[Override | None, list[_Complaint]]:
+    include, complaints = _strings(f"{key}.include", table.get("include", []))
+    if not complaints and ("" in include or not include):
+        missing = "must have at least one pattern, none of them empty"
+        include, complaints = None, [_Complaint(f"`{key}.include` {missing}")]
+    complaints = [_Complaint(each.message, ("include",)) for each in complaints]
+    ignored, found = _rule_names(f"{key}.ignore", table.get("ignore", []))
+    complaints += [_Complaint(each.message, ("ignore", *each.below), each.value) for each in found]
+    severities, found = _severities(f"{key}.rules", table.get("rules", {}))
+    complaints += [_Complaint(each.message, ("rules", *each.below), each.value) for each in found]
+    for name in table:
+        if name not in OVERRIDE_KEYS:
+            complaints.append(_Complaint(f"unknown key `{key}.{name}`{_meant(name, OVERRIDE_KEYS)}", (name,)))
+    if include is None:
+        return None, complaints
+    return Override(include, (*((rule, None) for rule in ignored or ()), *(severities or ()))), complaints
+
+
 def _evidence(key: str, value: object) -> _Read:
     from btq_lang.workspace.project_evidence import read_evidence  # few projects have logs
 
@@ -265,6 +303,7 @@ KEYS = {
     "select": ("select", _rule_names, "rules", "only these rules"),
     "ignore": ("ignore", _rule_names, "rules", "all rules except these"),
     "rules": ("severities", _severities, "severities", "the severities of rules"),
+    "overrides": ("overrides", _overrides, "overrides", "severities of rules in some files"),
     "evidence": ("evidence", _evidence, "evidence", "logs of what robots did, which btq verify reads"),
 }
 

@@ -334,19 +334,9 @@ def excluder(project: Project) -> Callable[[str], bool]:
     `/`."""
     if not project.exclude:
         return lambda path: False
-    from btq_lang.util.globs import glob_matcher  # few projects exclude anything
+    from btq_lang.util.globs import path_matcher  # few projects exclude anything
 
-    matcher = glob_matcher(project.exclude)
-    root = absolute(project.root).rstrip("/") + "/"
-
-    def excluded(path: str) -> bool:
-        if matcher is None:
-            return False
-        names = path.removeprefix(root).split("/")
-        above = ("/".join(names[:number]) + "/" for number in range(1, len(names)))
-        return any(map(matcher.fullmatch, (*above, "/".join(names))))
-
-    return excluded
+    return path_matcher(project.exclude, absolute(project.root))
 
 
 def _is_folder(entry: os.DirEntry[str]) -> bool:

@@ -12,6 +12,7 @@ from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.versions import targets
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.workspace.config import KEYS, SEVERITIES
+from btq_lang.workspace.overrides import KEYS as OVERRIDE_KEYS
 from btq_lang.workspace.project_evidence import KEYS as EVIDENCE_KEYS
 from btq_lang.workspace.project_evidence import NUMBERS, OF_A_FILE, OF_A_TOPIC, SOURCE_KEYS, TEXTS
 
@@ -36,12 +37,18 @@ def project_schema() -> Json:
             "severities": _table(
                 {name: {"description": rule.summary, "allOf": [_form("severity")]} for name, rule in RULES.items()}
             ),
+            "overrides": _list({**_override(), "required": ["include"]}),
             "text": {"type": "string", "minLength": 1},
             "number": {"type": "number"},
             "evidence": _evidence(),
             "signal": _signal(),
         },
     }
+
+
+def _override() -> Json:
+    forms = {"include": _list(_form("text"), minItems=1), "ignore": _form("rules"), "rules": _form("severities")}
+    return _table({key: {"description": doc, "allOf": [forms[key]]} for key, doc in OVERRIDE_KEYS.items()})
 
 
 def _evidence() -> Json:

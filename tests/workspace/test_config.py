@@ -19,6 +19,7 @@ from btq_lang.workspace.config import (
     parse_project,
     unknown_rule,
 )
+from btq_lang.workspace.overrides import Override, severities_at
 
 WHOLE = """\
 engine = "4.8"
@@ -31,6 +32,17 @@ ignore = ["unused-tree"]
 [rules]
 missing-port = "warning"
 unknown-node = "off"
+
+[[overrides]]
+include = ["vendor/"]
+ignore = ["unknown-node"]
+
+[[overrides]]
+include = ["vendor/ours/", "*.new.btq"]
+
+[overrides.rules]
+unknown-node = "error"
+unused-tree = "off"
 """
 PROJECT = Project(
     root="/home/lab",
@@ -41,6 +53,10 @@ PROJECT = Project(
     select=("unknown-node", "unused-tree"),
     ignore=("unused-tree",),
     exclude=("generated/", "*.old.btq"),
+    overrides=(
+        Override(("vendor/",), (("unknown-node", None),)),
+        Override(("vendor/ours/", "*.new.btq"), (("unknown-node", Severity.ERROR), ("unused-tree", None))),
+    ),
 )
 
 
@@ -58,6 +74,7 @@ def problems(text: str, kind: str = "btq.toml") -> list[str]:
 def test_every_key() -> None:
     assert parse_project(WHOLE, root="/home/lab") == (PROJECT, ())
     in_pyproject = "[tool.btq]\n" + WHOLE.replace("[rules]", "[tool.btq.rules]")
+    in_pyproject = in_pyproject.replace("[overrides", "[tool.btq.overrides")
     assert parse_project(in_pyproject, "pyproject.toml", "/home/lab") == (PROJECT, ())
 
 
@@ -116,6 +133,28 @@ def test_engines_are_sorted_as_versions(engine: str, engines: tuple[str, ...]) -
             "[rules]\nunused-tree = []",
             ['2:1: `rules.unused-tree` must be one of "error", "warning", "info", "hint", "off"'],
         ),
+        ("overrides = 1", ["1:1: `overrides` must be a list of tables"]),
+        ("[overrides]\ninclude = []", ["1:2: `overrides` must be a list of tables"]),
+        (
+            '[[overrides]]\ninclude = ["a"]\n[[overrides]]\nignore = ["zebra"]',
+            [
+                "3:3: `overrides.include` must have at least one pattern, none of them empty",
+                "4:11: unknown rule `zebra`",
+            ],
+        ),
+        (
+            '[[overrides]]\ninclude = ["a", ""]',
+            ["2:1: `overrides.include` must have at least one pattern, none of them empty"],
+        ),
+        ("[[overrides]]\ninclude = 'a'", ["2:1: `overrides.include` must be a list of strings"]),
+        (
+            '[[overrides]]\ninclude = ["a"]\n[[overrides]]\ninclude = ["b"]\n[overrides.rules]\nunused-tree = "x"',
+            ['6:1: `overrides.rules.unused-tree` must be one of "error", "warning", "info", "hint", "off"'],
+        ),
+        (
+            'overrides = [{include = ["a"], ignor = []}]',
+            ["1:32: unknown key `overrides.ignor`; did you mean `ignore`?"],
+        ),
         ('exclude = ["""\nengin = 1\n"""]\nengin = 2', ["4:1: unknown key `engin`; did you mean `engine`?"]),
         ("x = 1\ny = 2", ["1:1: unknown key `x`", "2:1: unknown key `y`"]),
         ("engine = \n", ["1:10: Invalid value"]),
@@ -159,9 +198,10 @@ def test_severities_and_choice_of_rules() -> None:
     found = [Diagnostic(rule, Span(0, 0), "m") for rule in ("unused-tree", "unknown-node", "missing-port")]
 
     def kept(project: Project) -> list[tuple[str, Severity]]:
-        return [(one.rule, one.effective_severity) for one in configured(project, found)]
+        return [(one.rule, one.effective_severity) for one in configured(project, path, found)]
 
-    assert list(configured(Project(), found)) == found
+    path = "main.btq"
+    assert list(configured(Project(), path, found)) == found
     assert kept(Project(severities=(("unused-tree", Severity.ERROR), ("unknown-node", None)))) == [
         ("unused-tree", Severity.ERROR),
         ("missing-port", Severity.ERROR),
@@ -169,6 +209,20 @@ def test_severities_and_choice_of_rules() -> None:
     assert kept(Project(select=("unused-tree", "missing-port"), ignore=("missing-port",))) == [
         ("unused-tree", Severity.WARNING)
     ]
+
+
+@pytest.mark.parametrize(
+    ("path", "expected"),
+    [
+        ("main.btq", {"missing-port": Severity.WARNING, "unknown-node": None}),
+        ("vendor/a/b.btq", {"missing-port": Severity.WARNING, "unknown-node": None}),
+        ("vendor/ours/a.btq", {"missing-port": Severity.WARNING, "unknown-node": Severity.ERROR, "unused-tree": None}),
+        ("a.new.btq", {"missing-port": Severity.WARNING, "unknown-node": Severity.ERROR, "unused-tree": None}),
+    ],
+)
+def test_the_last_override_counts(path: str, expected: dict[str, Severity | None]) -> None:
+    file = f"/home/lab/{path}"
+    assert severities_at(PROJECT.root, PROJECT.severities, PROJECT.overrides, file) == expected
 
 
 def test_unknown_rules_of_the_command_line() -> None:
@@ -200,7 +254,7 @@ def test_include_candidates() -> None:
 
 
 KEYS = st.sampled_from(
-    ["engine", "qualities", "include-paths", "exclude", "select", "ignore", "rules", "tool.btq", "x"]
+    ["engine", "qualities", "include-paths", "exclude", "select", "ignore", "rules", "overrides", "tool.btq", "x"]
 )
 VALUES = st.recursive(
     st.sampled_from(["1", "4.10", '"4.10"', '"off"', "true", "1979-05-27", *(f'"{rule}"' for rule in list(RULES)[:3])]),

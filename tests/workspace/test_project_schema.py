@@ -17,6 +17,7 @@ from json_schema import violations
 
 from btq_lang.commands.init import FILES
 from btq_lang.workspace.config import KEYS, parse_project
+from btq_lang.workspace.overrides import KEYS as OVERRIDE_KEYS
 from btq_lang.workspace.project_evidence import KEYS as EVIDENCE_KEYS
 from btq_lang.workspace.project_evidence import SOURCE_KEYS
 from btq_lang.workspace.project_schema import project_schema
@@ -75,6 +76,7 @@ def references(schema: object) -> Iterator[str]:
 def test_it_has_every_key_of_the_reader_with_a_line() -> None:
     definitions = SCHEMA["definitions"]
     tables = ((SCHEMA, KEYS), (definitions["evidence"], EVIDENCE_KEYS), (definitions["signal"], SOURCE_KEYS))
+    tables += ((definitions["overrides"]["items"], OVERRIDE_KEYS),)
     for table, keys in tables:
         assert [*table["properties"]] == [*keys]
         assert all(key["description"] for key in table["properties"].values())

@@ -1,0 +1,63 @@
+"""`[[overrides]]` of the project file: rules for some of its files, such as those of a vendor.
+
+    [[overrides]]
+    include = ["vendor/", "**/*.old.btq"]   # patterns of paths: see globs.py
+    ignore = ["unknown-node"]               # off in these files
+
+    [overrides.rules]
+    missing-port = "hint"                   # and these with another severity
+
+One invariant: for each rule the last override that names it counts, before `[rules]` of the project.  What the project
+or the command line leaves out with `select` and `ignore` stays out everywhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from typing import TYPE_CHECKING, TypeAlias
+
+from btq_lang.util.record import Record
+
+if TYPE_CHECKING:
+    from btq_lang.diagnostics.rules import Severity
+
+    Severities: TypeAlias = tuple[tuple[str, Severity | None], ...]
+
+# The keys of an override, and a line for editors.
+KEYS = {
+    "include": "patterns of the paths of the files it is for",
+    "ignore": "rules that are off in these files",
+    "rules": "the severities of rules in these files",
+}
+
+
+class Override(Record):
+    """The severities of rules in files whose paths match a pattern; None is off."""
+
+    include: tuple[str, ...]
+    severities: Severities
+
+
+@lru_cache(64)  # each item of a file asks
+def severities_at(
+    root: str, severities: Severities, overrides: tuple[Override, ...], path: str
+) -> Mapping[str, Severity | None]:
+    """The severities of rules in a file.
+
+    Args:
+        root: the folder of the project, which patterns are relative to.
+        severities: those of the project.
+    """
+    found = dict(severities)
+    for override in overrides:
+        if _matcher(override.include, root)(path):
+            found.update(override.severities)
+    return found
+
+
+@lru_cache(64)
+def _matcher(patterns: tuple[str, ...], root: str) -> Callable[[str], bool]:
+    from btq_lang.util.globs import path_matcher  # few projects have overrides
+
+    return path_matcher(patterns, root)
