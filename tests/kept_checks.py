@@ -17,7 +17,9 @@ class Kept:
     def check(self, workspace: Workspace, path: str) -> Findings:
         """What is found in a file of the workspace after some edits."""
         before = self.workspace
-        self.workspace = Workspace(workspace.files, workspace.project)  # with a store that nobody else asks
+        self.workspace = Workspace(
+            workspace.files, workspace.project, workspace.factory
+        )  # with a store that nobody else asks
         if before is not None:
             advance(before, self.workspace)
         keep(self.workspace, path)

@@ -189,7 +189,8 @@ def _root_attributes(source: Source, head: Entry | None) -> list[Attribute]:
             source.repair(head, root, 'BTCPP_format="4" is added to the root')
         attributes.insert(0, _FORMAT)
     main = source.workspace.main_tree(source.path)
-    if "main_tree_to_execute" not in given and main is not None:
+    is_here = main is not None and main.path in source.workspace.closure(source.path)  # else in another of the factory
+    if "main_tree_to_execute" not in given and main is not None and is_here:
         attributes.append(Attribute("main_tree_to_execute", escape(source.tree_id(main.symbol.name))))
     return attributes
 

@@ -158,7 +158,8 @@ def _side_text(
     parts: tuple[Export, ...] = (exports[path].export,)
     if not bundled:  # the XML that it includes is imported
         parts = tuple(
-            exports[each].export if each in exports else export(workspace, each) for each in workspace.closure(path)
+            exports[each].export if each in exports else export(workspace, each)
+            for each in workspace.registered_with(path)
         )
     elements = {key: element for part in parts for key, element in part.elements.items()}
     documents = tuple(part.document for part in parts)

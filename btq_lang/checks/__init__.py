@@ -109,6 +109,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         trees.recursive_tree,
         trees.unused_tree,
         trees.unknown_main_tree,
+        trees.nothing_to_load,
         trees.tree_root_count,
         trees.nested_too_deep,
         trees.tree_named_like_node,

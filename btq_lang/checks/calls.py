@@ -58,11 +58,13 @@ def _circles(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ..
 @hub
 def _missed(store: Store[Workspace], viewpoint: str) -> Set[str]:
     view = View(store, viewpoint)
-    main = view.main_tree
-    if main is None or view.ask(has_gaps) or not view.is_read:
+    mains = view.look_up(lookups.main_trees)
+    if not mains or view.ask(has_gaps) or not view.is_read:
         return frozenset()
     known = view.ask(calls)
-    return known.names - known.reached_from(main)
+    if not known.names & set(mains):
+        return frozenset()  # which is reported
+    return known.names - frozenset().union(*map(known.reached_from, mains))
 
 
 class Calls:

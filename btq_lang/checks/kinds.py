@@ -13,7 +13,7 @@ from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.checks import lookups
-from btq_lang.checks.view import View, misspelt_clause
+from btq_lang.checks.view import COUNTS, View, misspelt_clause
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
@@ -187,17 +187,16 @@ def duplicate_definition(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for first, second in view.clashes(*_DEFINED_ONCE):
         if not _is_same_model(first.symbol, second.symbol):
             both = (
-                Related(first.place, "first definition, which takes effect"),
+                Related(first.place, COUNTS),
                 Related(second.place, "second definition"),
             )
             yield _second(second.symbol, include_place(entry), both, "this file includes a second definition of")
     for symbol in view.facts.summary.symbols:
         if symbol.kind not in _DEFINED_ONCE or not view.is_repeated(symbol.kind, symbol.name):
             continue
-        counts = view.declaration(symbol.kind, symbol.name)
-        if counts is not None and counts.symbol is not symbol and not _is_same_model(counts.symbol, symbol):
-            one = (Related(counts.place, "first definition, which takes effect"),)
-            yield _second(symbol, symbol.span, one, "duplicate definition of")
+        other, which = view.another(symbol)
+        if other is not None and not _is_same_model(other.symbol, symbol):
+            yield _second(symbol, symbol.span, (Related(other.place, which),), "duplicate definition of")
 
 
 def declared_category(seen: ResolvedNode) -> str | None:

@@ -105,6 +105,15 @@ def is_torn(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool
 
 
 @of_name
+def another_declaration(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Declaration | None:
+    """Where the first file of a factory after the one at the viewpoint, whose definition of a name counts, defines it
+    again."""
+    found = workspace.scope(viewpoint).all(kind, name) if workspace.factory is not None else ()
+    other = next((each for each in found if each.path != viewpoint), None)
+    return _declaration(workspace, other) if other is not None and found[0].path == viewpoint else None
+
+
+@of_name
 def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether a name has several definitions."""
     return len(workspace.scope(viewpoint).all(kind, name)) > 1
@@ -116,7 +125,8 @@ def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 @of_viewpoint
 def has_palette(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the models in scope are meant to be complete."""
-    for each in workspace.scope(viewpoint).paths:
+    scope = workspace.scope(viewpoint)
+    for each in (*scope.paths, *scope.node_paths):
         for entry in workspace.files[each].parsed.entries:
             if isinstance(entry.item, Models) and any(_is_of_node(model) for model in entry.item.models):
                 return True
@@ -128,7 +138,9 @@ def has_palette(workspace: Workspace, viewpoint: str) -> bool:
 @of_viewpoint
 def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declaration, Declaration], ...]:
     """The names that an included file and one included before it both define: the include, the definition that counts
-    and the other one.  The two files cannot see each other, so no check of theirs reports it."""
+    and the other one.  The two files cannot see each other, so no check of theirs reports it, except in a factory."""
+    if workspace.factory is not None:
+        return ()
     file = workspace.files[viewpoint]
     found: list[tuple[Facts, Declaration, Declaration]] = []
     before: set[str] = set()
@@ -195,7 +207,9 @@ def trees(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
 @of_viewpoint
 def is_tree_of_mission(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a file that is linked with this one by includes, in either direction, has a tree of the name."""
-    return any((Kind.TREE, name) in workspace.files[each].defined_names for each in workspace.linked(viewpoint))
+    return workspace.factory is None and any(
+        (Kind.TREE, name) in workspace.files[each].defined_names for each in workspace.linked(viewpoint)
+    )
 
 
 @of_viewpoint
@@ -284,6 +298,38 @@ def main_tree(workspace: Workspace, viewpoint: str) -> tuple[str, bool] | None:
         return None
     name = Kind.TREE, main.symbol.name
     return main.symbol.name, main.path == viewpoint and len(workspace.files[viewpoint].names.found[name]) == 1
+
+
+@of_viewpoint
+def main_trees(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
+    """The names of all trees that a program may create of what it registers; empty if unknown."""
+    if workspace.factory is not None:
+        return workspace.factory.main
+    main = workspace.main_tree(viewpoint)
+    return (main.symbol.name,) if main is not None else ()
+
+
+@of_viewpoint
+def factory(workspace: Workspace, viewpoint: str) -> tuple[str, bool] | None:
+    """The name of the factory, and whether this file is the first one in it that has trees."""
+    if workspace.factory is None:
+        return None
+    paths = workspace.scope(viewpoint).paths
+    return workspace.factory.name, viewpoint == next(
+        (path for path in paths if workspace.files[path].of_type(Tree)), ""
+    )
+
+
+@of_viewpoint
+def is_registered_with_others(workspace: Workspace, viewpoint: str) -> bool:
+    """Whether other files are registered together with this one."""
+    return workspace.factory is not None and len(workspace.scope(viewpoint).paths) > 1
+
+
+@of_viewpoint
+def lost_patterns(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
+    """The patterns of the factory that match no file."""
+    return workspace.factory.lost if workspace.factory is not None else ()
 
 
 @of_viewpoint

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place, written
+from btq_lang.checks.view import COUNTS, View
 from btq_lang.diagnostics.model import Diagnostic, Related, Tag, replace_fix
 from btq_lang.syntax.tree import Claim, Entry, OnViolation, Requirement
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.workspace.symbols import Symbol, same_requirement
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
 
 
 def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -43,19 +40,19 @@ def conflicting_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """One ID with two texts; one ID with one text is one requirement in several places."""
     for first, second in view.clashes(Kind.REQUIREMENT):
         if _differ(second.symbol, first.symbol):
-            related = (Related(first.place, _COUNTS), Related(second.place, "other definition"))
+            related = (Related(first.place, COUNTS), Related(second.place, "other definition"))
             message = f"this file includes a second requirement `{second.symbol.name}` with different content"
             yield Diagnostic("conflicting-requirement", include_place(entry), message, related=related)
     for symbol in view.facts.summary.symbols:
         if symbol.kind is not Kind.REQUIREMENT or not view.is_repeated(symbol.kind, symbol.name):
             continue
-        counts = view.declaration(symbol.kind, symbol.name)
-        if counts is not None and counts.symbol is not symbol and _differ(symbol, counts.symbol):
+        other, which = view.another(symbol)
+        if other is not None and _differ(symbol, other.symbol):
             yield Diagnostic(
                 "conflicting-requirement",
                 symbol.span,
                 f"conflicting definitions of the requirement `{symbol.name}`",
-                related=(Related(counts.place, _COUNTS),),
+                related=(Related(other.place, which),),
                 notes=(_other_way(entry, symbol),),
             )
 
@@ -67,7 +64,7 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
     if any(isinstance(clause, Claim) and clause.subject is not None for clause in requirement.clauses):
         return
-    if not view.has_trees or view.is_included:
+    if not view.has_trees or view.is_used_elsewhere:
         return  # a file of requirements, or a library: its users may be anywhere
     if not view.defines_here(Kind.REQUIREMENT, requirement.name.text):
         return
@@ -100,9 +97,6 @@ def requirement_without_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
             message += f" that can be violated, so `on violation {action}` has no effect"
         note = "add a clause such as `takes at most 30 s`" + ("" if action else ", or a title in quotes")
         yield Diagnostic("requirement-without-text", symbol.span, message, notes=(note,))
-
-
-_COUNTS = "first definition, which takes effect"
 
 
 def _other_way(entry: Entry, symbol: Symbol) -> str:

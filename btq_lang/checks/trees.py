@@ -91,13 +91,13 @@ def duplicate_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if not view.is_repeated(Kind.TREE, name.text):
         return
     if not view.defines_here(Kind.TREE, name.text):
-        yield Diagnostic(
-            "duplicate-tree",
-            name.span,
-            f"duplicate tree `{name.text}`",
-            related=view.declared_at(Kind.TREE, name.text, "first one"),
-            notes=(_LAST_WINS,),
-        )
+        related = view.declared_at(Kind.TREE, name.text, "first one")
+    elif (other := view.look_up(lookups.another_declaration, Kind.TREE, name.text)) is not None:
+        related = (Related(other.place, "second one"),)  # the program registers both files
+    else:
+        return
+    message = f"duplicate tree `{name.text}`"
+    yield Diagnostic("duplicate-tree", name.span, message, related=related, notes=(_LAST_WINS,))
 
 
 def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -122,27 +122,34 @@ def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A tree to which nothing refers, or only such trees, in a file with a mission."""
-    if not isinstance(entry.item, Tree) or entry.item.name is None or view.is_included:
+    if not isinstance(entry.item, Tree) or entry.item.name is None or (view.is_included and view.factory is None):
         return
     name = entry.item.name
     if not view.ask(calls.is_missed, name.text):
         return
-    main = view.main_tree
+    mains = view.look_up(lookups.main_trees)
+    main = f"main tree{'s are' if len(mains) > 1 else ' is'} {', '.join(f'`{each}`' for each in mains)}"
     if not view.defines_here(Kind.TREE, name.text):
         return  # another tree of that name counts, which is reported
     users = view.ask(calls.callers, name.text)
     if not users:
-        message = f"unused tree `{name.text}`: nothing refers to it, and the main tree is `{main}`"
+        message = f"unused tree `{name.text}`: nothing refers to it, and the {main}"
         yield Diagnostic("unused-tree", name.span, message, tags=(Tag.UNNECESSARY,))
         return
     related = view.declared_at(Kind.TREE, users[0], "used here, but the mission does not reach this tree either")
-    message = f"unreachable tree `{name.text}`: the main tree `{main}` never reaches it"
+    reaching = f"the main tree `{mains[0]}` never reaches" if len(mains) == 1 else "no main tree ever reaches"
+    message = f"unreachable tree `{name.text}`: {reaching} it"
     yield Diagnostic("unreachable-tree", name.span, message, related=related, tags=(Tag.UNNECESSARY,))
 
 
 def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """Several trees of which none is marked as the mission; reported at the first."""
-    if not isinstance(entry.item, Tree) or not view.is_first_tree or view.is_included:
+    """Several trees of which none is marked as the mission, reported at the first; or a factory's missing main tree."""
+    if not isinstance(entry.item, Tree) or not view.is_first_tree:
+        return
+    if view.factory is not None:
+        yield from _missing_main_trees(view, entry.item)
+        return
+    if view.is_included:
         return
     if view.ask(calls.has_gaps) or not view.is_read:
         return  # the tree that runs the others may be misspelt
@@ -167,6 +174,40 @@ def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         notes=(f"name the main tree with {way}",),
         fixes=tuple(_main_tree_fix(view, name) for name in tops[:3]),
     )
+
+
+def _missing_main_trees(view: View, tree: Tree) -> Iterator[Diagnostic]:
+    """The main trees that the files of a factory lack, reported at the first tree that it registers."""
+    name, is_first = view.look_up(lookups.factory) or ("", False)
+    for main in view.look_up(lookups.main_trees) if is_first and view.is_complete and not view.has_torn_tree else ():
+        if not view.defines(Kind.TREE, main):
+            likely = did_you_mean(view.near(main, Kind.TREE))
+            yield Diagnostic(
+                "unknown-main-tree",
+                tree.name.span if tree.name else Span(tree.start, tree.end),
+                f"the factory `{name}` has no tree `{main}`, which is its main tree{likely}",
+                notes=("this is the first tree that it registers; `main` is in the project file",),
+                severity=Severity.ERROR,
+            )
+
+
+def nothing_to_load(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """Files that a factory registers and that are not here, reported at the first tree that it registers."""
+    lost = view.look_up(lookups.lost_patterns)
+    if not lost or not isinstance(entry.item, Tree) or not view.is_first_tree:
+        return
+    name, is_first = view.look_up(lookups.factory) or ("", False)
+    for pattern in lost if is_first else ():
+        note = "what it defines is unknown"
+        if pattern.startswith("package://"):
+            note = f"btq looks for packages in this workspace, and in AMENT_PREFIX_PATH; {note}"
+        yield Diagnostic(
+            "missing-include",
+            entry.item.name.span if entry.item.name else Span(entry.item.start, entry.item.end),
+            f"no file matches `{pattern}`, which the factory `{name}` loads",
+            notes=(note,),
+            severity=Severity.HINT,
+        )
 
 
 def tree_root_count(view: View, entry: Entry) -> Iterator[Diagnostic]:

@@ -35,7 +35,7 @@ def _unused(item: Signal | Context, rule: str, message: str) -> Iterator[Diagnos
 
 
 def _is_unused(view: View, entry: Entry, kind: Kind) -> bool:
-    if not view.has_trees or view.is_included:
+    if not view.has_trees or view.is_used_elsewhere:
         return False  # a file of signals, or a library: their users may be anywhere
     for symbol in view.facts.summary.symbols:
         return (

@@ -31,10 +31,13 @@ if TYPE_CHECKING:
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.symbols import Use
+    from btq_lang.workspace.symbols import Symbol, Use
     from btq_lang.workspace.workspace import Workspace
 
     T = TypeVar("T")
+
+
+COUNTS = "first definition, which takes effect"
 
 
 class View:
@@ -142,6 +145,14 @@ class View:
         found = self.definition(kind, name)
         return found is not None and found[1] is self.facts
 
+    def another(self, symbol: Symbol) -> tuple[Declaration | None, str]:
+        """A second definition of a name that the item defines, and which one it is: for the one that takes effect, one
+        in another file of the factory, for any other the one that takes effect."""
+        first = self.declaration(symbol.kind, symbol.name)
+        if first is not None and first.symbol is not symbol:
+            return first, COUNTS
+        return self.look_up(lookups.another_declaration, symbol.kind, symbol.name), "second definition"
+
     def is_repeated(self, kind: Kind, name: str) -> bool:
         """Whether a name has several definitions."""
         return self.look_up(lookups.is_repeated, kind, name)
@@ -216,6 +227,17 @@ class View:
     def is_included(self) -> bool:
         """Whether another file includes this one."""
         return self.look_up(inputs.is_included)
+
+    @property
+    def is_used_elsewhere(self) -> bool:
+        """Whether other files can use what this one defines: they include it, or are registered with it."""
+        return self.is_included or self.look_up(lookups.is_registered_with_others)
+
+    @property
+    def factory(self) -> str | None:
+        """The name of the factory that the file is looked at in; None: the file is one of its own."""
+        found = self.look_up(lookups.factory)
+        return found[0] if found is not None else None
 
     @property
     def main_tree(self) -> str | None:

@@ -5,7 +5,7 @@ command line comes in, and text on the standard streams and files go out.  How t
 other packages do that.
 
     arguments.py the command line, and which module runs which command
-    files.py, xml_below.py, ignored.py   input files, and which XML is among them
+    files.py, factory_files.py, xml_below.py, ignored.py   input files, by project and factory, and which XML counts
     output.py, options.py, reporting.py   output, options of a check, its report
     check.py, format.py, build.py …   the commands
     shell/           completion scripts

@@ -15,6 +15,7 @@ from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.render import Finding, Report, Trouble
 from btq_lang.util.record import replace
 from btq_lang.workspace.config import Project, unknown_rule
+from btq_lang.workspace.factories import merged
 from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import LoadProblem
 from btq_lang.workspace.workspace import Workspace
@@ -22,6 +23,7 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
     from btq_lang.commands.options import CheckOptions
     from btq_lang.diagnostics.model import Diagnostic
+    from btq_lang.workspace.factories import Factory
 
 _ORDER = tuple(Severity)
 _FAILS = (Severity.ERROR, Severity.WARNING)
@@ -54,7 +56,7 @@ def _usage_problem(options: CheckOptions) -> str | None:
 
 def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     """Check once; returns the exit code and the files that another run depends on."""
-    groups, problems = files.groups(options.paths, options.stdin_filename, with_xml=True, with_pools=True)
+    groups, problems = files.groups(options.paths, options.stdin_filename, with_xml=True, for_checks=True)
     groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
     mended = 0
     if options.diff:
@@ -68,17 +70,20 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         problems += trouble
         mended = 0 if trouble else mended  # fixes that could not be written do not count
     _tell(problems)
-    checked = tuple(path for group in groups for path in group.given)
-    is_checked = frozenset(checked)
-    findings: list[Finding] = []
+    of_file: dict[str, list[tuple[Factory | None, tuple[Diagnostic, ...]]]] = {}
     for group in groups:
         for path, found in _found(group, options.jobs):
-            text = group.workspace.files[path].source
-            found = tuple(each for each in found if not is_reported_beside(each, is_checked))
             if path in group.damaged:  # the bytes that cannot be decoded are already reported
                 found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
-            findings += [Finding(path, text, diagnostic) for diagnostic in found if _is_wanted(diagnostic, options)]
+            of_file.setdefault(path, []).append((group.workspace.factory, found))
+    checked = tuple(of_file)
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
+    findings = [
+        Finding(path, texts[path], each)
+        for path in checked
+        for each in merged(of_file[path])
+        if _is_wanted(each, options) and not is_reported_beside(each, of_file)
+    ]
     empty = no_mission_below(options.paths, groups, "no .btq file and no BehaviorTree.CPP XML")
     report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), empty)
     is_written = write_report(report, options, mended)

@@ -29,6 +29,7 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
     from btq_lang.commands.xml_below import XmlBelow
     from btq_lang.workspace.config import Project
+    from btq_lang.workspace.factories import Factory
     from btq_lang.workspace.file import File
 
 STDIN = "-"
@@ -100,15 +101,17 @@ class Files:
         stdin_filename: str | None = None,
         *,
         with_xml: bool = False,
-        with_pools: bool = False,
+        for_checks: bool = False,
     ) -> tuple[tuple[Group, ...], tuple[LoadProblem, ...]]:
-        """The files that paths denote, by project, and read errors.
+        """The files that paths denote, by project and factory, and read errors.
 
-        Each file belongs to the nearest project file above it, whatever the current folder.
+        Each file belongs to the nearest project file above it, whatever the current folder, and to the factories that
+        register it.
 
         Args:
             with_xml: below folders, the engine's XML counts too, and not only this language.
-            with_pools: add the files of a project that define what a requested XML file lacks.
+            for_checks: look at a file in each of its factories, and not only in the first, and add the files of the
+                project that define what requested XML lacks.
         """
         problems: list[LoadProblem] = []
         projects: dict[str, Found] = {}
@@ -143,10 +146,26 @@ class Files:
         by_path = {found.path or "": found.project for found in projects.values()}
         groups = []
         for key, files in members.items():
-            group, found_problems = self._load(tuple(files), by_path[key], key or None)
-            groups.append(self._with_pool(group, files, project_of) if with_pools else group)
+            project = by_path[key]
+            factories = tuple(self._resolved(project)) if project.factories else ()
+            registered = (path for factory in factories for path in (*factory.files, *factory.node_files))
+            group, found_problems = self._load(tuple(files), project, key or None, tuple(registered))
             problems += found_problems
+            problems += (
+                LoadProblem(key, f"the factory `{each.name}` loads no file") for each in factories if not each.files
+            )
+            of_factories = [*_by_factory(group, factories, for_checks)]
+            groups += of_factories
+            rest = replace(group, given=_not_in(of_factories, group.given))
+            if rest.given or not of_factories:
+                groups.append(self._with_pool(rest, files, project_of) if for_checks else rest)
         return tuple(groups), tuple(problems)
+
+    def _resolved(self, project: Project) -> Iterator[Factory]:
+        """The factories of a project with their files."""
+        from btq_lang.commands.factory_files import resolved  # few projects have any
+
+        return (resolved(factory, project.root, self.xml) for factory in project.factories)
 
     def _with_pool(self, group: Group, tops: Mapping[str, str], project_of: Callable[[str], Found]) -> Group:
         """The group with the files of its pools that define what its XML lacks.
@@ -199,13 +218,14 @@ class Files:
         return self.stdin
 
     def _load(
-        self, paths: tuple[str, ...], project: Project, project_file: str | None
+        self, paths: tuple[str, ...], project: Project, project_file: str | None, registered: tuple[str, ...]
     ) -> tuple[Group, tuple[LoadProblem, ...]]:
         def includes_of(path: str, text: str) -> Iterator[str]:
             return (include for include, _ in self._file(path, text).included_paths)
 
-        known = {path: self.overlay[path] for path in paths if path in self.overlay}
-        loaded = load((path for path in paths if path not in known), project, includes_of, known)
+        wanted = tuple(dict.fromkeys((*paths, *registered)))
+        known = {path: self.overlay[path] for path in wanted if path in self.overlay}
+        loaded = load((path for path in wanted if path not in known), project, includes_of, known)
         files = {path: self._file(path, text) for path, text in loaded.texts.items()}
         given = tuple(path for path in paths if path in files)
         damaged = loaded.damaged
@@ -219,6 +239,30 @@ class Files:
         if known is None or known.source != text:
             known = self._known[path] = file_of(path, text)
         return known
+
+
+def _by_factory(group: Group, factories: Iterable[Factory], in_each: bool) -> Iterator[Group]:
+    """The requested files of a project that its factories register, a group for each factory that has any.
+
+    Args:
+        in_each: a file that several factories register belongs to each of them, and not only to the first.
+    """
+    taken: set[str] = set()
+    whole = group.workspace
+    for factory in factories:
+        files = [path for path in (*factory.files, *factory.node_files) if path in whole.files]
+        inside = dict.fromkeys(each for path in files for each in whole.closure(path))
+        workspace = Workspace({path: whole.files[path] for path in inside}, whole.project, factory)
+        registered = workspace.registered
+        given = tuple(path for path in group.given if path in registered and path not in taken)
+        if given:
+            yield replace(group, workspace=workspace, given=given)
+            taken.update(() if in_each else given)
+
+
+def _not_in(groups: Iterable[Group], given: Iterable[str]) -> tuple[str, ...]:
+    known = {path for group in groups for path in group.given}
+    return tuple(path for path in given if path not in known)
 
 
 def lacking_names(workspace: Workspace, xml: Iterable[str]) -> frozenset[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.btcpp.opening import file_of
@@ -16,6 +16,7 @@ from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Diagnostic
+    from btq_lang.workspace.file import File
 
 _ROUNDS: Final = 10  # of fixing: a fix may enable another
 
@@ -24,9 +25,10 @@ def fix(groups: Iterable[Group], is_wanted: Callable[[Diagnostic], bool]) -> tup
     """The groups with the safe fixes of the requested files applied, and how many these are; nothing is written."""
     done: list[Group] = []
     count = 0
+    finished: dict[str, File] = {}  # of earlier groups: a file may be in several factories
     for group in groups:
-        workspace = group.workspace
-        writable = tuple(path for path in group.given if path not in group.damaged)
+        workspace = _with_files(group.workspace, finished) if finished else group.workspace
+        writable = tuple(path for path in group.given if path not in group.damaged and path not in finished)
         for _ in range(_ROUNDS):
             each = zip(writable, check_each(workspace, writable), strict=True)
             texts, applied = fixed(workspace, {path: tuple(filter(is_wanted, found)) for path, found in each})
@@ -35,6 +37,7 @@ def fix(groups: Iterable[Group], is_wanted: Callable[[Diagnostic], bool]) -> tup
             count += applied
             for path, text in texts.items():
                 workspace = _with_source(workspace, path, text)
+        finished.update((path, workspace.files[path]) for path in group.given)
         done.append(replace(group, workspace=workspace))
     return tuple(done), count
 
@@ -49,9 +52,13 @@ def write_fixes(
     """
     done: list[Group] = []
     trouble: list[LoadProblem] = []
+    finished: dict[str, File] = {}
     for old, new in zip(before, after, strict=True):
         files = {**new.workspace.files}
+        files.update((path, finished[path]) for path in files.keys() & finished.keys())
         for path in new.given:
+            if path in finished:
+                continue
             text = files[path].source
             if path == stdin and path not in new.damaged:
                 write_stdout(text)
@@ -61,7 +68,8 @@ def write_fixes(
                 except OSError as error:
                     trouble.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
                     files[path] = old.workspace.files[path]  # the file on the disk still has its findings
-        done.append(replace(new, workspace=Workspace(files, new.workspace.project)) if trouble else new)
+            finished[path] = files[path]
+        done.append(replace(new, workspace=_with_files(new.workspace, files)) if trouble else new)
     return tuple(done), tuple(trouble)
 
 
@@ -70,8 +78,10 @@ def show_fixes(before: Iterable[Group], after: Iterable[Group], is_coloured: boo
     from btq_lang.commands.text_diff import text_diff
 
     is_changed = False
+    seen: set[str] = set()
     for old, new in zip(before, after, strict=True):
-        for path in new.given:
+        for path in (path for path in new.given if path not in seen):
+            seen.add(path)
             texts = old.workspace.files[path].source, new.workspace.files[path].source
             for line in text_diff(shown(path), *texts, is_coloured=is_coloured):
                 sys.stdout.write(line)
@@ -83,4 +93,10 @@ def _with_source(workspace: Workspace, path: str, text: str) -> Workspace:
     """The workspace after a change of a file on the disk, whatever its language."""
     if workspace.files[path].origin is None:
         return workspace.with_file(path, text)
-    return Workspace({**workspace.files, path: file_of(path, text)}, workspace.project)
+    return _with_files(workspace, {path: file_of(path, text)})
+
+
+def _with_files(workspace: Workspace, files: Mapping[str, File]) -> Workspace:
+    """The workspace with other files in the place of those of the same paths."""
+    known = {path: files.get(path, file) for path, file in workspace.files.items()}
+    return Workspace(known, workspace.project, workspace.factory)

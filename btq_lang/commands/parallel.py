@@ -12,6 +12,7 @@ from concurrent.futures import ProcessPoolExecutor
 from btq_lang.checks import findings
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.workspace.config import Project
+from btq_lang.workspace.factories import Factory
 from btq_lang.workspace.file import File
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
@@ -25,13 +26,13 @@ def check_all(workspace: Workspace, paths: tuple[str, ...], workers: int) -> Ite
     """The diagnostics of each path, in order."""
     # A forked process has the files already; otherwise each process gets their texts once.
     context = multiprocessing.get_context("fork" if "fork" in multiprocessing.get_all_start_methods() else None)
-    with ProcessPoolExecutor(workers, context, _begin, (workspace.files, workspace.project)) as pool:
+    with ProcessPoolExecutor(workers, context, _begin, (workspace.files, workspace.project, workspace.factory)) as pool:
         yield from pool.map(_check, paths, chunksize=_CHUNK)
 
 
-def _begin(files: Mapping[str, File], project: Project) -> None:
+def _begin(files: Mapping[str, File], project: Project, factory: Factory | None) -> None:
     global _store
-    _store = Store(Workspace(files, project))
+    _store = Store(Workspace(files, project, factory))
 
 
 def _check(path: str) -> tuple[Diagnostic, ...]:

@@ -49,8 +49,20 @@ class XmlBelow:
         ids, generated = self._look(path)
         if ids is None or not generated:
             return ids is not None
+        return self.source_of(path) is None and not is_built_of(read(path)[0] or "", sources)
+
+    def is_mission(self, path: str) -> bool:
+        """Whether an XML file is the engine's."""
+        return self._look(path)[0] is not None
+
+    def source_of(self, path: str) -> str | None:
+        """The mission that an XML file was built of, if it is there: beside it, or where the side file says."""
+        if not self._look(path)[1]:
+            return None
         text = read(path)[0] or ""
-        return not (is_built_of(text, sources) or _is_built(path))
+        beside = (f"{os.path.splitext(path)[0]}{suffix}" for suffix in SUFFIXES)
+        named = (each for each in beside if is_built_of(text, (os.path.basename(each),)))
+        return next((each for each in (*named, *_told_by_side_file(path)) if os.path.isfile(each)), None)
 
     def _look(self, path: str) -> tuple[frozenset[str] | None, bool]:
         """The IDs of trees and models in an XML file, None if it is not the engine's, and whether a build wrote it."""
@@ -63,17 +75,17 @@ class XmlBelow:
         return known[1:]
 
 
-def _is_built(path: str) -> bool:
-    """Whether the side file of built XML names a mission that is there."""
+def _told_by_side_file(path: str) -> tuple[str, ...]:
+    """The mission that the side file of built XML names."""
     import json
 
     from btq_lang.btcpp.side_file import is_side_file, side_path  # little XML is built
 
     side = read(side_path(path))[0] if os.path.isfile(side_path(path)) else None
     if side is None or not is_side_file(side):
-        return False
+        return ()
     try:
         mission = json.loads(side)["mission"]["file"]
     except (ValueError, LookupError, TypeError):
-        return False
-    return isinstance(mission, str) and os.path.isfile(absolute(os.path.join(os.path.dirname(path), mission)))
+        return ()
+    return (absolute(os.path.join(os.path.dirname(path), mission)),) if isinstance(mission, str) else ()

@@ -186,7 +186,7 @@ def _running(mission: Candidate, workspace: Workspace, is_enforced: bool) -> Run
     path = mission.path
     exports = [
         as_xml(workspace, each, enforce=is_enforced and is_mission(workspace, each)).export
-        for each in workspace.closure(path)
+        for each in workspace.registered_with(path)
     ]
     if any(each.problems for each in exports):
         return None

@@ -48,7 +48,7 @@ class Session:
         self._home: dict[str, int] = {}
         self._pooled: frozenset[str] = frozenset()  # files that only define what open XML lacks
         # Weak: a file's findings must not keep an old workspace alive until its next check.
-        self._checked: dict[str, tuple[ReferenceType[Workspace], Findings]] = {}
+        self._checked: dict[str, tuple[tuple[ReferenceType[Workspace], ...], Findings]] = {}
 
     # ---- what changes ----
 
@@ -71,10 +71,12 @@ class Session:
         old, new = before.files[path], after.files[path]
         if old.included_paths != new.included_paths:
             return (path, *self.reload())
-        linked = set(after.linked(path))  # uses are known in both directions
+        linked = {
+            other for each in self.workspaces_of(path) for other in each.linked(path)
+        }  # they know each other's uses
         if renamed := old.defined_names ^ new.defined_names:
-            if any(after.files[other].origin is not None for other in linked):
-                return (path, *self.reload())  # XML that includes it may need another pool
+            if any(_is_included_by_xml(each, path) for each in self._workspaces if path in each.files):
+                return (path, *self.reload())  # it may need another pool
             linked.update(other for other in after.files if other != path and _lacks_definition(after, other, renamed))
         return self._in_order(path, linked)
 
@@ -83,7 +85,7 @@ class Session:
         from btq_lang.workspace.loader import read
 
         text = self.open.pop(path, None)
-        if (workspace := self.workspace_of(path)) is not None:
+        for workspace in self.workspaces_of(path):
             from btq_lang.checks import forget
 
             forget(workspace, path)
@@ -108,24 +110,28 @@ class Session:
         self._files.know(workspace.files[path] for path in self.open if (workspace := self.workspace_of(path)))
         severities = self._severities()
         missions = (path for path in self.open if not is_project_file(path))
-        groups, problems = self._files.groups((*self.folders, *missions), with_pools=True)
+        groups, problems = self._files.groups((*self.folders, *missions), for_checks=True)
         self._read_projects(problems)
-        before = {tuple(workspace.files): workspace for workspace in self._workspaces}
+        before = {(workspace.factory, *workspace.files): workspace for workspace in self._workspaces}
         self._workspaces = []
         self._home = {}
         self._pooled = frozenset().union(*(group.pooled for group in groups))
+        given: set[str] = set()
         for index, group in enumerate(groups):
             workspace = group.workspace
             if severities:
                 project = workspace.project
                 workspace = workspace.with_project(replace(project, severities=(*project.severities, *severities)))
-            known = before.pop(tuple(workspace.files), None)
+            known = before.pop((workspace.factory, *workspace.files), None)
             if known is not None and known is not workspace:
                 advance(known, workspace)
             self._workspaces.append(workspace)
             for path in workspace.files:
-                if path in group.given or path not in self._home:
+                of = workspace.registered or group.given
+                if path in of and path not in given:
+                    given.add(path)
                     self._home[path] = index
+                self._home.setdefault(path, index)
         return self.paths()
 
     def _read_projects(self, problems: Iterable[LoadProblem]) -> None:
@@ -198,6 +204,13 @@ class Session:
         home = self._home.get(path)
         return None if home is None else self._workspaces[home]
 
+    def workspaces_of(self, path: str) -> tuple[Workspace, ...]:
+        """The workspaces in which a file is looked at: those of its factories, or its only one."""
+        home = self.workspace_of(path)
+        if home is None or home.factory is None:
+            return () if home is None else (home,)
+        return tuple(each for each in self._workspaces if path in each.registered)
+
     def knows(self, path: str) -> bool:
         """Whether a path is a known mission's or project file's."""
         return path in self._home or path in self.projects
@@ -228,35 +241,47 @@ class Session:
         Raises:
             Cancelled: one does; results so far are cached.
         """
-        workspace = self.workspace_of(path)
-        if workspace is None or path not in self.open:
-            return
-        store = workspace.store
-        before, store.is_cancelled = store.is_cancelled, is_outdated
+        stores = [each.store for each in self.workspaces_of(path)] if path in self.open else []
+        before = [store.is_cancelled for store in stores]
+        for store in stores:
+            store.is_cancelled = is_outdated
         try:
-            self.findings(path)
+            if stores:
+                self.findings(path)
         finally:
-            store.is_cancelled = before
+            for store, is_cancelled in zip(stores, before, strict=True):
+                store.is_cancelled = is_cancelled
 
     def findings(self, path: str) -> Findings:
         """The current findings of a file."""
-        workspace = self.workspace_of(path)
-        if workspace is None:
+        workspaces = self.workspaces_of(path)
+        if not workspaces:
             return Findings([])
         known = self._checked.get(path)
-        if known is not None and known[0]() is workspace:
+        if known is not None and [id(each()) for each in known[0]] == [*map(id, workspaces)]:
             return known[1]
         from btq_lang.checks import check, findings, keep
 
         if path in self.open:
             begin = perf_counter()
-            keep(workspace, path)
-            found = findings(workspace.store, path)
+            for workspace in workspaces:
+                keep(workspace, path)
+            of_each = [findings(workspace.store, path) for workspace in workspaces]
+            found = (
+                of_each[0] if len(of_each) == 1 else self._merged(workspaces, [each.diagnostics for each in of_each])
+            )
             self.check_seconds[path] = perf_counter() - begin
         else:  # placed: offsets that count from items would keep these alive
-            found = Findings.placed(check(workspace, path))
-        self._checked[path] = ref(workspace), found
+            found = self._merged(workspaces, [check(workspace, path) for workspace in workspaces])
+        self._checked[path] = tuple(map(ref, workspaces)), found
         return found
+
+    def _merged(self, workspaces: Iterable[Workspace], found: Iterable[tuple[Diagnostic, ...]]) -> Findings:
+        """What is found in one file in each of its factories."""
+        from btq_lang.workspace.factories import merged
+
+        of_each = [(workspace.factory, each) for workspace, each in zip(workspaces, found, strict=True)]
+        return Findings.placed(merged(of_each))
 
     def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
         """The diagnostics of a file, counted from its start."""
@@ -270,6 +295,13 @@ class Session:
         """A setting of the user, if it is a bool."""
         value = self.settings.get(name)
         return value if isinstance(value, bool) else default
+
+
+def _is_included_by_xml(workspace: Workspace, path: str) -> bool:
+    """Whether XML that has a pool may include a file, directly or not."""
+    return workspace.factory is None and any(
+        workspace.files[each].origin is not None for each in workspace.linked(path)
+    )
 
 
 def _lacks_definition(workspace: Workspace, path: str, names: Set[Name]) -> bool:

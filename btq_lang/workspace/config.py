@@ -16,6 +16,8 @@
 
     [evidence]                        # logs of what robots did: see project_evidence.py
 
+    [[factory]]                       # what one program registers: see factories.py
+
 One invariant: every text gives a project and never an exception; what is wrong in it is left out and reported.  Not
 known here: the disk, and where the file was found.  A new key is a row of `KEYS`; `project_schema` describes its form.
 """
@@ -37,6 +39,7 @@ from btq_lang.workspace.overrides import Override, severities_at
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Diagnostic
+    from btq_lang.workspace.factories import Factory
     from btq_lang.workspace.project_evidence import Evidence
 
 Kind: TypeAlias = "Literal['btq.toml', 'pyproject.toml']"
@@ -60,6 +63,7 @@ class Project(Record):
         folders: working folders: an editor's, or the current one.
         pools: folders in which an XML file finds the trees and models that it lacks; the loader finds them.
         evidence: its table about logs, if it has one.
+        factories: what each of its programs registers.
     """
 
     root: str = "."
@@ -75,6 +79,7 @@ class Project(Record):
     folders: tuple[str, ...] = ()
     pools: tuple[str, ...] = ()
     evidence: Evidence | None = None
+    factories: tuple[Factory, ...] = ()
 
     def shown(self, path: str) -> str:
         """A path for display: relative to a working folder if it is inside one, else as it is."""
@@ -287,6 +292,13 @@ def _evidence(key: str, value: object) -> _Read:
     return found, [_Complaint(message, below) for message, below in complaints]
 
 
+def _factories(key: str, value: object) -> _Read:
+    from btq_lang.workspace.factories import read_factories  # few projects have any
+
+    found, complaints = read_factories(value)
+    return found, [_Complaint(message, below, named) for message, below, named in complaints]
+
+
 SEVERITIES: dict[str, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}
 # What a key sets in a Project, how its value is read, which values that accepts, as the name of a definition in
 # project_schema.py, and a line for editors.
@@ -305,6 +317,7 @@ KEYS = {
     "rules": ("severities", _severities, "severities", "the severities of rules"),
     "overrides": ("overrides", _overrides, "overrides", "severities of rules in some files"),
     "evidence": ("evidence", _evidence, "evidence", "logs of what robots did, which btq verify reads"),
+    "factory": ("factories", _factories, "factories", "what one program registers before it creates a tree"),
 }
 
 

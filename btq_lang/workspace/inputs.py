@@ -1,7 +1,7 @@
 """What queries read in the workspace: the inputs of the store (queries.py) that several packages use, each a function
 of the store and of a *viewpoint*, which names the scope in which names are looked up: all that one program registers
-before it creates a tree.  Today that is a file with what it includes, named by its path.  An item has a key of its own,
-so that one file can be looked at from several viewpoints.
+before it creates a tree.  That is a file with what it includes, named by its path; in the workspace of a factory, all
+files have one scope.  An item has a key of its own, so that one file can be looked at from several viewpoints.
 
 One invariant: a result refers to syntax nodes only through the facts of their items, which are equal only to
 themselves, and has no offsets that an edit elsewhere would move; equal results are interchangeable, for queries keep
@@ -74,7 +74,7 @@ def of_item(
 
 def advance(before: Workspace, after: Workspace) -> None:
     """Pass cached answers on to the workspace after an edit; nothing if its files or its project differ."""
-    if before.project != after.project or [*before.files] != [*after.files]:
+    if (before.project, before.factory, [*before.files]) != (after.project, after.factory, [*after.files]):
         return
     edited = [(file, after.files[path]) for path, file in before.files.items() if after.files[path] is not file]
     if any(old.included_paths != new.included_paths or not old.is_parsed for old, new in edited):
@@ -168,7 +168,7 @@ def unknown_units(workspace: Workspace, path: str, facts: Facts) -> tuple[int, .
 @of_name
 def definition(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Placed | None:
     """The item with the definition of a name that counts."""
-    for file in _files(workspace, viewpoint):
+    for file in workspace.scope(viewpoint).files(kind):
         if found := file.names.found.get((kind, name)):
             return file.path, file.facts[id(found[0][0])]
     return None
@@ -181,7 +181,7 @@ def category(store: Store[Workspace], viewpoint: str, name: str) -> str | None:
 
 @of_name
 def _category(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> str | None:
-    for file in _files(workspace, viewpoint):
+    for file in workspace.scope(viewpoint).files(kind):
         if found := file.names.found.get((kind, name)):
             model = found[0][1].target
             return model.category.raw if isinstance(model, Model) else None

@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import stat
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from glob import glob
 from typing import BinaryIO
 
 from btq_lang.util.record import Record, replace
@@ -21,6 +23,7 @@ from btq_lang.workspace.file import SUFFIXES
 
 _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv
 _OF_COLCON = frozenset({"build", "install", "log"})  # colcon makes these in the folder that it runs in
+_PACKAGE_NAME = re.compile(r"<name>\s*(\S+?)\s*</name>")
 _HEAD = 4096  # bytes that nearly always show what a file is
 IS_SPECIAL = "cannot be read: expected a regular file, found a pipe or a device"
 _BOM = "\ufeff"
@@ -100,6 +103,37 @@ def pool_of(folder: str, top: str) -> str:
             if os.path.exists(f"{above}/{name}"):
                 return above
     return top
+
+
+def matching(folder: str, pattern: str) -> tuple[str, ...]:
+    """The files that a pattern below a folder matches, sorted."""
+    found = glob(pattern, root_dir=folder, recursive=True)
+    paths = sorted(absolute(os.path.join(folder, each)) for each in found)
+    return tuple(path for path in paths if _is_file(path))
+
+
+def package_folder(name: str, start: str) -> str | None:
+    """The folder of a ROS package: in the workspace around a folder, else where AMENT_PREFIX_PATH says."""
+    for path in _packages(_workspace_of(start)):
+        found = _PACKAGE_NAME.search(read(path)[0] or "")
+        if found is not None and found[1] == name:
+            return os.path.dirname(path)
+    for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
+        share = absolute(os.path.join(prefix, "share", name))
+        if prefix and os.path.isdir(share):
+            return share
+    return None
+
+
+def _workspace_of(folder: str) -> str:
+    """The folder with the packages that are built together: the outermost `src`, else the repository, else itself."""
+    above = [*_upwards(folder)]
+    sources = [each for each in above if os.path.basename(each) == "src"]
+    return sources[-1] if sources else next((each for each in above if os.path.exists(f"{each}/.git")), folder)
+
+
+def _packages(top: str) -> tuple[str, ...]:
+    return tuple(path for path in collect((top,), Project(), ("package.xml",))[0] if path.endswith("/package.xml"))
 
 
 def is_project_file(path: str) -> bool:

@@ -12,6 +12,7 @@ from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.versions import targets
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.workspace.config import KEYS, SEVERITIES
+from btq_lang.workspace.factories import KEYS as FACTORY_KEYS
 from btq_lang.workspace.overrides import KEYS as OVERRIDE_KEYS
 from btq_lang.workspace.project_evidence import KEYS as EVIDENCE_KEYS
 from btq_lang.workspace.project_evidence import NUMBERS, OF_A_FILE, OF_A_TOPIC, SOURCE_KEYS, TEXTS
@@ -42,6 +43,7 @@ def project_schema() -> Json:
             "number": {"type": "number"},
             "evidence": _evidence(),
             "signal": _signal(),
+            "factories": _list(_factory()),
         },
     }
 
@@ -69,6 +71,13 @@ def _signal() -> Json:
         for kind, wanted, others in (OF_A_TOPIC, OF_A_FILE)
     ]
     return {**_table(keys), "oneOf": kinds}
+
+
+def _factory() -> Json:
+    texts = _list(_form("text"))
+    forms = {"name": _form("text"), "main": {"anyOf": [_form("text"), texts]}}
+    keys = {key: {"description": doc, "allOf": [forms.get(key, texts)]} for key, doc in FACTORY_KEYS.items()}
+    return {**_table(keys), "required": ["name"]}
 
 
 def _table(keys: Json) -> Json:

@@ -4,9 +4,9 @@ One invariant: a workspace is a function of its texts and its project; one reach
 with its predecessor all files that did not change.  It does not use the disk: the loader provides the texts, included
 ones too.
 
-Names are looked up in a file's scope: the file and what it includes.  The project's other files are known as well: an
-XML file has them as its pool, for its program may register them too, and for others they only suggest where a name
-could be defined.
+Names are looked up in a file's scope: the file and what it includes, or in the workspace of a factory all that its
+program registers.  The project's other files are known as well: an XML file has them as its pool, for its program may
+register them too, and for others they only suggest where a name could be defined.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from btq_lang.workspace.symbols import Use, interface
 
 if TYPE_CHECKING:
     from btq_lang.util.text import Span
+    from btq_lang.workspace.factories import Factory
     from btq_lang.workspace.file import Origin
     from btq_lang.workspace.item_index import Name, Names
 
@@ -37,11 +38,13 @@ class Workspace:
     Attributes:
         files: by path; paths are absolute or all relative to one folder, with `/`.
         project: settings for all of them.
+        factory: whose files these are, with all that they include; None: each file is a factory of its own.
     """
 
-    def __init__(self, files: Mapping[str, File], project: Project) -> None:
+    def __init__(self, files: Mapping[str, File], project: Project, factory: Factory | None = None) -> None:
         self.files = files
         self.project = project
+        self.factory = factory
         self._scopes: dict[str, Scope] = {}
         self._everywhere: dict[Name, tuple[Definition, ...]] = {}
         self._closures: dict[str, tuple[str, ...]] = {}
@@ -57,7 +60,7 @@ class Workspace:
         """The workspace after an edit that replaces the text of a file; every other file is shared."""
         before = self.files.get(path)
         file = before.edited(text) if before else File(path, text)
-        after = Workspace({**self.files, path: file}, self.project)
+        after = Workspace({**self.files, path: file}, self.project, self.factory)
         if before is not None and before.included_paths == file.included_paths:
             after._take_over(self, path)
         return after
@@ -101,10 +104,14 @@ class Workspace:
         store.advance(after, topics)
 
     def with_project(self, project: Project) -> Workspace:
-        return Workspace(self.files, project)
+        return Workspace(self.files, project, self.factory)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Workspace) and (self.files, self.project) == (other.files, other.project)
+        return isinstance(other, Workspace) and (self.files, self.project, self.factory) == (
+            other.files,
+            other.project,
+            other.factory,
+        )
 
     def __hash__(self) -> int:
         return hash(tuple(self.files))
@@ -137,6 +144,10 @@ class Workspace:
             known = self._closures[path] = self._closure(path)
         return known
 
+    def registered_with(self, path: str) -> tuple[str, ...]:
+        """All files that are registered when a file runs, it last: what it includes, and those of its factory."""
+        return (*[each for each in self.scope(path).paths if each != path], path)
+
     def _closure(self, path: str) -> tuple[str, ...]:
         seen: set[str] = set()
         order: list[str] = []
@@ -166,8 +177,23 @@ class Workspace:
     def scope(self, path: str) -> Scope:
         """The names that a file can use."""
         if path not in self._scopes:
-            self._scopes[path] = Scope(self.closure(path), self)
+            self._scopes[path] = Scope(self.closure(path), self) if self.factory is None else self._of_factory
         return self._scopes[path]
+
+    @property
+    def registered(self) -> tuple[str, ...]:
+        """The files that the program registers, in order, each with what it includes; empty without a factory."""
+        return self._of_factory.paths if self.factory is not None else ()
+
+    @cached_property
+    def _of_factory(self) -> Scope:
+        """The scope of all files of the factory, in the order in which the program registers them."""
+        assert self.factory is not None, "the caller has looked"
+        registered = dict.fromkeys(
+            each for path in self.factory.files if path in self.files for each in self.closure(path)
+        )
+        nodes = tuple(path for path in self.factory.node_files if path in self.files and path not in registered)
+        return Scope(tuple(registered), self, nodes, is_known=not self.factory.lost)
 
     @cached_property
     def included_files(self) -> frozenset[str]:
@@ -176,7 +202,10 @@ class Workspace:
 
     @cached_property
     def missions(self) -> Mapping[str, str]:
-        """For each file a name for all that it is linked with by includes, either way, directly or not."""
+        """For each file a name for all that it is linked with by includes, either way, directly or not, or by its
+        factory."""
+        if self.factory is not None:
+            return dict.fromkeys(self.files, min(self.files, default=""))
         found = {path: path for path in self.files}
 
         def first(path: str) -> str:
@@ -285,20 +314,22 @@ class Workspace:
         """For each file, those that can use what it defines: itself, and all that include it."""
         users: dict[str, list[str]] = {path: [] for path in self.files}
         for path in self.files:
-            for used in self.closure(path):
+            for used in self.scope(path).paths:
                 users[used].append(path)
         return users
 
     # ---- missions ----
 
     def main_tree(self, path: str) -> Definition | None:
-        """The tree that runs when the engine loads the file: the one its `Root` names, its only tree, or the only one
-        of its trees that no other of its trees refers to."""
+        """The tree that runs when the engine loads the file: the factory's first main tree, or the one that its `Root`
+        names, its only tree, or the only one of its trees that no other of its trees refers to."""
         if path not in self._main_trees:
             self._main_trees[path] = self._main_tree(path)
         return self._main_trees[path]
 
     def _main_tree(self, path: str) -> Definition | None:
+        if self.factory is not None and self.factory.main:
+            return self.scope(path).find(Kind.TREE, self.factory.main[0])
         file = self.files[path]
         for root in file.of_type(Root):
             named = root.name or _attribute(root, "main_tree_to_execute")
@@ -313,20 +344,31 @@ class Workspace:
 
 
 class Scope:
-    """The names that a file can use: its own and those of the files it includes, directly or not.
+    """The names that a file can use: its own and those of the files it includes, directly or not, or of its factory.
 
     Attributes:
         paths: of those files, included ones first.
+        node_paths: of files whose models count, and nothing else in them.
     """
 
-    def __init__(self, paths: tuple[str, ...], workspace: Workspace) -> None:
+    def __init__(
+        self, paths: tuple[str, ...], workspace: Workspace, node_paths: tuple[str, ...] = (), is_known: bool = True
+    ) -> None:
+        """is_known: whether all of the scope's files are known."""
         self.paths = paths
+        self.node_paths = node_paths
         self._files = [workspace.files[path] for path in paths]
-        self._complete = all(
-            (target := workspace.included_by(file.path, include)) is not None and workspace.files[target].is_understood
-            for file in self._files
-            for include in file.includes
-        ) and not any(file.is_swallowed for file in self._files)
+        self._of_models = [*self._files, *(workspace.files[path] for path in node_paths)]
+        self._complete = (
+            is_known
+            and all(
+                (target := workspace.included_by(file.path, include)) is not None
+                and workspace.files[target].is_understood
+                for file in self._files
+                for include in file.includes
+            )
+            and not any(file.is_swallowed for file in self._files)
+        )
         self._found: dict[Name, tuple[Definition, ...]] = {}
         self._names: dict[Kind, tuple[str, ...]] = {}
         self._repeated: frozenset[Name] | None = None
@@ -340,7 +382,11 @@ class Scope:
     def defines(self, kind: Kind, name: str) -> bool:
         """Whether a name is defined."""
         key = kind, name
-        return bool([file for file in self._files if key in file.names.found])
+        return bool([file for file in self.files(kind) if key in file.names.found])
+
+    def files(self, kind: Kind) -> list[File]:
+        """The files whose definitions of a kind count."""
+        return self._of_models if kind is Kind.MODEL else self._files
 
     def find(self, kind: Kind, name: str) -> Definition | None:
         """The definition of a name that counts: the first one."""
@@ -365,14 +411,14 @@ class Scope:
         """All names of a kind, in the order of their definitions."""
         names = self._names.get(kind)
         if names is None:
-            known = [file.names.by_kind[kind] for file in self._files]
+            known = [file.names.by_kind[kind] for file in self.files(kind)]
             names = self._names[kind] = known[0] if len(known) == 1 else tuple(dict.fromkeys(chain(*known)))
         return names
 
     def _look_up(self, kind: Kind, name: str) -> tuple[Definition, ...]:
         key = kind, name
         found: tuple[Definition, ...] = ()
-        for file in self._files:
+        for file in self.files(kind):
             if key in file.names.found:
                 found += file.definitions(kind, name)
         self._found[key] = found

@@ -12,10 +12,13 @@ import missions
 import pytest
 from kept_checks import Kept
 
+from btq_lang.btcpp.opening import file_of
 from btq_lang.checks import CHECKS, Check, check
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Entry, Tree
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.factories import Factory
 from btq_lang.workspace.resolved import ResolvedTree
 from btq_lang.workspace.workspace import Workspace
 
@@ -166,6 +169,41 @@ def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -
         fresh = Workspace.of(texts)
         for each in files:
             assert kept[each].check(workspace, each).diagnostics == check(fresh, each), (step, each, texts)
+
+
+TOP = """<root BTCPP_format="4">
+<BehaviorTree ID="Top"><Sequence><SubTree ID="Carry" ot="x"/><Take what="{gaol}"/><SubTree ID="Alone"/></Sequence>
+</BehaviorTree></root>
+"""
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    ("project", "factory"),
+    [
+        (Project(), Factory("f", main=("Main", "Top"), files=("/p/main.btq", "/p/top.xml", "/p/skills.btq"))),
+        (Project(), Factory("f", main=("Gone",), files=("/p/main.btq", "/p/top.xml"), node_files=("/p/skills.btq",))),
+        (Project(pools=("/p",)), None),
+    ],
+    ids=["factory", "files of nodes", "pool"],
+)
+def test_what_is_kept_is_found_beyond_includes(project: Project, factory: Factory | None, seed: int) -> None:
+    chance = random.Random(seed)
+    texts = {"/p/main.btq": BOARDS.replace('include "skills.btq"', ""), "/p/skills.btq": SKILLS, "/p/top.xml": TOP}
+    workspace = Workspace({path: file_of(path, text) for path, text in texts.items()}, project, factory)
+    kept = {path: Kept() for path in texts}
+    for step in range(60):
+        path = chance.choice(("/p/main.btq", "/p/skills.btq"))
+        text = workspace.files[path].text
+        at = chance.randrange(len(text) + 1)
+        text = text[:at] + chance.choice((*PIECES, "", "")) + text[at + chance.choice((0, 0, 1, 5)) :]
+        text = texts[path] if chance.random() < 0.15 else text
+        workspace = workspace.with_file(path, text)
+        now = {each: file_of(each, file.source) for each, file in workspace.files.items()}
+        fresh = Workspace(now, project, factory)
+        assert workspace == fresh
+        for each in texts:
+            assert kept[each].check(workspace, each).diagnostics == check(fresh, each), (step, each, text)
 
 
 def test_what_no_quote_closes_is_not_empty() -> None:

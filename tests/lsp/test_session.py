@@ -51,6 +51,14 @@ PROJECTS = (
     'ignore = ["unknown-node", "missing-include"]\n',
     'select = ["unused-tree", "unknown-requirement", "include-with-errors"]\n',
 )
+FACTORIES = """[[factory]]
+name = "all"
+load = ["main.btq", "*.btq", "*.xml"]
+main = "Main"
+[[factory]]
+name = "some"
+load = ["skills.btq", "requirements.btq", "gone/*.btq"]
+"""
 OTHER = "BehaviorTree Alone\n    Pick\n"
 FILES = {"main.btq": MAIN, "skills.btq": SKILLS, "requirements.btq": REQUIREMENTS, "other.btq": OTHER}
 PIECES = (
@@ -94,6 +102,8 @@ def session_of(folder: Path, texts: dict[str, str]) -> Session:
 def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("btq_lang.lsp.session._MOST_IDLE", 0 if seed % 2 else 100_000)
     chance = random.Random(seed)
+    if seed > 1:
+        (folder / "btq.toml").write_text(FACTORIES, encoding="utf-8")
     session = session_of(folder, {})
     told = {path: session.diagnostics(path) for path in session.paths()}
     texts: dict[str, str] = {}
@@ -151,7 +161,7 @@ def test_files_come_and_go_and_the_project_changes(folder: Path, seed: int, monk
         elif change == 2 and place.suffix == ".btq" and place.exists():
             place.rename(chance.choice(places[:-1]))
         elif change == 3:
-            (folder / "btq.toml").write_text(chance.choice(PROJECTS), encoding="utf-8")
+            (folder / "btq.toml").write_text(chance.choice((*PROJECTS, FACTORIES)), encoding="utf-8")
         else:
             path = chance.choice(sorted(texts))
             at = chance.randrange(len(texts[path]) + 1)

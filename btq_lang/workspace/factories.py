@@ -1,0 +1,116 @@
+"""A factory: what one program registers before it creates a tree, as `[[factory]]` in the project file says.
+
+    [[factory]]
+    name = "navigation"
+    load = ["trees/*.xml", "package://docking/trees/*.xml"]    # in the order in which the program registers them
+    main = ["Navigate", "Dock"]                                # a tree, or a list of them
+    nodes = ["models/*.xml"]                                   # where the nodes are declared that it registers
+
+One invariant: what is wrong is left out and reported, and the rest is kept.  Not known here: which files the patterns
+match, which the loader fills in, and what is in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+from btq_lang.util.record import Record, replace
+from btq_lang.util.spelling import did_you_mean, near
+
+if TYPE_CHECKING:
+    from btq_lang.diagnostics.model import Diagnostic
+
+    # The message, the keys below `factory` to its place, and the string that it is about.
+    Complaint: TypeAlias = tuple[str, tuple[str, ...], str | None]
+
+
+class Factory(Record):
+    """What one program registers.
+
+    Attributes:
+        name: as messages call it.
+        load: patterns of the files that it registers.
+        main: the trees that it may create; empty: unknown.
+        nodes: patterns of the files whose models declare the nodes that it registers.
+        files: those of `load`, in order, each once.
+        node_files: those of `nodes` that are not in `files`.
+        lost: the patterns that match no file, so that it is not known what the program registers.
+    """
+
+    name: str
+    load: tuple[str, ...] = ()
+    main: tuple[str, ...] = ()
+    nodes: tuple[str, ...] = ()
+    files: tuple[str, ...] = ()
+    node_files: tuple[str, ...] = ()
+    lost: tuple[str, ...] = ()
+
+
+def read_factories(tables: object) -> tuple[tuple[Factory, ...], list[Complaint]]:
+    """The factories of a project file, and what is wrong with them."""
+    if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
+        return (), [("`factory` must be a list of tables: `[[factory]]`", (), None)]
+    complaints: list[Complaint] = []
+    factories: list[Factory] = []
+    for number, table in enumerate(tables):
+        at = (f"[{number}]",)
+        for key in table:
+            if key not in KEYS:
+                complaints.append((f"unknown key `factory.{key}`{did_you_mean(near(key, KEYS, 1))}", (*at, key), None))
+        values = {key: _strings(table.get(key, []), key) for key in KEYS}
+        for key, value in values.items():
+            if value is None:
+                form = (
+                    "a string"
+                    if key == "name"
+                    else "a list of strings"
+                    if key != "main"
+                    else "a tree or a list of trees"
+                )
+                complaints.append((f"`factory.{key}` must be {form}", (*at, key), None))
+        name = values["name"][0] if values["name"] else ""
+        if values["name"] is not None and not name:
+            complaints.append(("a factory needs a `name`", at, None))
+        elif any(name == each.name for each in factories):
+            complaints.append((f"duplicate factory `{name}`", (*at, "name"), name))
+        elif name:
+            factories.append(Factory(name, *((values[key] or ()) for key in ("load", "main", "nodes"))))
+    return tuple(factories), complaints
+
+
+def merged(found: Sequence[tuple[Factory | None, tuple[Diagnostic, ...]]]) -> tuple[Diagnostic, ...]:
+    """The diagnostics of a file from each of its factories, in order; those that only some have name them."""
+    if len(found) == 1:
+        return found[0][1]
+    of: dict[Diagnostic, list[str]] = {}
+    for factory, diagnostics in found:
+        for each in dict.fromkeys(diagnostics):
+            of.setdefault(each, []).append(f"`{factory.name}`" if factory is not None else "")
+    return tuple(
+        _naming(each, of[each]) if len(of[each]) < len(found) else each
+        for each in sorted(of, key=lambda each: each.span)
+    )
+
+
+def _naming(diagnostic: Diagnostic, factories: list[str]) -> Diagnostic:
+    note = f"only in the factor{'y' if len(factories) == 1 else 'ies'} {', '.join(factories)}"
+    return replace(diagnostic, notes=(*diagnostic.notes, note))
+
+
+def _strings(value: object, key: str) -> tuple[str, ...] | None:
+    """The strings of a value; None if it is anything else."""
+    if isinstance(value, str) and key in ("name", "main"):
+        return (value,)
+    if not isinstance(value, list) or (key == "name" and value):
+        return None
+    return tuple(value) if all(isinstance(each, str) and each for each in value) else None
+
+
+# Each key with a line for editors.
+KEYS: Final = {
+    "name": "the name of the factory in messages",
+    "load": "patterns of the files that the program registers, in order; also package://NAME/…",
+    "main": "the tree that the program creates, or a list of them",
+    "nodes": "patterns of the files that declare the program's nodes",
+}
