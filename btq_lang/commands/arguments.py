@@ -113,6 +113,10 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument(
         "--diff", action="store_true", help="write nothing, show what --fix would change; exit 1 if there is anything"
     )
+    parser.add_argument(
+        "--baseline", metavar="FILE", help="do not report the findings in this file; default: `baseline` of btq.toml"
+    )
+    parser.add_argument("--update-baseline", action="store_true", help="write the findings of today into the baseline")
     parser.add_argument("--watch", action="store_true", help="check again whenever a file changes")
     parser.add_argument("--jobs", type=int, metavar="N", help="number of processes; default: chosen by btq")
     _add_color(parser)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from btq_lang.checks import check, check_each
@@ -51,7 +51,15 @@ def _usage_problem(options: CheckOptions) -> str | None:
         return f"--jobs {options.jobs}: expected a number of processes, or 0 to let btq choose"
     rules = _rules(options.select) + _rules(options.ignore)
     unknown = next(filter(None, map(unknown_rule, rules)), None)
-    return usage_problem(options.paths) or unknown or report_problem(options)
+    return usage_problem(options.paths) or unknown or report_problem(options) or _baseline_problem(options)
+
+
+def _baseline_problem(options: CheckOptions) -> str | None:
+    if not options.update_baseline:
+        return None
+    from btq_lang.commands.baseline import update_problem
+
+    return update_problem(options)
 
 
 def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
@@ -70,22 +78,21 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         problems += trouble
         mended = 0 if trouble else mended  # fixes that could not be written do not count
     _tell(problems)
-    of_file: dict[str, list[tuple[Factory | None, tuple[Diagnostic, ...]]]] = {}
-    for group in groups:
-        for path, found in _found(group, options.jobs):
-            if path in group.damaged:  # the bytes that cannot be decoded are already reported
-                found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
-            of_file.setdefault(path, []).append((group.workspace.factory, found))
-    checked = tuple(of_file)
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
-    findings = [
-        Finding(path, texts[path], each)
-        for path in checked
-        for each in merged(of_file[path])
-        if _is_wanted(each, options) and not is_reported_beside(each, of_file)
-    ]
+    findings, checked = _findings(groups, texts, options)
+    known = 0
+    has_baseline = options.baseline or any(group.workspace.project.baseline for group in groups)
+    if options.update_baseline and not has_baseline:
+        print("btq check: no baseline to update; name it with --baseline, or in btq.toml", file=sys.stderr)
+        return 2, _watched(groups)
+    if has_baseline:
+        from btq_lang.commands.baseline import compared
+
+        findings, known, trouble = compared(findings, groups, options, is_whole=not problems)
+        _tell(trouble)
+        problems += trouble
     empty = no_mission_below(options.paths, groups, "no .btq file and no BehaviorTree.CPP XML")
-    report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), empty)
+    report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), empty, known)
     is_written = write_report(report, options, mended)
     if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
         print(f"btq check: {empty}", file=sys.stderr)
@@ -93,6 +100,25 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         return 2, _watched(groups)
     fails = any(finding.diagnostic.effective_severity in _FAILS for finding in findings)
     return int(fails and not options.exit_zero), _watched(groups)
+
+
+def _findings(
+    groups: Iterable[Group], texts: Mapping[str, str], options: CheckOptions
+) -> tuple[list[Finding], tuple[str, ...]]:
+    """What is wrong with the requested files, and these files; a file of several factories is checked in each."""
+    of_file: dict[str, list[tuple[Factory | None, tuple[Diagnostic, ...]]]] = {}
+    for group in groups:
+        for path, found in _found(group, options.jobs):
+            if path in group.damaged:  # the bytes that cannot be decoded are already reported
+                found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
+            of_file.setdefault(path, []).append((group.workspace.factory, found))
+    findings = [
+        Finding(path, texts[path], each)
+        for path, found_in_each in of_file.items()
+        for each in merged(found_in_each)
+        if _is_wanted(each, options) and not is_reported_beside(each, of_file)
+    ]
+    return findings, tuple(of_file)
 
 
 def _tell(problems: Iterable[LoadProblem]) -> None:

@@ -23,6 +23,8 @@ class CheckOptions:
     select: Sequence[str] = []
     ignore: Sequence[str] = []
     severity = "hint"
+    baseline: str | None = None
+    update_baseline = False
     fix = False
     diff = False
     watch = False

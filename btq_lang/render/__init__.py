@@ -88,4 +88,5 @@ def with_paths(report: Report, shown: Callable[[str], str]) -> Report:
         tuple(map(shown, report.checked)),
         tuple(replace(trouble, path=shown(trouble.path)) for trouble in report.troubles),
         report.why_empty,
+        report.known,
     )

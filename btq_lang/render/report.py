@@ -41,7 +41,8 @@ class Report(Record):
         texts: of other files that related places and fixes may name; a file without one is shown by its name.
         checked: the requested files, including those without findings.
         troubles: for the formats for programs; for people, the command prints them itself.
-        nothing: why there are no findings, if known.
+        why_empty: why there are no findings, if known.
+        known: the number of findings that a baseline has, and the report leaves out.
     """
 
     findings: tuple[Finding, ...]
@@ -49,3 +50,4 @@ class Report(Record):
     checked: tuple[str, ...] = ()
     troubles: tuple[Trouble, ...] = ()
     why_empty: str | None = None
+    known: int = 0

@@ -24,10 +24,12 @@ def summary(report: Report) -> str:
         return f"No files were checked: {report.why_empty}" if report.why_empty else "No files were checked"
     if not report.findings and report.troubles:
         return "Found nothing, but not every file could be read or written"
+    known = f", and {report.known} in the baseline" if report.known else ""
     if not report.findings:
-        return f"No problems found in {_number(len(report.checked), 'file', 'files')}"
+        new = "new " if known else ""
+        return f"No {new}problems found in {_number(len(report.checked), 'file', 'files')}{known}"
     fixable = sum(map(is_fixable, report.findings))
-    return f"Found {counted(report.findings)}" + (f" ({fixable} fixable with --fix)" if fixable else "")
+    return f"Found {counted(report.findings)}" + (f" ({fixable} fixable with --fix)" if fixable else "") + known
 
 
 def counted(findings: Iterable[Finding]) -> str:

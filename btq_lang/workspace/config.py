@@ -6,6 +6,7 @@
     exclude = ["generated/"]          # what the check of a folder leaves out: see globs.py
     select = ["unknown-node"]         # only these rules
     ignore = ["unused-tree"]          # all but these
+    baseline = "btq-baseline.json"    # findings that btq check does not report
 
     [rules]
     missing-port = "warning"          # error, warning, info, hint, off
@@ -58,6 +59,7 @@ class Project(Record):
         severities: the rules set in `[rules]`; None is off.
         select: the only rules to apply; empty for all.
         ignore: rules not to apply.
+        baseline: the file with the findings that a check does not report, joined to `root` if it was relative.
         exclude: patterns of paths that the check of a folder leaves out.
         overrides: of severities in some files; of several that name a rule the last one counts.
         folders: working folders: an editor's, or the current one.
@@ -74,6 +76,7 @@ class Project(Record):
     severities: tuple[tuple[str, Severity | None], ...] = ()
     select: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
+    baseline: str | None = None
     exclude: tuple[str, ...] = ()
     overrides: tuple[Override, ...] = ()
     folders: tuple[str, ...] = ()
@@ -145,6 +148,8 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
     given = {field: value for field, value in fields.items() if value is not None}
     if "include_paths" in given:
         given["include_paths"] = tuple(_joined(root, path) for path in given["include_paths"])
+    if "baseline" in given:
+        given["baseline"] = _joined(root, given["baseline"])
     return Project(**given), tuple(problems)
 
 
@@ -232,6 +237,12 @@ def _strings(key: str, value: object) -> _Read:
     return None, [_Complaint(f"`{key}` must be a list of strings")]
 
 
+def _file(key: str, value: object) -> _Read:
+    if isinstance(value, str) and value:
+        return value, []
+    return None, [_Complaint(f"`{key}` must be the name of a file")]
+
+
 def _rule_names(key: str, value: object) -> _Read:
     names, complaints = _strings(key, value)
     unknown = [_Complaint(message, value=name) for name in names or () if (message := unknown_rule(name))]
@@ -314,6 +325,7 @@ KEYS = {
     "exclude": ("exclude", _strings, "strings", "patterns of paths that the check of a folder leaves out"),
     "select": ("select", _rule_names, "rules", "only these rules"),
     "ignore": ("ignore", _rule_names, "rules", "all rules except these"),
+    "baseline": ("baseline", _file, "text", "the file with the findings that btq check does not report"),
     "rules": ("severities", _severities, "severities", "the severities of rules"),
     "overrides": ("overrides", _overrides, "overrides", "severities of rules in some files"),
     "evidence": ("evidence", _evidence, "evidence", "logs of what robots did, which btq verify reads"),

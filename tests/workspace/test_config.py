@@ -28,6 +28,7 @@ include-paths = ["missions", "../shared", "/opt/btq"]
 exclude = ["generated/", "*.old.btq"]
 select = ["unknown-node", "unused-tree"]
 ignore = ["unused-tree"]
+baseline = "ci/known.json"
 
 [rules]
 missing-port = "warning"
@@ -52,6 +53,7 @@ PROJECT = Project(
     severities=(("missing-port", Severity.WARNING), ("unknown-node", None)),
     select=("unknown-node", "unused-tree"),
     ignore=("unused-tree",),
+    baseline="/home/lab/ci/known.json",
     exclude=("generated/", "*.old.btq"),
     overrides=(
         Override(("vendor/",), (("unknown-node", None),)),
@@ -133,6 +135,8 @@ def test_engines_are_sorted_as_versions(engine: str, engines: tuple[str, ...]) -
             "[rules]\nunused-tree = []",
             ['2:1: `rules.unused-tree` must be one of "error", "warning", "info", "hint", "off"'],
         ),
+        ("baseline = ''", ["1:1: `baseline` must be the name of a file"]),
+        ("baseline = true", ["1:1: `baseline` must be the name of a file"]),
         ("overrides = 1", ["1:1: `overrides` must be a list of tables"]),
         ("[overrides]\ninclude = []", ["1:2: `overrides` must be a list of tables"]),
         (
@@ -254,7 +258,19 @@ def test_include_candidates() -> None:
 
 
 KEYS = st.sampled_from(
-    ["engine", "qualities", "include-paths", "exclude", "select", "ignore", "rules", "overrides", "tool.btq", "x"]
+    [
+        "engine",
+        "qualities",
+        "include-paths",
+        "exclude",
+        "select",
+        "ignore",
+        "rules",
+        "baseline",
+        "overrides",
+        "tool.btq",
+        "x",
+    ]
 )
 VALUES = st.recursive(
     st.sampled_from(["1", "4.10", '"4.10"', '"off"', "true", "1979-05-27", *(f'"{rule}"' for rule in list(RULES)[:3])]),

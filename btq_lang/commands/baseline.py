@@ -1,0 +1,131 @@
+"""`btq check --baseline`: findings that a team knows already, in a file, and what is new beside them.
+
+    {"format": 1, "tool": "btq",
+     "findings": [{"path": "missions/lab.btq", "rule": "unknown-node", "fingerprint": "5783b43235c1b533", "count": 2}]}
+
+Invariants: the same findings give the same bytes; paths are relative to the folder of the file.  A finding is known by
+its file, its rule and its text (render/fingerprint.py), as often as counted, wherever its line is; if the file is gone,
+wherever its text is now.  What cannot be silenced is never known.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
+
+from btq_lang.diagnostics.rules import UNREADABLE
+from btq_lang.render.fingerprint import fingerprint
+from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_whole
+
+if TYPE_CHECKING:
+    from btq_lang.commands.files import Group
+    from btq_lang.commands.options import CheckOptions
+    from btq_lang.render import Finding
+
+    Known: TypeAlias = Counter[tuple[str, str, str]]  # path, rule, fingerprint
+    Key = TypeVar("Key", bound=tuple[str, ...])
+
+
+def compared(
+    findings: Sequence[Finding], groups: Iterable[Group], options: CheckOptions, is_whole: bool
+) -> tuple[list[Finding], int, tuple[LoadProblem, ...]]:
+    """The findings that are not in the baseline of the command line, or else of the project of their file; the number
+    of the others; and what is wrong with baselines.  With `--update-baseline`, they are written first.
+
+    Args:
+        is_whole: whether all files could be read; otherwise nothing is written.
+    """
+    checked: dict[str, set[str]] = {}
+    for group in groups:
+        path = absolute(options.baseline) if options.baseline else group.workspace.project.baseline
+        if path is not None:
+            checked.setdefault(path, set()).update(group.given)
+    problems: list[LoadProblem] = []
+    new = [*findings]
+    for path, files in checked.items():
+        known, problem = _read(path, options.update_baseline)
+        if problem is None and options.update_baseline and is_whole:
+            mine = Counter(_identity(each) for each in findings if _may_be_known(each, files))
+            known, problem = _updated(path, known, mine, files)
+        if problem is not None:
+            problems.append(problem)
+        else:
+            new = _without(known, new, files)
+    return new, len(findings) - len(new), tuple(problems)
+
+
+def update_problem(options: CheckOptions) -> str | None:
+    """The usage error of options together with `--update-baseline`."""
+    chosen = {"--select": options.select, "--ignore": options.ignore, "--severity": options.severity != "hint"}
+    some = [option for option, is_given in (*chosen.items(), ("--diff", options.diff)) if is_given]
+    return f"--update-baseline needs all findings; leave out {some[0]}" if some else None
+
+
+def _read(path: str, may_be_absent: bool) -> tuple[Known, LoadProblem | None]:
+    known: Known = Counter()
+    if not os.path.exists(path):
+        message = "does not exist; `btq check --update-baseline` creates it"
+        return known, None if may_be_absent else LoadProblem(path, message)
+    text, problem = read(path)
+    try:
+        document = json.loads(text or "")
+        if document["format"] != 1 or document["tool"] != "btq":
+            raise ValueError
+        for each in document["findings"]:
+            there = absolute(os.path.join(os.path.dirname(path), each["path"]))
+            known[there, str(each["rule"]), str(each["fingerprint"])] += int(each["count"])
+    except (ValueError, TypeError, KeyError, RecursionError):
+        return known, problem or LoadProblem(path, "this is not a baseline that `btq check --update-baseline` wrote")
+    return known, None
+
+
+def _updated(path: str, known: Known, mine: Known, files: set[str]) -> tuple[Known, LoadProblem | None]:
+    """The baseline after an update; files that were not checked keep their findings as long as they are there."""
+    others = {key: count for key, count in known.items() if key[0] not in files and os.path.exists(key[0])}
+    after = Counter(others) + mine
+    added, gone = (after - known).total(), (known - after).total()
+    try:
+        if added or gone or not os.path.exists(path):
+            write_whole(path, _text(after, os.path.dirname(path)))
+    except OSError as error:
+        return known, LoadProblem(path, f"cannot be written: {error.strerror}")
+    print(f"{shown(path)}: {added} added, {gone} removed, {after.total() - added} kept", file=sys.stderr)
+    return after, None
+
+
+def _text(known: Known, folder: str) -> str:
+    """The file, with a line for each finding, so that changes of several people can be merged."""
+    lines = []
+    for (path, rule, text), count in known.items():
+        there = os.path.relpath(path, folder).replace(os.sep, "/")
+        lines.append(json.dumps({"path": there, "rule": rule, "fingerprint": text, "count": count}))
+    findings = ",".join(f"\n    {line}" for line in sorted(lines)) + ("\n  " if lines else "")
+    return f'{{\n  "format": 1,\n  "tool": "btq",\n  "findings": [{findings}]\n}}\n'
+
+
+def _without(known: Known, findings: Iterable[Finding], files: set[str]) -> list[Finding]:
+    """The findings that are not known, in order; of equal ones the first are known."""
+    left = known.copy()
+    new = [each for each in findings if not (_may_be_known(each, files) and _take(left, _identity(each)))]
+    moved: Counter[tuple[str, str]] = Counter()
+    for (path, rule, text), count in left.items():
+        moved[rule, text] += 0 if os.path.exists(path) else count
+    return [each for each in new if not (_may_be_known(each, files) and _take(moved, _identity(each)[1:]))]
+
+
+def _take(left: Counter[Key], key: Key) -> bool:
+    is_there = left[key] > 0
+    left[key] -= is_there
+    return is_there
+
+
+def _identity(finding: Finding) -> tuple[str, str, str]:
+    return finding.path, finding.diagnostic.rule, fingerprint(finding)
+
+
+def _may_be_known(finding: Finding, files: set[str]) -> bool:
+    return finding.path in files and finding.diagnostic.rule not in UNREADABLE
