@@ -35,6 +35,11 @@ def defined_in(xml: str) -> frozenset[str]:
     return frozenset(unescape(match[1] if match[1] is not None else match[2]) for match in found)
 
 
+def included_in(xml: str) -> tuple[str, ...]:
+    """The paths that a text includes; none of a ROS package."""
+    return tuple(unescape(match[2]) for match in _INCLUDE.finditer(xml) if "ros_pkg" not in match[0])
+
+
 def _prolog(xml: str) -> int:
     """Where the document element begins."""
     found = _PROLOG.match(xml)
@@ -45,6 +50,7 @@ _PROLOG: Final = re.compile(r"(?:[^<]+|<\?.*?\?>|<!--.*?-->|<!(?!--)[^>]*>)*", r
 _VALUE: Final = r"""\bID\s*=\s*(?:"([^"]*)"|'([^']*)')"""
 _ID: Final = re.compile(_VALUE)
 _TREE: Final = re.compile(rf"<BehaviorTree\b[^>]*?{_VALUE}")
+_INCLUDE: Final = re.compile(r"""<include\b[^>]*?\bpath\s*=\s*(["'])(.*?)\1[^>]*>""")
 _ROOT: Final = re.compile(
     r"<root(?=[\s/>])(?:[^>]*\s(?:BTCPP_format|main_tree_to_execute)\s*="
     r"|.*?<(?:BehaviorTree\b|TreeNodesModel\b|include\s[^>]*\bpath\s*=))",

@@ -16,7 +16,7 @@ from btq_lang.render import Finding, Report, Trouble
 from btq_lang.util.record import replace
 from btq_lang.workspace.config import Project, unknown_rule
 from btq_lang.workspace.factories import merged
-from btq_lang.workspace.file import SUFFIXES
+from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
 from btq_lang.workspace.loader import LoadProblem
 from btq_lang.workspace.workspace import Workspace
 
@@ -39,7 +39,7 @@ def run(options: CheckOptions) -> int:
     if options.watch:
         from btq_lang.commands.watch_mode import run_on_changes
 
-        suffixes = (*SUFFIXES, ".xml")
+        suffixes = (*SUFFIXES, *XML_SUFFIXES)
         run_on_changes(lambda: _check(options, files)[1], options.paths, watched, suffixes)
     return code
 

@@ -1,17 +1,20 @@
-"""Which files the factories of a project register: the patterns of the project file, resolved."""
+"""Which files the factories of a project register: the patterns of the project file, and the projects of Groot2."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+from collections.abc import Container, Iterable, Iterator
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.btcpp.recognition import included_in
 from btq_lang.util.record import replace
-from btq_lang.workspace.file import SUFFIXES
-from btq_lang.workspace.loader import matching, package_folder
+from btq_lang.workspace.factories import Factory
+from btq_lang.workspace.file import GROOT_SUFFIX, SUFFIXES
+from btq_lang.workspace.loader import absolute, collect, matching, package_folder, read
 
 if TYPE_CHECKING:
     from btq_lang.commands.xml_below import XmlBelow
-    from btq_lang.workspace.factories import Factory
+    from btq_lang.workspace.config import Project
 
 PACKAGE: Final = "package://"
 
@@ -41,6 +44,16 @@ def resolved(factory: Factory, root: str, xml: XmlBelow) -> Factory:
     loaded = tuple(dict.fromkeys(files(factory.load)))
     nodes = tuple(path for path in dict.fromkeys(files(factory.nodes)) if path not in loaded)
     return replace(factory, files=loaded, node_files=nodes, lost=tuple(lost))
+
+
+def groot_projects(folders: Iterable[str], project: Project, wanted: Container[str]) -> Iterator[Factory]:
+    """The projects of Groot2 below some folders that register one of the wanted files, or are one, as factories."""
+    paths, _ = collect(folders, project, (GROOT_SUFFIX,))
+    for path in paths:
+        folder = os.path.dirname(path)
+        included = (absolute(os.path.join(folder, each)) for each in included_in(read(path)[0] or ""))
+        if path in wanted or any(each in wanted for each in included):
+            yield Factory(os.path.basename(path), files=(path,))
 
 
 def _place(pattern: str, root: str) -> tuple[str | None, str]:

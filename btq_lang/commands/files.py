@@ -11,7 +11,7 @@ from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.util.record import Record, replace
-from btq_lang.workspace.file import SUFFIXES
+from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
 from btq_lang.workspace.loader import (
     Found,
     LoadProblem,
@@ -134,7 +134,7 @@ class Files:
             if path in self.overlay:
                 members.setdefault(project_of(path).path or "", {})[path] = os.path.dirname(path)
                 continue
-            suffixes = (*SUFFIXES, ".xml") if with_xml else SUFFIXES
+            suffixes = (*SUFFIXES, *XML_SUFFIXES) if with_xml else SUFFIXES
             found, unreachable = collect([path], project_of(path).project, suffixes)
             if with_xml and found != (path,):
                 found = self._missions(path, found)
@@ -144,47 +144,62 @@ class Files:
                 if file == path or not excluder(home.project)(file):
                     members.setdefault(home.path or "", {})[file] = path if file != path else os.path.dirname(path)
         by_path = {found.path or "": found.project for found in projects.values()}
-        groups = []
+        groups: list[Group] = []
         for key, files in members.items():
-            project = by_path[key]
-            factories = tuple(self._resolved(project)) if project.factories else ()
-            registered = (path for factory in factories for path in (*factory.files, *factory.node_files))
-            group, found_problems = self._load(tuple(files), project, key or None, tuple(registered))
-            problems += found_problems
-            problems += (
-                LoadProblem(key, f"the factory `{each.name}` loads no file") for each in factories if not each.files
+            found_groups, found_problems = self._groups_of(
+                files, Found(by_path[key], key or None), project_of, for_checks
             )
-            of_factories = [*_by_factory(group, factories, for_checks)]
-            groups += of_factories
-            rest = replace(group, given=_not_in(of_factories, group.given))
-            if rest.given or not of_factories:
-                groups.append(self._with_pool(rest, files, project_of) if for_checks else rest)
+            groups += found_groups
+            problems += found_problems
         return tuple(groups), tuple(problems)
 
-    def _resolved(self, project: Project) -> Iterator[Factory]:
-        """The factories of a project with their files."""
-        from btq_lang.commands.factory_files import resolved  # few projects have any
-
-        return (resolved(factory, project.root, self.xml) for factory in project.factories)
-
-    def _with_pool(self, group: Group, tops: Mapping[str, str], project_of: Callable[[str], Found]) -> Group:
-        """The group with the files of its pools that define what its XML lacks.
+    def _groups_of(
+        self, tops: Mapping[str, str], home: Found, project_of: Callable[[str], Found], for_checks: bool
+    ) -> tuple[list[Group], list[LoadProblem]]:
+        """The requested files of one project, by factory.
 
         Args:
-            tops: the requested files, each with the folder in which it was.
+            tops: those files, each with the folder in which it was requested.
             project_of: returns the project of a file.
         """
+        factories = self._factories(home.project)
+        groot: tuple[Factory, ...] = ()
+        pools: tuple[str, ...] = ()
+        if for_checks and (xml := {path: top for path, top in tops.items() if not path.endswith(SUFFIXES)}):
+            from btq_lang.commands.factory_files import groot_projects  # many projects have no XML
+
+            pools = (home.project.root,) if home.path else tuple(sorted({pool_of(*each) for each in _folders(xml)}))
+            registered = {path for factory in factories for path in factory.files}
+            groot = tuple(groot_projects(pools, home.project, xml.keys() - registered))
+        group, problems = self._load(tuple(tops), home, factories + groot)
+        lacking = [each for each in factories if not each.files]
+        problems += [LoadProblem(home.path or "", f"the factory `{each.name}` loads no file") for each in lacking]
+        groups: list[Group] = []
+        for some in (factories, groot):  # what the project file says comes first
+            groups += _by_factory(group, some, for_checks)
+            known = {path for each in groups for path in each.given}
+            group = replace(group, given=tuple(path for path in group.given if path not in known))
+        if group.given or not groups:
+            has_pools = any(not path.endswith(SUFFIXES) for path in group.given)
+            groups.append(self._with_pools(group, pools, project_of) if for_checks and has_pools else group)
+        return groups, problems
+
+    def _factories(self, project: Project) -> tuple[Factory, ...]:
+        """The factories of a project with their files."""
+        if not project.factories:
+            return ()
+        from btq_lang.commands.factory_files import resolved  # few projects have any
+
+        return tuple(resolved(factory, project.root, self.xml) for factory in project.factories)
+
+    def _with_pools(self, group: Group, pools: tuple[str, ...], project_of: Callable[[str], Found]) -> Group:
+        """The group with the files of its pools that define what its XML lacks."""
         workspace = group.workspace
-        xml = [path for path in group.given if workspace.files[path].origin is not None]
-        if not xml:
-            return group
-        project = workspace.project
-        pools = {pool_of(*each) for each in {(os.path.dirname(path), tops[path]) for path in xml}}
-        project = replace(project, pools=(project.root,) if group.project_file else tuple(sorted(pools)))
-        lacking = lacking_names(workspace, xml)
+        project = replace(workspace.project, pools=pools)
+        lacking = lacking_names(workspace, group.given)
         files = dict(workspace.files)
-        for pool in project.pools if lacking else ():
-            found, _ = collect([pool], project, (*SUFFIXES, ".xml"))
+        for pool in pools if lacking else ():
+            found, _ = collect([pool], project, (*SUFFIXES, *XML_SUFFIXES))
             wanted = tuple(path for path in found if path not in files and project_of(path).path == group.project_file)
             for path in self._missions(pool, wanted):
                 if self.xml.may_define(path, lacking) and (text := self.overlay.get(path) or read(path)[0]) is not None:
@@ -218,21 +233,25 @@ class Files:
         return self.stdin
 
     def _load(
-        self, paths: tuple[str, ...], project: Project, project_file: str | None, registered: tuple[str, ...]
-    ) -> tuple[Group, tuple[LoadProblem, ...]]:
+        self, paths: tuple[str, ...], home: Found, factories: Iterable[Factory]
+    ) -> tuple[Group, list[LoadProblem]]:
+        """The requested files of a project, with those of its factories and all that they include."""
+
         def includes_of(path: str, text: str) -> Iterator[str]:
             return (include for include, _ in self._file(path, text).included_paths)
 
+        registered = (path for factory in factories for path in (*factory.files, *factory.node_files))
         wanted = tuple(dict.fromkeys((*paths, *registered)))
         known = {path: self.overlay[path] for path in wanted if path in self.overlay}
-        loaded = load((path for path in wanted if path not in known), project, includes_of, known)
+        loaded = load((path for path in wanted if path not in known), home.project, includes_of, known)
         files = {path: self._file(path, text) for path, text in loaded.texts.items()}
         given = tuple(path for path in paths if path in files)
         damaged = loaded.damaged
         if self._of_stdin is not None:
             damaged += tuple(path for path in given if path == self.stdin)
-        project = replace(project, folders=self.folders)
-        return Group(Workspace(files, project), given, damaged, loaded.absent, project_file), loaded.problems
+        project = replace(home.project, folders=self.folders)
+        group = Group(Workspace(files, project), given, damaged, loaded.absent, home.path)
+        return group, list(loaded.problems)
 
     def _file(self, path: str, text: str) -> File:
         known = self._known.get(path)
@@ -260,16 +279,16 @@ def _by_factory(group: Group, factories: Iterable[Factory], in_each: bool) -> It
             taken.update(() if in_each else given)
 
 
-def _not_in(groups: Iterable[Group], given: Iterable[str]) -> tuple[str, ...]:
-    known = {path for group in groups for path in group.given}
-    return tuple(path for path in given if path not in known)
+def _folders(tops: Mapping[str, str]) -> set[tuple[str, str]]:
+    """The folders of some files, each with the one in which they were requested."""
+    return {(os.path.dirname(path), top) for path, top in tops.items()}
 
 
-def lacking_names(workspace: Workspace, xml: Iterable[str]) -> frozenset[str]:
+def lacking_names(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:
     """The trees and nodes that XML files and their includes lack."""
     found: set[str] = set()
-    for path in xml:
+    for path in paths:
         scope, file = workspace.scope(path), workspace.files[path]
-        for kind in (Kind.TREE, Kind.MODEL):
+        for kind in (Kind.TREE, Kind.MODEL) if file.origin is not None else ():
             found.update(name for name in file.used(kind) if not scope.defines(kind, name))
     return frozenset(found.difference(BUILTINS))

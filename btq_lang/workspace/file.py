@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     Kept = TypeVar("Kept", bound=Item)
 
 SUFFIXES = (".btq", ".qualitybtcpp")  # of files in this language; the second is that of the classic form
+GROOT_SUFFIX = ".btproj"  # of a project of Groot2: includes and models
+XML_SUFFIXES = (".xml", GROOT_SUFFIX)
 
 
 class File:

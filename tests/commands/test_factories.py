@@ -113,3 +113,45 @@ def test_other_commands_use_the_factory_too(tmp_path: Path, write: Write) -> Non
     assert "main_tree_to_execute" not in (tmp_path / "d.xml").read_text()
     assert "rq1" in run_btq("trace", cwd=tmp_path)[1]
     assert "Dock" in run_btq("graph", "m.btq", cwd=tmp_path)[1]
+
+
+# ---- projects of Groot2 ----
+
+GROOT = """<root BTCPP_format="4" project_name="Project">
+<include path="trees/main.xml"/><include path="trees/dock.xml"/>
+<TreeNodesModel><Action ID="Go"><input_port name="goal"/></Action></TreeNodesModel></root>
+"""
+
+
+def test_a_project_of_groot_is_a_factory(tmp_path: Path, write: Write) -> None:
+    write("robot.btproj", GROOT)
+    write(
+        "trees/main.xml",
+        MAIN.replace('<SubTree ID="Dock"/>', '<Sequence><Go gaol="1"/><SubTree ID="Dock"/></Sequence>'),
+    )
+    write("trees/dock.xml", DOCK)
+    write("trees/old.xml", DOCK)
+    found = ["trees/main.xml:1:62: error[unknown-port] `Go` has no port `gaol`; did you mean `goal`?"]
+    assert check(tmp_path) == found
+    assert run_btq("check", "trees/dock.xml", "trees/old.xml", cwd=tmp_path)[1] == "No problems found in 2 files\n"
+    write(".git/HEAD", "")  # so a file by itself is known to be in the project above
+    assert check(tmp_path, "trees/main.xml") == found
+    write("trees/dock.xml", DOCK.replace('"Dock"', '"Undock"'))
+    unknown = f"trees/main.xml:1:85: error[unknown-tree] {UNKNOWN}"
+    assert check(tmp_path, "trees/main.xml") == [*found, unknown]
+    (tmp_path / "trees" / "dock.xml").unlink()
+    assert check(tmp_path) == [
+        "robot.btproj:2:48: error[missing-include] cannot find the file `trees/dock.xml`",
+        *found,
+    ]
+
+
+def test_the_project_file_counts_before_a_project_of_groot(tmp_path: Path, write: Write) -> None:
+    write("robot.btproj", GROOT)
+    write("trees/main.xml", MAIN)
+    write("trees/dock.xml", DOCK)
+    write("btq.toml", '[[factory]]\nname = "nav"\nload = ["trees/main.xml"]\n')
+    assert check(tmp_path) == [f"trees/main.xml:1:61: error[unknown-tree] {UNKNOWN}"]
+    write("btq.toml", '[[factory]]\nname = "nav"\nload = ["*.btproj"]\nmain = "Dock"\n')
+    unused = "unused tree `Main`: nothing refers to it, and the main tree is `Dock`"
+    assert check(tmp_path) == [f"trees/main.xml:1:42: warning[unused-tree] {unused}"]

@@ -396,3 +396,17 @@ def test_open_xml_finds_what_it_lacks_in_its_folder(tmp_path: Path) -> None:
     assert [each.rule for each in session.diagnostics(main)] == ["unknown-tree"]
     session.edit(dock, tree("Undock", "<AlwaysSuccess/>"))
     assert session.diagnostics(main) == ()
+
+
+def test_a_project_of_groot_is_a_factory_in_the_editor_too(tmp_path: Path) -> None:
+    tree = '<root BTCPP_format="4"><BehaviorTree ID="{}">{}</BehaviorTree></root>'.format
+    (tmp_path / "robot.btproj").write_text('<root BTCPP_format="4"><include path="main.xml"/></root>')
+    (tmp_path / "dock.xml").write_text(tree("Dock", "<AlwaysSuccess/>"))
+    main, project = str(tmp_path / "main.xml"), str(tmp_path / "robot.btproj")
+    session = Session()
+    session.edit(main, tree("Main", '<SubTree ID="Dock"/>'))
+    assert [each.rule for each in session.diagnostics(main)] == ["unknown-tree"]
+    assert session.paths() == (main, project)
+    (tmp_path / "robot.btproj").write_text('<root><include path="main.xml"/><include path="dock.xml"/></root>')
+    session.reload()
+    assert session.diagnostics(main) == ()
