@@ -4,6 +4,10 @@ One invariant: a message is sent when all answers to the one before have come, a
 answer that it asks for: diagnostics are those of the version that was sent.  Processor time is that of the server's
 process and of nobody else, so it tells little of what else the machine does; time by the clock tells all of it.  The
 typing is drawn from a seed, so every run types the same.
+
+The goals are for a machine where a server of pygls without features answers `initialize` after `PYGLS_ALONE`.  So that
+is measured each time, and times that are held against goals are converted: on a machine that takes twice as long for
+it, 60 ms count as 30.
 """
 
 from __future__ import annotations
@@ -35,6 +39,8 @@ MEMORY = 60  # MB above pygls alone
 MANY, NODES_OF_MANY = 1_000, 50
 ONE_TREE = {1_000: 60, 5_000: 250, 40_000: 2_000}  # nodes below one node, and the milliseconds that a key may take
 
+PYGLS_ALONE = 0.428  # seconds by the clock
+
 BTQ = (sys.executable, "-c", "from btq_lang.server import main; main(['--stdio'])")
 BARE = (
     sys.executable,
@@ -57,14 +63,13 @@ class Series:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure and print; the exit code says nothing about speed."""
     options = _options(arguments)
-    measured: list[Series] = []
-    goals: list[Goal] = []
+    measured, goals = starts(options.starts)
+    slowness = min(measured[0].wall) / PYGLS_ALONE
     parts: dict[str, Callable[[], tuple[list[Series], list[Goal]]]] = {
-        "start": lambda: starts(options.starts),
-        "edits": lambda: typing(FILES, NODES_A_FILE, options),
-        "large": lambda: typing(1, LARGE, options),
-        "tree": lambda: one_tree(options),
-        "many": lambda: many_files(options.spelling),
+        "edits": lambda: typing(FILES, NODES_A_FILE, options, slowness),
+        "large": lambda: typing(1, LARGE, options, slowness),
+        "tree": lambda: one_tree(options, slowness),
+        "many": lambda: many_files(options.spelling, slowness),
     }
     for part, measure in parts.items():
         if options.only in (None, part):
@@ -72,8 +77,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
             measured += series
             goals += reached
     times = [{"name": one.name, "wall_seconds": one.wall, "cpu_seconds": one.cpu} for one in measured]
-    data = report.as_data({"series": times}, goals)
-    print(json.dumps(data, indent=2) if options.json else as_text(measured, goals))
+    data = report.as_data({"series": times, "slowness": slowness}, goals)
+    print(json.dumps(data, indent=2) if options.json else as_text(measured, goals, slowness))
 
 
 # ---- what is measured -----------------------------------------------------------------------------------------------
@@ -95,7 +100,7 @@ def starts(rounds: int) -> tuple[list[Series], list[Goal]]:
     return [bare, btq], [Goal("start in times of pygls alone, processor <= 1.15", quotient, quotient <= 1.15)]
 
 
-def typing(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Series], list[Goal]]:
+def typing(files: int, nodes: int, options: argparse.Namespace, slowness: float) -> tuple[list[Series], list[Goal]]:
     """What an author does in one file of a folder: type, and ask.  It is done several times, each with a server of its
     own, and of each message the least counts: what the machine does besides comes at another one the next time."""
     runs = [_typed(files, nodes, options) for _ in range(options.repeats)]
@@ -103,7 +108,7 @@ def typing(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Se
     edits, completion, hover, definition, first, full, delta = measured
     allowed = {edits: EDIT[nodes], completion: QUESTION, hover: QUESTION, definition: QUESTION}
     allowed |= {first: ALL_TOKENS, full: ALL_TOKENS, delta: TOKEN_DELTA}
-    goals = [_by_the_clock(one, limit) for one, limit in allowed.items()]
+    goals = [_by_the_clock(one, limit, slowness) for one, limit in allowed.items()]
     if nodes < LARGE:
         for when, at in (("when all is checked", 1), ("in the end", 2)):
             most = max(run[at] for run in runs)
@@ -112,9 +117,9 @@ def typing(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Se
     return measured, goals
 
 
-def _by_the_clock(series: Series, limit: int) -> Goal:
-    taken = 1000 * percentile(series.wall, 99)
-    return Goal(f"{series.name}: p99 ms by the clock <= {limit}", taken, taken <= limit)
+def _by_the_clock(series: Series, limit: int, slowness: float) -> Goal:
+    taken = 1000 * percentile(series.wall, 99) / slowness
+    return Goal(f"{series.name}: p99 ms by the clock, converted, <= {limit}", taken, taken <= limit)
 
 
 def _least(runs: Sequence[Series]) -> Series:
@@ -171,14 +176,14 @@ def _typed(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Se
     return [edits, completion, hover, definition, first, full, delta], memory, in_the_end
 
 
-def one_tree(options: argparse.Namespace) -> tuple[list[Series], list[Goal]]:
+def one_tree(options: argparse.Namespace, slowness: float) -> tuple[list[Series], list[Goal]]:
     """From a key to what it asks for, in a file that is one flat tree: its diagnostics, or a completion before them."""
     measured, goals = [], []
     for nodes, limit in ONE_TREE.items():
         for asks in (True, False) if nodes == min(ONE_TREE) else (True,):
             keys = _least([_keys_in_one_tree(nodes, asks=asks) for _ in range(options.repeats)])
             measured.append(keys)
-            goals.append(_by_the_clock(keys, limit))
+            goals.append(_by_the_clock(keys, limit, slowness))
     return measured, goals
 
 
@@ -208,7 +213,7 @@ def _keys_in_one_tree(nodes: int, *, asks: bool) -> Series:
     return keys
 
 
-def many_files(spelling: missions.Spelling) -> tuple[list[Series], list[Goal]]:
+def many_files(spelling: missions.Spelling, slowness: float) -> tuple[list[Series], list[Goal]]:
     """A folder of 1 000 files: when what is open is told, and when all is, with progress meanwhile."""
     first, whole = Series(f"first diagnostics, {MANY:,} files"), Series(f"all diagnostics, {MANY:,} files")
     with tempfile.TemporaryDirectory() as name:
@@ -230,9 +235,10 @@ def many_files(spelling: missions.Spelling) -> tuple[list[Series], list[Goal]]:
         whole.cpu.append(server.processor_time() - cpu)
         server.end()
     quotient = first.wall[0] / whole.wall[0]
+    cpu = whole.cpu[0] / slowness
     return [first, whole], [
         Goal(f"{MANY} files: what is open is told, in times of the whole, < 0.5", quotient, quotient < 0.5),
-        Goal(f"{MANY} files: all, s of processor <= 10", whole.cpu[0], whole.cpu[0] <= 10),
+        Goal(f"{MANY} files: all, s of processor, converted, <= 10", cpu, cpu <= 10),
         Goal(f"{MANY} files: reports of progress >= 3", reports, reports >= 3),
     ]
 
@@ -457,7 +463,7 @@ def percentile(times: Sequence[float], percent: int) -> float:
     return ordered[min(len(ordered) - 1, len(ordered) * percent // 100)]
 
 
-def as_text(measured: Sequence[Series], goals: Sequence[Goal]) -> str:
+def as_text(measured: Sequence[Series], goals: Sequence[Goal], slowness: float) -> str:
     """A table in Markdown."""
     lines = [
         report.machine(),
@@ -472,12 +478,17 @@ def as_text(measured: Sequence[Series], goals: Sequence[Goal]) -> str:
         )
         shown = " | ".join(f"{1000 * figure:.1f}" for figure in figures)
         lines.append(f"| {series.name} | {shown} | {len(series.cpu)} |")
-    return "\n".join([*lines, "", *report.shown(goals)])
+    converted = (
+        f"Converted: divided by {slowness:.2f}, as pygls alone takes {slowness:.2f} times {PYGLS_ALONE} s to start."
+    )
+    return "\n".join([*lines, "", converted, *report.shown(goals)])
 
 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = report.options(__doc__)
-    parser.add_argument("--only", choices=("start", "edits", "large", "tree", "many"), help="measure one part")
+    parser.add_argument(
+        "--only", choices=("start", "edits", "large", "tree", "many"), help="measure one part, and the start"
+    )
     parser.add_argument(
         "--rounds", type=int, default=20, help="how often something is typed, some 30 edits (default 20)"
     )
