@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
@@ -38,8 +39,13 @@ def register(server: Server) -> None:
             return None
         return workspace, features.TreeItem(given.name, data["path"], Span(*data["span"]), Span(*data["name"]))
 
-    def places(workspace: Workspace, call: features.Call) -> list[types.Range]:
-        return [convert.range(workspace, call.path, span) for span in call.places]
+    def calls(
+        given: types.CallHierarchyItem, feature: Callable[[Workspace, features.TreeItem], tuple[features.Call, ...]]
+    ) -> Iterator[tuple[types.CallHierarchyItem, list[types.Range]]]:
+        if answer := tree_of(given):
+            workspace = answer[0]
+            for call in feature(*answer):
+                yield item(workspace, call.tree), [convert.range(workspace, call.path, span) for span in call.places]
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
     def prepare(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem] | None:
@@ -48,21 +54,11 @@ def register(server: Server) -> None:
 
     @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
     def incoming(params: types.CallHierarchyIncomingCallsParams) -> list[types.CallHierarchyIncomingCall]:
-        answer = tree_of(params.item)
-        return [
-            types.CallHierarchyIncomingCall(item(answer[0], call.tree), places(answer[0], call))
-            for call in (features.callers(*answer) if answer else ())
-            if answer
-        ]
+        return [types.CallHierarchyIncomingCall(*call) for call in calls(params.item, features.callers)]
 
     @server.feature(types.CALL_HIERARCHY_OUTGOING_CALLS)
     def outgoing(params: types.CallHierarchyOutgoingCallsParams) -> list[types.CallHierarchyOutgoingCall]:
-        answer = tree_of(params.item)
-        return [
-            types.CallHierarchyOutgoingCall(item(answer[0], call.tree), places(answer[0], call))
-            for call in (features.called(*answer) if answer else ())
-            if answer
-        ]
+        return [types.CallHierarchyOutgoingCall(*call) for call in calls(params.item, features.called)]
 
     @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
     def hints(params: types.InlayHintParams) -> list[types.InlayHint]:

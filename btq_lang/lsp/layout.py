@@ -19,25 +19,23 @@ if TYPE_CHECKING:
 def register(server: Server) -> None:
     convert = server.convert
 
-    @server.feature(types.TEXT_DOCUMENT_FORMATTING)
-    def formatting(params: types.DocumentFormattingParams) -> list[types.TextEdit] | None:
-        place = server.at(params.text_document)
+    def formatted(document: types.TextDocumentIdentifier, within: types.Range | None) -> list[types.TextEdit] | None:
+        place = server.at(document)
         if place is None or _is_refused(server, *place):
             return None
-        from btq_lang.formatter import format_text  # imported on use, like features
+        from btq_lang.formatter import format_range, format_text  # imported on use, like features
 
-        workspace, path = place
-        return convert.edits(*place, format_text(workspace.files[path].text).edits)
+        text = place[0].files[place[1]].text
+        edits = format_text(text).edits if within is None else format_range(text, *convert.span(*place, within))
+        return convert.edits(*place, edits)
+
+    @server.feature(types.TEXT_DOCUMENT_FORMATTING)
+    def formatting(params: types.DocumentFormattingParams) -> list[types.TextEdit] | None:
+        return formatted(params.text_document, None)
 
     @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
     def range_formatting(params: types.DocumentRangeFormattingParams) -> list[types.TextEdit] | None:
-        place = server.at(params.text_document)
-        if place is None or _is_refused(server, *place):
-            return None
-        from btq_lang.formatter import format_range  # as above
-
-        workspace, path = place
-        return convert.edits(*place, format_range(workspace.files[path].text, *convert.span(*place, params.range)))
+        return formatted(params.text_document, params.range)
 
 
 def _is_refused(server: Server, workspace: Workspace, path: str) -> bool:

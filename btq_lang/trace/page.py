@@ -93,9 +93,9 @@ def _tables(overview: Overview) -> Iterator[str]:
 
 
 def _requirements(overview: Overview) -> Iterator[str]:
-    yield '<section id="requirements" aria-labelledby="h-requirements"><h2 id="h-requirements">Requirements</h2>'
+    yield _section("requirements", "Requirements")
     if not overview.requirements:
-        yield "<p>There are none.</p></section>"
+        yield _EMPTY
         return
     yield "<table><caption>Requirements, their nodes, and how they are enforced</caption>"
     yield _head("Requirement", "Holds for", "How")
@@ -106,6 +106,10 @@ def _requirements(overview: Overview) -> Iterator[str]:
         yield f'<th scope="row">{_demand(each)}</th>'
         yield f"<td>{_subjects(each)}</td><td>{_ways(each)}</td></tr>"
     yield "</tbody></table></section>"
+
+
+def _section(key: str, title: str) -> str:
+    return f'<section id="{key}" aria-labelledby="h-{key}"><h2 id="h-{key}">{title}</h2>'
 
 
 def _head(*names: str) -> str:
@@ -155,13 +159,12 @@ def _ways(each: RequirementRow) -> str:
 
 
 def _concerns(overview: Overview) -> Iterator[str]:
-    yield '<section id="concerns" aria-labelledby="h-concerns"><h2 id="h-concerns">Qualities</h2>'
+    yield _section("concerns", "Qualities")
     if not overview.qualities:
-        yield "<p>There are none.</p></section>"
+        yield _EMPTY
         return
     yield "<table><caption>Concerns of the early design, and what makes them measurable</caption>"
-    heads = ("Quality", "Concern of", "Requirements")
-    yield _head(*heads)
+    yield _head("Quality", "Concern of", "Requirements")
     nodes = {node.key: node for node in overview.nodes}
     names = {each.key: each.name for each in overview.requirements}
     for each in overview.qualities:
@@ -177,26 +180,21 @@ def _concerns(overview: Overview) -> Iterator[str]:
 
 
 def _node_list(nodes: Sequence[NodeRow]) -> str:
-    lines = "".join(f'<li><a href="#{node.key}">{escape(node.name)}</a> {_at(node.at)}</li>' for node in nodes)
+    lines = "".join(f"<li>{_link(node.key, node.name, node.at)}</li>" for node in nodes)
     return f"<ul>{lines}</ul>" if lines else ""
 
 
 def _gaps(overview: Overview) -> Iterator[str]:
-    yield '<section id="gaps" aria-labelledby="h-gaps"><h2 id="h-gaps">Gaps</h2>'
+    yield _section("gaps", "Gaps")
     found = {
-        "unenforced": [f'<a href="#{each.key}">{escape(each.name)}</a> {_at(each.at)}' for each in overview.unenforced],
-        "unmeasured": [
-            f'<a href="#{each.key}">{escape(shown_quality(each))}</a> {_at(each.at)}' for each in overview.unmeasured
-        ],
-        "unattached": [f'<a href="#{each.key}">{escape(each.name)}</a> {_at(each.at)}' for each in overview.unattached],
+        "unenforced": [_link(each.key, each.name, each.at) for each in overview.unenforced],
+        "unmeasured": [_link(each.key, shown_quality(each), each.at) for each in overview.unmeasured],
+        "unattached": [_link(each.key, each.name, each.at) for each in overview.unattached],
         "loose": [
-            f'<a href="#{each.key}">{escape(each.name)}</a> {_at(each.at)} <code>{escape(clause)}</code>'
-            for each, clause in overview.loose
+            f"{_link(each.key, each.name, each.at)} <code>{escape(clause)}</code>" for each, clause in overview.loose
         ],
-        "bare_trees": [
-            f'<a href="#{each.nodes[0]}">{escape(each.name)}</a> {_at(each.at)}' for each in overview.bare_trees
-        ],
-        "bare_nodes": [f'<a href="#{each.key}">{escape(each.name)}</a> {_at(each.at)}' for each in overview.bare_nodes],
+        "bare_trees": [_link(each.nodes[0], each.name, each.at) for each in overview.bare_trees],
+        "bare_nodes": [_link(each.key, each.name, each.at) for each in overview.bare_nodes],
     }
     if not any(found.values()):
         hard = "hard requirement (on violation fail or halt)"
@@ -209,10 +207,9 @@ def _gaps(overview: Overview) -> Iterator[str]:
 
 
 def _totals(overview: Overview) -> Iterator[str]:
-    yield '<section id="totals" aria-labelledby="h-totals"><h2 id="h-totals">Totals</h2>'
+    yield _section("totals", "Totals")
     yield f"<table class='numbers'><caption>By characteristic of ISO/IEC 25010:{overview.edition}</caption>"
-    heads = ("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed")
-    yield _head(*heads)
+    yield _head("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed")
     for each in overview.totals:
         numbers = (each.concerns, each.requirements, each.enforced, each.monitored, each.reviewed)
         cells = "".join(f"<td>{number or '–'}</td>" for number in numbers)
@@ -245,6 +242,10 @@ def _figure(tree: TreeRow) -> Iterator[str]:
     yield "</div></figure>"
 
 
+def _link(key: str, name: str, at: At) -> str:
+    return f'<a href="#{key}">{escape(name)}</a> {_at(at)}'
+
+
 def _at(at: At) -> str:
     name = at.path.rpartition("/")[2]
     return f'<small class="at" title="{escape(at.path)}:{at.line}:{at.column}">{escape(name)}:{at.line}</small>'
@@ -252,5 +253,6 @@ def _at(at: At) -> str:
 
 _CODE: Final = re.compile("`([^`]*)`")
 _NONE: Final = '<span class="missing">none</span>'
+_EMPTY: Final = "<p>There are none.</p></section>"
 _FILES: Final = 3  # files named in the title
 _BROAD: Final = 720  # pixels: a broader tree is drawn from left to right
