@@ -97,18 +97,15 @@ def encoded(text: str, stretch: Stretch, known: Known, encoding: Encoding) -> En
         words.by = entry.start - stretch.start
         report(entry.item, words)
     words.found.sort()
-    made = _Encoder(text, encoding)
+    tokens: list[Token] = []
     at = 0
-    for start, end, appearance in words.found:
-        if start < at:
-            continue
-        for begin, stop, of_between in _between(text[at:start]):
-            made.add(begin + at, stop + at, of_between)
-        made.add(start, end, appearance)
-        at = end
-    for begin, stop, of_between in _between(text[at:]):
-        made.add(begin + at, stop + at, of_between)
-    return Encoded(made.tokens, made.line)
+    for token in words.found:
+        if token[0] >= at:
+            tokens += _between(text, at, token[0])
+            tokens.append(token)
+            at = token[1]
+    tokens += _between(text, at, len(text))
+    return _encoded(text, tokens, encoding)
 
 
 class _Words(Listener):
@@ -182,14 +179,19 @@ class _Words(Listener):
         return USED[What.TREE] if self._known.is_tree(name) else OWN_NODE
 
 
-@lru_cache(2_000)
-def _between(text: str) -> list[Token]:
+def _between(text: str, start: int, end: int) -> list[Token]:
     """The tokens between two words of a tree, before the first or after the last."""
+    found = _tokens_of(text[start:end])
+    return [(begin + start, stop + start, appearance) for begin, stop, appearance in found] if found else found
+
+
+@lru_cache(2_000)
+def _tokens_of(text: str) -> list[Token]:
     head, sign, comment = text.partition("\n#")
     end = comment.find("\n")
     if sign and end == len(comment.rstrip()) and _BEGINNING.isdisjoint(head) and "\r" not in comment:
         start = len(head) + 1  # an item is often preceded by a comment, each a different one
-        return [*_between(text[:start]), (start, start + 1 + end, PLAIN[COMMENT])]
+        return [*_tokens_of(text[:start]), (start, start + 1 + end, PLAIN[COMMENT])]
     found: list[Token] = []
     before = ""
     for kind, start, raw in pieces(text):
@@ -201,65 +203,49 @@ def _between(text: str) -> list[Token]:
     return found
 
 
-class _Encoder:
-    """Encodes tokens in the order of the text; one that crosses a line end becomes one on each line.
-
-    Attributes:
-        line: of the last one.
-    """
-
-    def __init__(self, text: str, encoding: Encoding) -> None:
-        self.tokens: list[str] = []
-        self.line = 0
-        self._text = text
-        self._encoding = encoding
-        self._is_plain = encoding == "code-points" or text.isascii()
-        self._has_returns = "\r" in text
-        self._column = 0
-        # The line where the next token is looked for: its number, its start, and the start of the line after it.
-        self._at = self._begin = 0
-        self._end = self._next_line(0)
-
-    def add(self, start: int, end: int, appearance: str) -> None:
-        while self._end <= start:
-            self._begin = self._end
-            self._end = self._next_line(self._end)
-            self._at += 1
-        if end >= self._end:
-            for begin, stop in _lines(self._text[start:end]):
-                self.add(start + begin, start + stop, appearance)
-            return
-        column, length = start - self._begin, end - start
-        if not self._is_plain:
-            column = width_of(self._text[self._begin : start], self._encoding)
-            length = width_of(self._text[start:end], self._encoding)
-        if self._at == self.line:
-            self.tokens.append(f"0,{column - self._column},{length}{appearance}")
-        else:
-            self.tokens.append(f"{self._at - self.line},{column},{length}{appearance}")
-            self.line = self._at
-        self._column = column
-
-    def _next_line(self, at: int) -> int:
-        """Where the next line begins; for the last one, an offset after the text."""
-        if self._has_returns:
-            found = LINE_END.search(self._text, at)
-            end = found.end() if found else 0
-        else:
-            end = self._text.find("\n", at) + 1
-        return end or len(self._text) + 1
+def _encoded(text: str, tokens: list[Token], encoding: Encoding) -> Encoded:
+    """The tokens, which are in the order of the text; one that crosses a line end becomes one on each line."""
+    is_plain = encoding == "code-points" or text.isascii()
+    has_returns = "\r" in text
+    found: list[str] = []
+    line = column = 0  # of the last token
+    at = begin = 0  # the line where the next one is looked for, and its start
+    end = _next_line(text, 0, has_returns)
+    for first, last, appearance in tokens:
+        while end <= first:
+            begin, end, at = end, _next_line(text, end, has_returns), at + 1
+        pieces = ((first, last),) if last < end else _lines(text, first, last)
+        for start, stop in pieces:
+            while end <= start:
+                begin, end, at = end, _next_line(text, end, has_returns), at + 1
+            if is_plain:
+                place, length = start - begin, stop - start
+            else:
+                place, length = width_of(text[begin:start], encoding), width_of(text[start:stop], encoding)
+            found.append(f"{at - line},{place - column if at == line else place},{length}{appearance}")
+            line, column = at, place
+    return Encoded(found, line)
 
 
-def _lines(raw: str) -> list[tuple[int, int]]:
+def _next_line(text: str, at: int, has_returns: bool) -> int:
+    """Where the next line begins; for the last one, an offset after the text."""
+    if has_returns:
+        found = LINE_END.search(text, at)
+        end = found.end() if found else 0
+    else:
+        end = text.find("\n", at) + 1
+    return end or len(text) + 1
+
+
+def _lines(text: str, start: int, end: int) -> list[tuple[int, int]]:
     """The start and end of each line of a token that has text."""
     found: list[tuple[int, int]] = []
-    start = 0
-    for line in LINE_END.finditer(raw):
+    for line in LINE_END.finditer(text, start, end):
         if line.start() > start:
             found.append((start, line.start()))
         start = line.end()
-    if start < len(raw):
-        found.append((start, len(raw)))
+    if start < end:
+        found.append((start, end))
     return found
 
 
