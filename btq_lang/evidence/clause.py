@@ -115,7 +115,7 @@ class JudgedClause:
             observed: what was observed during it.
         """
         self._has_run = True
-        self._waits = self._waits or activation.first != activation.last
+        self._waits = self._waits or activation.started[1] != activation.ended[1]
         if guard is not None and self._is_own(guard):
             sentence = f"stopped by its own guard after {duration(activation.seconds)}"
             self._add(Judgement(False, activation.end, sentence), path, activation.end)

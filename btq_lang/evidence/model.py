@@ -73,40 +73,22 @@ class Activation:
     """One activation of a node, from its start to its end.
 
     Attributes:
+        started, ended: when it began and ended, with the rows of the log that say so.
+        begin, end: the times of these moments.
         outcome: succeeded, failed, halted, or still open when the log ends.
         timing: `latest`: the log shows only that it had ended by `end`; `broken`: the clock was set back meanwhile.
-        first, last: the rows of the log with which it began and ended.
     """
 
-    __slots__ = ("begin", "end", "first", "last", "outcome", "timing", "uid")
+    __slots__ = ("begin", "end", "ended", "outcome", "started", "timing", "uid")
 
-    def __init__(
-        self,
-        uid: int,
-        begin: int,
-        end: int,
-        outcome: Outcome,
-        timing: Timing = "exact",
-        first: int = 0,
-        last: int = 0,
-    ) -> None:
+    def __init__(self, uid: int, started: Moment, ended: Moment, outcome: Outcome, timing: Timing = "exact") -> None:
         self.uid: Final = uid
-        self.begin: Final = begin
-        self.end: Final = end
+        self.started: Final = started
+        self.ended: Final = ended
+        self.begin: Final = started[0]
+        self.end: Final = ended[0]
         self.outcome: Final[Outcome] = outcome
         self.timing: Final[Timing] = timing
-        self.first: Final = first
-        self.last: Final = last
-
-    @property
-    def started(self) -> Moment:
-        """The moment when it began."""
-        return self.begin, self.first
-
-    @property
-    def ended(self) -> Moment:
-        """The moment when it ended."""
-        return self.end, self.last
 
     @property
     def seconds(self) -> float:

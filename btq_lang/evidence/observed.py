@@ -110,8 +110,8 @@ class Observed:
                     found.update([(time, 0) for time in self._signals.changes(each.signal, begin[0], end[0])])
                 elif isinstance(each, Running):
                     for activation in self._nodes.activations(each.target):
-                        stopped = activation.end, activation.last + 1
-                        since = activation.begin, activation.first + 1  # unknown from here on if the end is unknown
+                        stopped = activation.end, activation.ended[1] + 1
+                        since = activation.begin, activation.started[1] + 1  # unknown from here on if the end is unknown
                         found.update([at for at in (activation.started, since, stopped) if begin < at <= end])
         return sorted(found)
 

@@ -30,42 +30,43 @@ def activations(session: Session) -> Iterator[Activation]:
     parent = tree.parent
     begun, running = nodes.begun, nodes.running
     odd = _Oddities(session)
-    idle: tuple[int, int, int] | None = None  # a halt that may turn out to be part of the node's own completion
+    idle: tuple[int, Moment] | None = None  # a halt that may turn out to be part of the node's own completion
     done: set[int] = set()  # the nodes that have completed and have not been reset since
     is_reset_written = False
-    last = row = 0
+    row, now = 0, (0, 0)
     for row, (time, uid, status) in enumerate(session.transitions, 1):
         if uid not in parent or status not in _STATUSES:
             odd.count("rows with an unknown node or status, left out", time)
             continue
-        if time < last:
+        before, now = now, (time, row)
+        if time < before[0]:
             odd.count("rows earlier than the row before them, so durations across them are unknown", time)
             nodes.distrust()
         completes = status in (SUCCESS, FAILURE)
         if idle is not None:
-            halted, halted_at, halted_row = idle
+            halted, then = idle
             idle = None
-            if not (halted == uid and completes and time - halted_at <= ONE_COMPLETION):
-                yield from nodes.end(halted, halted_at, halted_row, "H")
+            if not (halted == uid and completes and time - then[0] <= ONE_COMPLETION):
+                yield from nodes.end(halted, then, "H")
         if status == RUNNING:
             if uid in running:
                 if uid == ROOT:
-                    yield from nodes.end(ROOT, last, row - 1, "O", below="O")
+                    yield from nodes.end(ROOT, (before[0], row - 1), "O", below="O")
                 else:
                     odd.count(_UNWRITTEN, time)
-                    yield from nodes.end(uid, time, row, "H", "latest")
+                    yield from nodes.end(uid, now, "H", "latest")
             running.add(uid)
             if uid not in begun:
-                nodes.begin(uid, time, row)
+                nodes.begin(uid, now)
                 if uid in done:
                     session.keeping.add(parent[uid])
         elif completes:
             if uid not in begun:
-                nodes.begin(uid, time, row)
+                nodes.begin(uid, now)
                 if uid in done:
                     session.keeping.add(parent[uid])
             done.add(uid)
-            ended = nodes.end(uid, time, row, "S" if status == SUCCESS else "F")
+            ended = nodes.end(uid, now, "S" if status == SUCCESS else "F")
             if len(ended) > 1:
                 odd.count(_UNWRITTEN, time)
             yield from ended
@@ -73,18 +74,17 @@ def activations(session: Session) -> Iterator[Activation]:
             done.discard(uid)
             is_reset_written = True
             if uid in running:
-                idle = uid, time, row
+                idle = uid, now
             elif uid == ROOT and uid in begun:  # no row of the root: how the run ended is unknown
-                yield from nodes.end(ROOT, time, row, "O", below="O")
+                yield from nodes.end(ROOT, now, "O", below="O")
             elif uid in begun:
                 nodes.forget(uid)
-        last = time
     if not is_reset_written:
         session.keeping.clear()
     if idle is not None:
         yield from nodes.end(*idle, "H")
     if ROOT in begun:
-        yield from nodes.end(ROOT, last, row, "O", below="O")
+        yield from nodes.end(ROOT, (now[0], row), "O", below="O")
     odd.report()
 
 
@@ -107,14 +107,14 @@ class _OpenNodes:
         self._tree: Final = tree
         self._distrusted: Final[set[int]] = set()
 
-    def begin(self, uid: int, time: int, row: int) -> None:
+    def begin(self, uid: int, now: Moment) -> None:
         """Mark a node and its ancestors as active, whether these have logged it or not."""
         while uid and uid not in self.begun:
-            self.begun[uid] = time, row
+            self.begun[uid] = now
             uid = self._tree.parent[uid]
 
     def end(
-        self, uid: int, time: int, row: int, outcome: Outcome, timing: Timing = "exact", below: Outcome = "H"
+        self, uid: int, now: Moment, outcome: Outcome, timing: Timing = "exact", below: Outcome = "H"
     ) -> list[Activation]:
         """End a node; returns the activations that end with it, innermost first, its own last."""
         found: list[Activation] = []
@@ -122,10 +122,10 @@ class _OpenNodes:
         if last > uid and len(self.begun) > 1:
             for each in sorted([each for each in self.begun if uid < each <= last], reverse=True):
                 if each in self.running:
-                    found.append(self._made(each, time, row, below, "latest" if below == "H" else "exact"))
+                    found.append(self._made(each, now, below, "latest" if below == "H" else "exact"))
                 else:  # only its descendants have written rows
                     self.forget(each)
-        found.append(self._made(uid, time, row, outcome, timing))
+        found.append(self._made(uid, now, outcome, timing))
         return found
 
     def forget(self, uid: int) -> None:
@@ -138,13 +138,12 @@ class _OpenNodes:
         """Mark the durations of all active nodes as unknown: the clock was set back."""
         self._distrusted.update(self.begun)
 
-    def _made(self, uid: int, end: int, row: int, outcome: Outcome, timing: Timing) -> Activation:
-        begin, first = self.begun.pop(uid)
+    def _made(self, uid: int, now: Moment, outcome: Outcome, timing: Timing) -> Activation:
         self.running.discard(uid)
         if uid in self._distrusted:
             self._distrusted.remove(uid)
             timing = "broken"
-        return Activation(uid, begin, end, outcome, timing, first, row)
+        return Activation(uid, self.begun.pop(uid), now, outcome, timing)
 
 
 class _Oddities:
