@@ -158,7 +158,9 @@ class JudgedClause:
                     self._count(found, root, place.path)
                 else:
                     chain = self.explain_run(found, over, place.others)
-                    self._tally.add(replace(found, starts=()), place.path, root.end, chain)
+                    self._tally.add(
+                        Judgement(False, found.at, found.sentence, found.measure), place.path, root.end, chain
+                    )
         self._tally.end_run(run)
 
     def _judge_one(self, activation: Activation, observed: Observed, path: str, root: Activation | None = None) -> None:

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.verdicts import Histogram
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verbs import Measure
+    from btq_lang.evidence.conditions import Reading
+    from btq_lang.evidence.limits import Measure
     from btq_lang.requirements.model import Value
 
 
@@ -21,15 +22,15 @@ class Distribution:
 
     def __init__(self) -> None:
         self._counts: dict[int, int] = {}  # by how many steps above the bound
-        self._last: Measure | None = None
+        self._last: Measure | Reading | None = None
         self._origin = 0.0
         self._step = 0.0
 
-    def add(self, measure: Measure) -> None:
+    def add(self, measure: Measure | Reading) -> None:
         """Count a value."""
         if self._last is None:
-            self._origin = measure.bound
-            self._step = abs(measure.bound) / _FINEST or 1.0 / _FINEST
+            self._origin = measure.bound.si
+            self._step = abs(measure.bound.si) / _FINEST or 1.0 / _FINEST
         self._last = measure
         at = floor((measure.si - self._origin) / self._step)
         if at in self._counts:
@@ -52,8 +53,8 @@ class Distribution:
             low=self._origin + low * self._step,
             step=self._step,
             counts=tuple(self._counts.get(at, 0) for at in range(low, high + 1)),
-            bound=self._last.bound,
-            bound_text=self._last.bound_text,
+            bound=self._last.bound.si,
+            bound_text=self._last.bound.text,
             goal=goal.si if goal is not None else None,
             goal_text=goal.text if goal is not None else "",
             unit=self._last.unit,

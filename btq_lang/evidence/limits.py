@@ -6,27 +6,34 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.conditions import bound_at
 from btq_lang.evidence.signals import Unknown
-from btq_lang.evidence.verbs import Measure
-from btq_lang.util.record import Record
+from btq_lang.requirements.model import Value
 
 if TYPE_CHECKING:
+    from btq_lang.catalog.units import Unit
     from btq_lang.evidence.conditions import Bound
     from btq_lang.evidence.model import Moment
     from btq_lang.evidence.observed import Observed
-    from btq_lang.requirements.model import Limit, Value
+    from btq_lang.requirements.model import Bounded, Limit
 
 
-class Compared(Record):
-    """A measure and the side of its bound that it is closer to violating.
+class Measure:
+    """A measured value, and the side of its bound that it is closer to violating.
 
     Attributes:
+        unit: to print both in; None for a number of starts.
+        excess: how far the value is on the wrong side of the bound, in SI; negative on the right side.
         is_upper: the side is an upper bound.
-        is_lone: the bound has no other side.
     """
 
-    measure: Measure
-    is_upper: bool
-    is_lone: bool
+    # Not a Record: a log has as many as it has judgements, and a Record takes three times as long to make.
+    __slots__ = ("bound", "excess", "is_upper", "si", "unit")
+
+    def __init__(self, si: float, bound: Value | Bound, excess: float, is_upper: bool) -> None:
+        self.si: Final = si
+        self.unit: Unit | None = bound.unit
+        self.bound: Final = bound
+        self.excess: Final = excess
+        self.is_upper: Final = is_upper
 
     def kept(self, is_complete: bool) -> bool | None:
         """Whether the bound is kept; None: undecided while the measure may grow.
@@ -34,35 +41,37 @@ class Compared(Record):
         Args:
             is_complete: the measure does not grow any more.
         """
-        if self.measure.excess > 0:
+        if self.excess > 0:
             return False if self.is_upper or is_complete else None
         return True if is_complete else None
 
 
-def compared(limit: Limit, si: float, observed: Observed, moment: Moment) -> Compared | Unknown:
+def compared(limit: Limit, si: float, observed: Observed, moment: Moment) -> Measure | Unknown:
     """Compare a measure with its bound, which is evaluated at a moment.
 
     Args:
         si: the measured value.
     """
-    first = _beside(limit, limit.relation in ("<=", "<"), si, bound_at(limit.value, observed, moment))
+    first = _beside(limit, limit.value, limit.relation in ("<=", "<"), si, observed, moment)
     if limit.upper is None or isinstance(first, Unknown):
         return first
-    second = _beside(limit, True, si, bound_at(limit.upper, observed, moment))
+    second = _beside(limit, limit.upper, True, si, observed, moment)
     if isinstance(second, Unknown):
         return second
-    return first if first.measure.excess >= second.measure.excess else second
+    return first if first.excess >= second.excess else second
 
 
-def _beside(limit: Limit, is_upper: bool, si: float, bound: Value | Bound | Unknown) -> Compared | Unknown:
+def _beside(
+    limit: Limit, side: Bounded, is_upper: bool, si: float, observed: Observed, moment: Moment
+) -> Measure | Unknown:
     """Compare a measure with one side of its bound."""
+    bound = side if isinstance(side, Value) else bound_at(side, observed, moment)
     if isinstance(bound, Unknown):
         return bound
     excess = si - bound.si if is_upper else bound.si - si
     if excess == 0 and limit.relation in ("<", ">"):
         excess = _JUST
-    measure = Measure(si, bound.unit, bound.si, bound.text, excess)
-    return Compared(measure, is_upper, limit.upper is None)
+    return Measure(si, bound, excess, is_upper)
 
 
 _JUST: Final = 1e-9  # a measure equal to a strict bound violates it

@@ -111,7 +111,10 @@ class Observed:
                 elif isinstance(each, Running):
                     for activation in self._nodes.activations(each.target):
                         stopped = activation.end, activation.ended[1] + 1
-                        since = activation.begin, activation.started[1] + 1  # unknown from here on if the end is unknown
+                        since = (
+                            activation.begin,
+                            activation.started[1] + 1,
+                        )  # unknown from here on if the end is unknown
                         found.update([at for at in (activation.started, since, stopped) if begin < at <= end])
         return sorted(found)
 

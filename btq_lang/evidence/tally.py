@@ -14,7 +14,9 @@ from btq_lang.evidence.wording import measured
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verbs import Judgement, Measure
+    from btq_lang.evidence.conditions import Reading
+    from btq_lang.evidence.limits import Measure
+    from btq_lang.evidence.verbs import Judgement
     from btq_lang.evidence.verdicts import Link, Verdict
     from btq_lang.requirements.model import Odds
 
@@ -56,7 +58,7 @@ class Tally:
         self._worst_excess = float("-inf")
         self._broken: Final[list[tuple[Judgement, str, tuple[Link, ...]]]] = []  # of the open run
         self._kept = self._unclear = 0  # likewise
-        self._worst_now: Measure | None = None  # if it is the worst of all runs
+        self._worst_now: Measure | Reading | None = None  # if it is the worst of all runs
 
     def add(self, judgement: Judgement, path: str, end: int, chain: tuple[Link, ...]) -> None:
         """Count the judgement of an activation in the open run, or of the run.
@@ -101,7 +103,7 @@ class Tally:
         self._kept = self._unclear = 0
         if self._worst_now is not None:
             worst = self._worst_now
-            self.worst = Worst(worst.si, measured(worst.si, worst.unit, worst.bound), run.number)
+            self.worst = Worst(worst.si, measured(worst.si, worst.unit, worst.bound.si), run.number)
             self._worst_now = None
 
     def is_worst_in(self, run: Run) -> bool:
@@ -159,8 +161,8 @@ class Tally:
 
 def _violation(judgement: Judgement, path: str, chain: tuple[Link, ...], run: Run) -> Violation:
     measure = judgement.measure
-    value = measured(measure.si, measure.unit, measure.bound) if measure is not None else ""
-    bound = measure.bound_text if measure is not None else ""
+    value = measured(measure.si, measure.unit, measure.bound.si) if measure is not None else ""
+    bound = measure.bound.text if measure is not None else ""
     at = (judgement.at - run.begin) / 1e6
     why = judgement.sentence.replace("{}", value)
     return Violation(run.number, run.source, path, run.begin, at, value, bound, why, chain)

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.model import Span, Total
-from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.units import Unit
+    from btq_lang.evidence.conditions import Reading
+    from btq_lang.evidence.limits import Measure
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.observed import Observed
     from btq_lang.evidence.over_run import OverRun
@@ -27,40 +27,34 @@ if TYPE_CHECKING:
     RunJudge: TypeAlias = Callable[[Claim, OverRun], Iterator["Judgement | None"]]
 
 
-class Measure(Record):
-    """A measured value and its bound.
-
-    Attributes:
-        unit: that of the bound, to print both in.
-        bound: in SI.
-        bound_text: as typed.
-        excess: how far the value is on the wrong side of the bound, in SI; negative on the right side.
-    """
-
-    si: float
-    unit: Unit | None
-    bound: float
-    bound_text: str
-    excess: float
-
-
-class Judgement(Record):
+class Judgement:
     """Whether an activation, or a run, satisfies a clause.
 
     Attributes:
         holds: None: unknown.
         at: when that was decided.
-        sentence: a sentence in which `{}` is the measure; if `holds` is None, the reason.
+        sentence: what was observed, where `{}` is the measure, unless it holds; if `holds` is None, the reason.
         since: for a clause judged over a run, when the judged time began.
         starts: for such a clause, the activations that it counts or adds up.
     """
 
-    holds: bool | None
-    at: int
-    sentence: str
-    measure: Measure | None = None
-    since: int | None = None
-    starts: Sequence[Activation] = ()
+    __slots__ = ("at", "holds", "measure", "sentence", "since", "starts")  # not a Record for the same reason as Measure
+
+    def __init__(
+        self,
+        holds: bool | None,
+        at: int,
+        sentence: str,
+        measure: Measure | Reading | None = None,
+        since: int | None = None,
+        starts: Sequence[Activation] = (),
+    ) -> None:
+        self.holds: Final = holds
+        self.at: Final = at
+        self.sentence: Final = sentence
+        self.measure: Final = measure
+        self.since: Final = since
+        self.starts: Final = starts
 
 
 def judges_of(claim: Claim, subject: Subject | None) -> tuple[Judge | None, RunJudge | None]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import Reading, reading_of, truth
 from btq_lang.evidence.signals import Unknown
-from btq_lang.evidence.verbs import Judgement, Measure
+from btq_lang.evidence.verbs import Judgement
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation, Moment
@@ -45,8 +45,7 @@ def judged(result: Reading | bool | Unknown, time: int, sentence: str) -> Judgem
         sentence: as in `judged_at`.
     """
     if isinstance(result, Reading):
-        measure = Measure(result.si, result.unit, result.bound.si, result.bound.text, result.excess)
-        return Judgement(result.holds, time, sentence.replace("{}", f"`{result.name}` was {{}}"), measure)
+        return Judgement(result.holds, time, sentence.replace("{}", f"`{result.name}` was {{}}"), result)
     if isinstance(result, Unknown):
         return Judgement(None, time, result.why)
     return Judgement(result, time, sentence.replace("{}", f"the condition {'holds' if result else 'does not hold'}"))

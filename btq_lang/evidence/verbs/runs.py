@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
@@ -12,9 +13,9 @@ from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
 from btq_lang.evidence.wording import counted
 from btq_lang.requirements.model import Value
-from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.limits import Measure
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.over_run import OverRun, Stretch
     from btq_lang.requirements.model import Claim
@@ -49,11 +50,11 @@ def _between(
         if isinstance(found, Unknown):
             yield Judgement(None, until, found.why)
             continue
-        holds = found.measure.excess <= 0
+        holds = found.excess <= 0
         sentence = (
             "had not run again after {}" if is_last else VERBS["runs"].said.replace("{}", "{} after its last start")
         )
-        yield None if is_last and is_open and holds else Judgement(holds, until, sentence, found.measure, start.begin)
+        yield None if is_last and is_open and holds else Judgement(holds, until, sentence, found, start.begin)
 
 
 def _in_windows(
@@ -72,22 +73,25 @@ def _in_windows(
         return bisect_left(times, window + length) - bisect_left(times, window)
 
     # Candidates are windows that a start has just left, or in which a start is the last; of equals, the first.
-    fewest = min([begin, *[time + 1 for time in times if time < last]], key=number)
-    most = max([begin, *[max(begin, min(time + 1 - length, last)) for time in times]], key=number)
-    judgements: list[Judgement] = []
-    for window in (fewest, most):
-        found = compared(claim.limit, float(number(window)), run.observed, stretch.begin)
+    fewest = min([(number(each), each) for each in [begin, *[time + 1 for time in times if time < last]]])
+    fullest = [begin, *[max(begin, min(time + 1 - length, last)) for time in times]]
+    most = max([(number(each), each) for each in fullest], key=itemgetter(0))
+    worst: tuple[Measure, int] | None = None
+    for count, window in (fewest, most):
+        found = compared(claim.limit, float(count), run.observed, stretch.begin)
         if isinstance(found, Unknown):
             yield Judgement(None, stretch.begin[0], found.why)
             return
-        sentence = VERBS["runs"].said.replace("{}", f"{counted(number(window), 'time')} in {claim.per.text}")
-        measure = replace(found.measure, unit=None)
+        if worst is None or found.excess > worst[0].excess:
+            worst = found, window
+    assert worst is not None, "there are two"
+    measure, window = worst
+    measure.unit = None
+    if measure.excess > 0:
         inside = starts[bisect_left(times, window) : bisect_left(times, window + length)]
-        judgements.append(Judgement(measure.excess <= 0, window + length, sentence, measure, window, inside))
-    worst = max(judgements, key=lambda each: each.measure.excess if each.measure is not None else 0.0)
-    if not worst.holds:
-        yield worst
+        sentence = VERBS["runs"].said.replace("{}", f"{counted(len(inside), 'time')} in {claim.per.text}")
+        yield Judgement(False, window + length, sentence, measure, window, inside)
     elif is_open:
         yield None
     else:
-        yield replace(worst, at=stretch.end[0])
+        yield Judgement(True, stretch.end[0], "", measure)

@@ -56,16 +56,16 @@ def _judged(
     if first.why or isinstance(found, Unknown):
         yield Judgement(None, until[0], found.why if isinstance(found, Unknown) else first.why)
         return
-    is_late = found.is_upper and found.measure.excess > 0
-    if unclear and (is_late or last is None or not (found.is_upper and found.is_lone)):
+    is_late = found.is_upper and found.excess > 0
+    if unclear and (is_late or last is None or not (found.is_upper and claim.limit.upper is None)):
         yield Judgement(None, until[0], unclear)
     elif last is None and not is_late and run.is_cut_off:
         yield None
     elif isinstance(counts, Unknown):
         yield Judgement(None, until[0], counts.why)
     elif last is not None:
-        yield Judgement(found.measure.excess <= 0, until[0], VERBS["takes"].said, found.measure, first.at[0])
+        yield Judgement(found.excess <= 0, until[0], VERBS["takes"].said, found, first.at[0])
     elif is_late:
-        yield Judgement(False, until[0], "had not come to an end after {}", found.measure, first.at[0])
+        yield Judgement(False, until[0], "had not come to an end after {}", found, first.at[0])
     elif claim.limit.relation not in (">=", ">"):
         yield Judgement(False, until[0], "its last event did not happen before the run ended")

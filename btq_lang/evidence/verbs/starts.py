@@ -41,7 +41,7 @@ def judged(
     found = compared(claim.limit, (until[0] - event.at[0]) / 1e6, run.observed, event.at)
     deadline = until
     if not isinstance(found, Unknown):
-        deadline = min(until, (event.at[0] + round(found.measure.bound * 1e6), until[1]))
+        deadline = min(until, (event.at[0] + round(found.bound.si * 1e6), until[1]))
     counts = run.counts(event.at, deadline)
     if counts is False:
         return
@@ -49,7 +49,7 @@ def judged(
     if event.why or isinstance(found, Unknown):
         yield Judgement(None, time, found.why if isinstance(found, Unknown) else event.why)
         return
-    is_late = found.measure.excess > 0
+    is_late = found.excess > 0
     if answer is None and not is_late and run.is_cut_off:
         yield None
     elif isinstance(counts, Unknown):
@@ -57,8 +57,8 @@ def judged(
     elif answer is not None and answer.why and is_late:
         yield Judgement(None, time, answer.why)
     elif answer is not None:
-        yield Judgement(not is_late, until[0], sentence, found.measure, event.at[0])
+        yield Judgement(not is_late, until[0], sentence, found, event.at[0])
     elif is_late:
-        yield Judgement(False, time, never, found.measure, event.at[0])
+        yield Judgement(False, time, never, found, event.at[0])
     else:
         yield Judgement(None, time, "the run ended before the time was over")

@@ -29,11 +29,11 @@ def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement
     found = duration(claim.limit, activation, observed)
     if isinstance(found, Unknown):
         return Judgement(None, activation.end, found.why)
-    if found.measure.excess > 0:
+    if found.excess > 0:
         if activation.timing == "latest":
             return Judgement(None, activation.end, UNKNOWN_END)
         how = "succeeded after {}" if activation.outcome == "S" else "had not succeeded after {}"
-        return Judgement(False, activation.end, sentence.replace("{}", how), found.measure)
+        return Judgement(False, activation.end, sentence.replace("{}", how), found)
     if activation.outcome == "S":
-        return Judgement(True, activation.end, sentence.replace("{}", "succeeded after {}"), found.measure)
+        return Judgement(True, activation.end, sentence.replace("{}", "succeeded after {}"), found)
     return None

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.evidence.limits import Compared, compared
+from btq_lang.evidence.limits import Measure, compared
 from btq_lang.evidence.model import CLOCK_SET_BACK, UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
@@ -38,17 +38,17 @@ def is_left_out(limit: Limit, activation: Activation) -> bool:
     return limit.relation in (">=", ">") and activation.outcome not in ("S", "F")
 
 
-def judged(found: Compared, activation: Activation, sentence: str) -> Judgement | None:
+def judged(found: Measure, activation: Activation, sentence: str) -> Judgement | None:
     """The judgement of a measure that grows during an activation: if it was halted, only a violation by then counts."""
     holds = found.kept(activation.outcome in ("S", "F"))
     if holds is None:
         return None
     if not holds and activation.timing == "latest":
         return Judgement(None, activation.end, UNKNOWN_END)
-    return Judgement(holds, activation.end, sentence, found.measure)
+    return Judgement(holds, activation.end, sentence, found)
 
 
-def duration(limit: Limit, activation: Activation, observed: Observed) -> Compared | Unknown:
+def duration(limit: Limit, activation: Activation, observed: Observed) -> Measure | Unknown:
     """The duration of an activation, compared with its bound; unknown if either is."""
     if activation.timing == "broken":
         return Unknown(CLOCK_SET_BACK)

@@ -43,4 +43,4 @@ def _judged(claim: Claim, run: OverRun, starts: Sequence[Activation]) -> Judgeme
     sentence = VERBS["takes"].said.replace("{}", "{} together")
     if holds is None:
         return None
-    return Judgement(holds, run.root.end, sentence, found.measure, run.root.begin, starts)
+    return Judgement(holds, run.root.end, sentence, found, run.root.begin, starts)

@@ -14,7 +14,6 @@ from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
 from btq_lang.evidence.wording import counted
 from btq_lang.requirements.model import Target
-from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
@@ -47,13 +46,14 @@ def _judged(claim: Claim, run: OverRun, period: Activation, starts: Sequence[Act
     if isinstance(found, Unknown):
         return Judgement(None, period.end, found.why)
     holds = found.kept(period.outcome in ("S", "F"))
-    if holds is None and (period.outcome == "O" or found.measure.excess > 0):
+    if holds is None and (period.outcome == "O" or found.excess > 0):
         return None
     if holds is False and period.timing == "latest":
         return Judgement(None, period.end, UNKNOWN_END)
     at = period.end
     if holds is False and found.is_upper:
-        bound = found.measure.bound
+        bound = found.bound.si
         at = starts[max(floor(bound) if claim.limit.relation != "<" else ceil(bound) - 1, 0)].begin
     sentence = VERBS["tries"].said.replace("{}", counted(number, "time"))
-    return Judgement(holds is not False, at, sentence, replace(found.measure, unit=None), period.begin, starts)
+    found.unit = None
+    return Judgement(holds is not False, at, sentence, found, period.begin, starts)
