@@ -118,7 +118,7 @@ class JudgedClause:
         self._waits = self._waits or activation.started[1] != activation.ended[1]
         if guard is not None and self._is_own(guard):
             sentence = f"stopped by its own guard after {duration(activation.seconds)}"
-            self._add(Judgement(False, activation.end, sentence), path, activation.end)
+            self._count(Judgement(False, activation.end, sentence), activation, path)
         elif self._judge is not None and self._running:
             self._waiting.append((activation, observed, path))
         elif self._judge is not None:
@@ -131,9 +131,8 @@ class JudgedClause:
         own = self.claim.verb == refusal.verb and self.requirement.name == refusal.requirement
         if own or (VERBS[self.claim.verb].limits == "success" and VERBS[refusal.verb].operand == "condition"):
             self._has_run = True
-            self._add(
-                Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}"), path, refusal.time
-            )
+            judgement = Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}")
+            self._tally.add(judgement, path, refusal.time, self.explain(judgement, path))
 
     def end_run(self, run: Run, root: Activation) -> None:
         """Judge the open run, which has ended.
@@ -180,7 +179,7 @@ class JudgedClause:
             judgement = None
         if judgement is not None and isinstance(counts, Unknown):
             judgement = Judgement(None, judgement.at, counts.why)
-        self._count(_clocked(judgement, root), activation, path)
+        self._count(judgement if root is None else _clocked(judgement, root), activation, path)
 
     def _over(self, root: Activation, place: _Place) -> OverRun:
         assert self._history is not None, "the clause is joined with a log"
@@ -189,13 +188,11 @@ class JudgedClause:
         return OverRun(self.claim.verb, self.requirement.scopes, root, self._history.of(place.uids), observed)
 
     def _count(self, judgement: Judgement | None, of: Activation, path: str) -> None:
-        if judgement is not None:
-            self._add(judgement, path, of.end)
-        else:
+        if judgement is None:
             self._tally.cut_off += of.outcome == "O"
-
-    def _add(self, judgement: Judgement, path: str, end: int) -> None:
-        self._tally.add(judgement, path, end, self.explain(judgement, path) if judgement.holds is False else ())
+        else:
+            chain = self.explain(judgement, path) if judgement.holds is False else ()
+            self._tally.add(judgement, path, of.end, chain)
 
     def _own(self, joined: Joined) -> list[tuple[int, ...]]:
         """The nodes of a log that it holds for, grouped: the nodes of a group are judged as one."""
@@ -323,9 +320,9 @@ def _known(subject: Subject | None) -> Target | None:
     return subject if isinstance(subject, Target) else None
 
 
-def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement | None:
+def _clocked(judgement: Judgement | None, root: Activation) -> Judgement | None:
     """The judgement, unknown if the clock was set back during the run: it depends on the order of events."""
-    if judgement is None or root is None or root.timing != "broken":
+    if judgement is None or root.timing != "broken":
         return judgement
     return Judgement(None, judgement.at, CLOCK_SET_BACK)
 

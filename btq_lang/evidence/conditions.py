@@ -121,6 +121,8 @@ def reading_of(condition: Condition, observed: Observed, moment: Moment) -> Read
     """The reading of a condition that compares a signal with a bound, or is `not A or B` with such a B where A holds;
     None for other conditions and unknown values.
     """
+    if isinstance(condition, Compare):
+        return _compared_with_bound(condition, observed, moment)
     if isinstance(condition, InContext):
         return reading_of(condition.condition, observed, moment)
     if isinstance(condition, Not):
@@ -130,15 +132,21 @@ def reading_of(condition: Condition, observed: Observed, moment: Moment) -> Read
         *cases, last = condition.conditions
         is_last = all(isinstance(case, Not) and truth(case, observed, moment) is False for case in cases)
         return reading_of(last, observed, moment) if is_last else None
-    if not isinstance(condition, Compare) or len(condition.operators) != 1 or condition.operators[0] not in _MIRRORED:
+    return None
+
+
+def _compared_with_bound(condition: Compare, observed: Observed, moment: Moment) -> Reading | None:
+    """The reading of a comparison of a signal with a bound; None for other comparisons and unknown values."""
+    sign, *others = condition.operators
+    if others or sign not in _MIRRORED:
         return None
-    sign = condition.operators[0]
     left, right = condition.operands
-    if not isinstance(left, Read | Aggregate):
+    if not isinstance(left, _MEASURED):
         sign, left, right = _MIRRORED[sign], right, left
-    if not isinstance(left, Read | Aggregate) or not isinstance(right, Value | Table | Read):
+    if not isinstance(left, _MEASURED) or not isinstance(right, _BOUNDS):
         return None
-    value, bound = _number(left, observed, moment), bound_at(right, observed, moment)
+    value = _number(left, observed, moment)
+    bound = right if isinstance(right, Value) else bound_at(right, observed, moment)
     if not isinstance(value, float) or isinstance(bound, Unknown):
         return None
     name = left.signal.name if isinstance(left, Read) else f"{left.function}({left.signal.name})"
@@ -163,12 +171,12 @@ def _compared(condition: Compare, observed: Observed, moment: Moment) -> Truth:
 
 def _number(part: Number | Flag | Text, observed: Observed, moment: Moment) -> SampleValue | Unknown:
     """The value of an operand of a comparison, numbers in SI."""
+    if isinstance(part, Read):
+        return observed.reading(part.signal, moment)
     if isinstance(part, Value):
         return part.si
     if isinstance(part, Flag | Text):
         return part.value
-    if isinstance(part, Read):
-        return observed.reading(part.signal, moment)
     if isinstance(part, Aggregate):
         return observed.summary(part.function, part.signal)
     if isinstance(part, Table):
@@ -220,4 +228,6 @@ _OPERATIONS: Final[dict[str, Callable[[float, float], float]]] = {
     "*": operator.mul,
     "/": operator.truediv,
 }
+_MEASURED: Final = (Read, Aggregate)
+_BOUNDS: Final = (Value, Table, Read)
 _MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}

@@ -51,8 +51,14 @@ class Coverage:
 
     def count(self, activation: Activation) -> None:
         """Count an activation that has ended."""
-        uid = activation.uid
-        self._now[uid].count(activation, self._runs)
+        uid, outcome = activation.uid, activation.outcome
+        node = self._now[uid]
+        node.outcomes[outcome] += 1
+        if activation.timing == "exact" and outcome in "SF":
+            node.times.append(activation.end - activation.begin)
+        if node.run != self._runs:
+            node.run = self._runs
+            node.runs += 1
         for repeated, step in self._repeated.get(uid, ()):
             repeated.now += step
 
@@ -78,7 +84,12 @@ class Coverage:
 
 
 class _Node:
-    """The counts of one node."""
+    """The counts of one node.
+
+    Attributes:
+        times: of activations that succeeded or failed, in µs.
+        run: the last one in which it was active.
+    """
 
     def __init__(self, path: str, kind: str, is_leaf: bool, written: ResolvedNode | None) -> None:
         self.began = 0
@@ -87,29 +98,21 @@ class _Node:
         self._kind: Final = kind
         self._is_leaf: Final = is_leaf
         self._written: Final = written
-        self._outcomes: Final[dict[Outcome, int]] = {"S": 0, "F": 0, "H": 0, "O": 0}
-        self._times: Final = array("q")  # of activations that succeeded or failed, in µs
-        self._runs = self._run = 0
-
-    def count(self, activation: Activation, run: int) -> None:
-        self._outcomes[activation.outcome] += 1
-        if activation.outcome in ("S", "F") and activation.timing == "exact":
-            self._times.append(activation.end - activation.begin)
-        if self._run != run:
-            self._run = run
-            self._runs += 1
+        self.outcomes: Final[dict[Outcome, int]] = {"S": 0, "F": 0, "H": 0, "O": 0}
+        self.times: Final = array("q")
+        self.runs = self.run = 0
 
     def summary(self) -> NodeSummary:
-        times, ticks = sorted(self._times), sorted(self.ticks)
+        times, ticks = sorted(self.times), sorted(self.ticks)
         return NodeSummary(
             path=self._path,
             kind=self._kind,
             is_leaf=self._is_leaf,
-            runs=self._runs,
-            succeeded=self._outcomes["S"],
-            failed=self._outcomes["F"],
-            halted=self._outcomes["H"],
-            interrupted=self._outcomes["O"],
+            runs=self.runs,
+            succeeded=self.outcomes["S"],
+            failed=self.outcomes["F"],
+            halted=self.outcomes["H"],
+            interrupted=self.outcomes["O"],
             failures_began=self.began,
             p50=_percentile(times, 50),
             p95=_percentile(times, 95),

@@ -118,6 +118,7 @@ class MissionEvaluation:
                     clause.end_run(run, activation)
                 self._contexts.end_run(activation)
                 history.clear()
+                explainer.end_run()
                 if self._timelines is not None:
                     self._timelines.end_run(run, tree, [each for each in self._clauses if each.is_worst_in(run)])
                 signals.forget_before(end)

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.explain_run import RunExplainer, ago, part
-from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.observed import signals_in
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verdicts import Link
@@ -59,18 +58,14 @@ class Explainer:
         self._last: Final[dict[int, tuple[int, Outcome, Origin | None]]] = {}  # of open nodes: their last child
         self._ended: Final[dict[int, tuple[Activation, Sums, Origin | None]]] = {}  # the last of each judged node
         self._leaves: Final[dict[int, Activation]] = {}  # the last activation of each leaf
+        self._leaf_uids: Final = {uid for uid, last in tree.last.items() if uid == last}
         self._failed: Activation | None = None  # the run's last leaf that took time and failed
-        self._is_over = False  # whether the run has ended
         self.over_run: Final = RunExplainer(tree, partial(self._samples, is_named=True))
         self._is_over_run: Final = has_clauses_over_runs
 
     def see(self, activation: Activation) -> Origin | None:
         """Record an activation that has ended; returns where its failure began, if it failed."""
         uid, outcome = activation.uid, activation.outcome
-        if self._is_over:
-            self._failed = None
-            self.over_run.clear()
-        self._is_over = uid == ROOT
         child, came, origin = self._last.pop(uid, _NO_CHILD)
         if outcome != "F":
             origin = None
@@ -79,7 +74,7 @@ class Explainer:
         if uid in self._below:
             self._ended[uid] = activation, self._below[uid], origin
             self._below[uid] = {}
-        if self._tree.last[uid] == uid:
+        if uid in self._leaf_uids:
             self._leaves[uid] = activation
             if self._is_over_run:
                 self.over_run.add(activation)
@@ -94,6 +89,11 @@ class Explainer:
             sums[1] += outcome == "F"
             sums[2] += activation.end - activation.begin
         return origin
+
+    def end_run(self) -> None:
+        """Begin another run: what led to a violation began in its own run."""
+        self._failed = None
+        self.over_run.clear()
 
     def chain(self, claim: Claim, judgement: Judgement, path: str) -> tuple[Link, ...]:
         """What led to the violation of a clause by the activation, of the node with this path, that has just ended."""

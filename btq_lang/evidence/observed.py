@@ -5,7 +5,7 @@ One invariant: an answer is a value in SI, or the reason why it is unknown.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import fsum, sqrt
 from typing import TYPE_CHECKING, Final
 
@@ -69,9 +69,10 @@ class Observed:
     def reading(self, signal: Signal, moment: Moment) -> SampleValue | Unknown:
         """The value of a signal at a moment, cached: several clauses may read the same one."""
         key = signal.name, moment[0]
-        if key not in self._readings:
-            self._readings[key] = self._signals.reading(signal, moment[0])
-        return self._readings[key]
+        value = self._readings.get(key)
+        if value is None:
+            value = self._readings[key] = self._signals.reading(signal, moment[0])
+        return value
 
     def summary(self, function: str, signal: Signal) -> float | Unknown:
         """An aggregate of the samples from beginning to end, including the value at the beginning."""
@@ -130,31 +131,14 @@ def parts_in(part: object) -> Iterator[Read | Aggregate | Running]:
     waiting = [part]
     while waiting:
         part = waiting.pop()
-        if isinstance(part, Read | Aggregate | Running):
+        if isinstance(part, _READING):
             yield part
         elif isinstance(part, InContext):
             if part.name not in contexts:
                 contexts.add(part.name)
                 waiting.append(part.condition)
-        else:
-            waiting += reversed(_inside(part))
-
-
-def _inside(part: object) -> Sequence[object]:
-    """The parts of a condition, a bound or an event."""
-    if isinstance(part, Compare):
-        return part.operands
-    if isinstance(part, All | Any):
-        return part.conditions
-    if isinstance(part, Not | Event):
-        return (part.condition,)
-    if isinstance(part, Minus):
-        return (part.operand,)
-    if isinstance(part, Arithmetic):
-        return part.left, part.right
-    if isinstance(part, Table):
-        return [each for case in part.cases for each in (case.value, case.condition)]
-    return (part.value, part.upper) if isinstance(part, Limit) else ()
+        elif (inside := _INSIDE.get(type(part))) is not None:
+            waiting += reversed(inside(part))
 
 
 def _mean(values: Sequence[float]) -> float:
@@ -172,6 +156,19 @@ def _stddev(values: Sequence[float]) -> float:
     return sqrt(_mean([(value - middle) ** 2 for value in values]))
 
 
+_READING: Final = (Read, Aggregate, Running)
+# The parts of a condition, a bound or an event, by its class.
+_INSIDE: Final[Mapping[type, Callable[..., Sequence[object]]]] = {
+    Compare: lambda part: part.operands,
+    All: lambda part: part.conditions,
+    Any: lambda part: part.conditions,
+    Not: lambda part: (part.condition,),
+    Event: lambda part: (part.condition,),
+    Minus: lambda part: (part.operand,),
+    Arithmetic: lambda part: (part.left, part.right),
+    Table: lambda part: [each for case in part.cases for each in (case.value, case.condition)],
+    Limit: lambda part: (part.value, part.upper),
+}
 _FUNCTIONS: Final[dict[str, Callable[[Sequence[float]], float]]] = {
     "max": max,
     "min": min,
