@@ -144,23 +144,27 @@ class JudgedClause:
             self._judge_one(activation, observed.during(activation), path, root)  # again: a late sample may count
         self._waiting.clear()
         if self._judge_run is not None:
-            judged = [
-                (judgement, place, over)
-                for place in self._places
-                for over in (self._over(root, place),)
-                for judgement in self._judge_run(self.judged, over)
-            ]
-            # In order of time, for all uses of a subtree together: a window may keep only the last ones.
-            for judgement, place, over in sorted(judged, key=lambda each: each[0].at if each[0] is not None else 0):
-                found = _clocked(judgement, root)
-                if found is None or found.holds is not False:
-                    self._count(found, root, place.path)
-                else:
-                    chain = self.explain_run(found, over, place.others)
-                    self._tally.add(
-                        Judgement(False, found.at, found.sentence, found.measure), place.path, root.end, chain
-                    )
+            self._judge_over(root)
         self._tally.end_run(run)
+
+    def _judge_over(self, root: Activation) -> None:
+        """Count what is judged over the run, in order of time for all uses of a subtree together: a window may keep
+        only the last ones.
+        """
+        assert self._judge_run is not None, "the clause is judged by runs"
+        judged: list[tuple[Judgement | None, _Place, OverRun]] = []
+        for place in self._places:
+            over = self._over(root, place)
+            judged += [(_clocked(each, root), place, over) for each in self._judge_run(self.judged, over)]
+        if len(judged) > 1:
+            judged.sort(key=lambda each: each[0].at if each[0] is not None else 0)
+        for found, place, over in judged:
+            if found is not None and found.holds is False:
+                chain = self.explain_run(found, over, place.others)
+                found = Judgement(False, found.at, found.sentence, found.measure)
+                self._tally.add(found, place.path, root.end, chain)
+            else:
+                self._count(found, root, place.path)
 
     def _judge_one(self, activation: Activation, observed: Observed, path: str, root: Activation | None = None) -> None:
         """Count an activation.

@@ -30,7 +30,7 @@ from btq_lang.requirements.model import (
     Text,
     Value,
 )
-from btq_lang.util.record import Record, replace
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.catalog.units import Unit
@@ -53,7 +53,7 @@ class Bound(Record):
     text: str
 
 
-class Reading(Record):
+class Reading:
     """A signal, or an aggregate of it, compared with a bound, as in `battery >= 3 %`.
 
     Attributes:
@@ -62,12 +62,17 @@ class Reading(Record):
         holds: whether the condition holds.
     """
 
-    name: str
-    unit: Unit | None
-    si: float
-    bound: Value | Bound
-    excess: float
-    holds: bool
+    __slots__ = ("bound", "excess", "holds", "name", "si", "unit")  # not a Record: a log has many, as of Measure
+
+    def __init__(
+        self, name: str, unit: Unit | None, si: float, bound: Value | Bound, excess: float, holds: bool
+    ) -> None:
+        self.name: Final = name
+        self.unit: Final = unit
+        self.si: Final = si
+        self.bound: Final = bound
+        self.excess: Final = excess
+        self.holds: Final = holds
 
 
 def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
@@ -127,7 +132,9 @@ def reading_of(condition: Condition, observed: Observed, moment: Moment) -> Read
         return reading_of(condition.condition, observed, moment)
     if isinstance(condition, Not):
         found = reading_of(condition.condition, observed, moment)
-        return replace(found, excess=-found.excess, holds=not found.holds) if found is not None else None
+        if found is None:
+            return None
+        return Reading(found.name, found.unit, found.si, found.bound, -found.excess, not found.holds)
     if isinstance(condition, Any):
         *cases, last = condition.conditions
         is_last = all(isinstance(case, Not) and truth(case, observed, moment) is False for case in cases)

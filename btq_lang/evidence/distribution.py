@@ -33,10 +33,11 @@ class Distribution:
             self._step = abs(measure.bound.si) / _FINEST or 1.0 / _FINEST
         self._last = measure
         at = floor((measure.si - self._origin) / self._step)
-        if at in self._counts:
-            self._counts[at] += 1
+        counts = self._counts
+        if at in counts:
+            counts[at] += 1
             return
-        self._counts[at] = 1
+        counts[at] = 1
         while max(self._counts) - min(self._counts) >= _MOST_STEPS:
             doubled: dict[int, int] = {}
             for at, number in self._counts.items():

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.conditions import Bound
     from btq_lang.evidence.model import Moment
     from btq_lang.evidence.observed import Observed
-    from btq_lang.requirements.model import Bounded, Limit
+    from btq_lang.requirements.model import Limit
 
 
 class Measure:
@@ -52,24 +52,19 @@ def compared(limit: Limit, si: float, observed: Observed, moment: Moment) -> Mea
     Args:
         si: the measured value.
     """
-    first = _beside(limit, limit.value, limit.relation in ("<=", "<"), si, observed, moment)
-    if limit.upper is None or isinstance(first, Unknown):
-        return first
-    second = _beside(limit, limit.upper, True, si, observed, moment)
-    if isinstance(second, Unknown):
-        return second
-    return first if first.excess >= second.excess else second
-
-
-def _beside(
-    limit: Limit, side: Bounded, is_upper: bool, si: float, observed: Observed, moment: Moment
-) -> Measure | Unknown:
-    """Compare a measure with one side of its bound."""
-    bound = side if isinstance(side, Value) else bound_at(side, observed, moment)
+    relation, bounded = limit.relation, limit.value
+    bound = bounded if isinstance(bounded, Value) else bound_at(bounded, observed, moment)
     if isinstance(bound, Unknown):
         return bound
+    is_upper = relation in ("<=", "<")
     excess = si - bound.si if is_upper else bound.si - si
-    if excess == 0 and limit.relation in ("<", ">"):
+    if limit.upper is not None:
+        upper = bound_at(limit.upper, observed, moment)
+        if isinstance(upper, Unknown):
+            return upper
+        if si - upper.si > excess:
+            bound, excess, is_upper = upper, si - upper.si, True
+    elif excess == 0 and relation in ("<", ">"):
         excess = _JUST
     return Measure(si, bound, excess, is_upper)
 

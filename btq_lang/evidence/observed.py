@@ -42,7 +42,7 @@ class Observed:
         is_end_known: otherwise the activation ended at `end` or before.
     """
 
-    __slots__ = ("_contexts", "_nodes", "_readings", "_signals", "begin", "end", "is_end_known")
+    __slots__ = ("_contexts", "_nodes", "_signals", "begin", "end", "is_end_known")
 
     def __init__(self, signals: Signals, nodes: Nearby, begin: Moment, end: Moment, is_end_known: bool = True) -> None:
         """
@@ -52,7 +52,6 @@ class Observed:
         self._signals: Final = signals
         self._nodes: Final = nodes
         self._contexts: dict[tuple[str, Moment], bool | Unknown] | None = None
-        self._readings: dict[tuple[str, int], SampleValue | Unknown] = {}
         self.begin: Final = begin
         self.end: Final = end
         self.is_end_known: Final = is_end_known
@@ -67,12 +66,8 @@ class Observed:
         return Observed(self._signals, self._nodes, begin, end)
 
     def reading(self, signal: Signal, moment: Moment) -> SampleValue | Unknown:
-        """The value of a signal at a moment, cached: several clauses may read the same one."""
-        key = signal.name, moment[0]
-        value = self._readings.get(key)
-        if value is None:
-            value = self._readings[key] = self._signals.reading(signal, moment[0])
-        return value
+        """The value of a signal at a moment."""
+        return self._signals.reading(signal, moment[0])
 
     def summary(self, function: str, signal: Signal) -> float | Unknown:
         """An aggregate of the samples from beginning to end, including the value at the beginning."""

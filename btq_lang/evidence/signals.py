@@ -36,6 +36,7 @@ class Signals:
     def __init__(self, given: Mapping[str, Series], logged: Mapping[str, Series]) -> None:
         self._given: Final = given
         self.logged: Final = logged
+        self._last: Final[dict[str, tuple[SampleValue, SampleValue | Unknown]]] = {}  # of each signal: read, in SI
 
     def reading(self, signal: Signal, time: int) -> SampleValue | Unknown:
         """The value of a signal at a time, in SI."""
@@ -48,7 +49,11 @@ class Signals:
             return Unknown(f"`{signal.name}` was not on the blackboard")
         if signal.fresh is not None and time - sampled > round(signal.fresh * 1e6):
             return Unknown(f"the last sample of `{signal.name}` is too old")
-        return _as_declared(signal, value, series.unit if series is not None else None)
+        last = self._last.get(signal.name)
+        if last is None or last[0] is not value:
+            unit = series.unit if series is not None else None
+            last = self._last[signal.name] = value, _as_declared(signal, value, unit)
+        return last[1]
 
     def sampled(self, signal: Signal, time: int) -> int | None:
         """The time of the sample that gives a signal its value at a time."""

@@ -45,7 +45,8 @@ def judged(result: Reading | bool | Unknown, time: int, sentence: str) -> Judgem
         sentence: as in `judged_at`.
     """
     if isinstance(result, Reading):
-        return Judgement(result.holds, time, sentence.replace("{}", f"`{result.name}` was {{}}"), result)
+        said = "" if result.holds else sentence.replace("{}", f"`{result.name}` was {{}}")
+        return Judgement(result.holds, time, said, result)
     if isinstance(result, Unknown):
         return Judgement(None, time, result.why)
     return Judgement(result, time, sentence.replace("{}", f"the condition {'holds' if result else 'does not hold'}"))

@@ -23,24 +23,16 @@ if TYPE_CHECKING:
 def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
     """Judge the duration of an activation."""
     assert claim.limit is not None, "a time has a bound"
-    if is_left_out(claim.limit, activation):
-        return None
-    found = duration(claim.limit, activation, observed)
-    if isinstance(found, Unknown):
-        return Judgement(None, activation.end, found.why)
-    return judged(found, activation, VERBS["takes"].said)
+    return judged(claim.limit, duration(claim.limit, activation, observed), activation, VERBS["takes"].said)
 
 
-def is_left_out(limit: Limit, activation: Activation) -> bool:
-    """Whether an activation cannot violate a bound: one that was halted, or is open, cannot fall short of a lower
-    bound.
-    """
-    return limit.relation in (">=", ">") and activation.outcome not in ("S", "F")
-
-
-def judged(found: Measure, activation: Activation, sentence: str) -> Judgement | None:
+def judged(limit: Limit, found: Measure | Unknown, activation: Activation, sentence: str) -> Judgement | None:
     """The judgement of a measure that grows during an activation: if it was halted, only a violation by then counts."""
-    holds = found.kept(activation.outcome in ("S", "F"))
+    is_complete = activation.outcome in ("S", "F")
+    if isinstance(found, Unknown):
+        can_fail = is_complete or limit.relation not in (">=", ">")  # else it did not end by itself
+        return Judgement(None, activation.end, found.why) if can_fail else None
+    holds = found.kept(is_complete)
     if holds is None:
         return None
     if not holds and activation.timing == "latest":

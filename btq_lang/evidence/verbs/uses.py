@@ -8,12 +8,12 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import compared
 from btq_lang.evidence.model import CLOCK_SET_BACK
 from btq_lang.evidence.signals import Unknown
-from btq_lang.evidence.verbs import Judgement
-from btq_lang.evidence.verbs.takes import is_left_out, judged
+from btq_lang.evidence.verbs.takes import judged
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.observed import Observed
+    from btq_lang.evidence.verbs import Judgement
     from btq_lang.requirements.model import Claim, Signal
 
 
@@ -21,13 +21,9 @@ def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement
     """Judge how much an activation uses."""
     assert claim.limit is not None, "the use has a bound"
     assert claim.signal is not None, "the clause names what is used"
-    if is_left_out(claim.limit, activation):
-        return None
     used = _used(claim.signal, activation, observed)
     found = used if isinstance(used, Unknown) else compared(claim.limit, used, observed, activation.started)
-    if isinstance(found, Unknown):
-        return Judgement(None, activation.end, found.why)
-    return judged(found, activation, VERBS["uses"].said)
+    return judged(claim.limit, found, activation, VERBS["uses"].said)
 
 
 def _used(signal: Signal, activation: Activation, observed: Observed) -> float | Unknown:
