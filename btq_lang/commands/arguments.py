@@ -365,9 +365,12 @@ def _add_init(commands: _SubParsersAction[Parser]) -> None:
         "init",
         "create a project without findings",
         epilog="exit codes: 0 created; 2 usage or I/O, or the project exists already\n\n"
-        "example:\n  btq init my-robot && btq check my-robot\n",
+        "examples:\n  btq init my-robot && btq check my-robot\n"
+        "  btq init --from-xml        a project file for the XML in this folder\n",
     )
     parser.add_argument("folder", nargs="?", default=".", metavar="FOLDER", help="default: .")
+    parser.add_argument("--from-xml", action="store_true", help="only a project file, for the XML that is there")
+    parser.add_argument("--convert", action="store_true", help="with --from-xml: and write .btq files beside the XML")
 
 
 def _add_completion(commands: _SubParsersAction[Parser]) -> None:

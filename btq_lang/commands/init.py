@@ -69,6 +69,13 @@ FILES = {"btq.toml": _PROJECT, "skills.btq": _SKILLS, "mission.btq": _MISSION}
 
 def run(options: Namespace) -> int:
     """Write the files, or none if one already exists."""
+    if options.from_xml:
+        from btq_lang.commands.init_from_xml import run as run_from_xml  # it needs much more
+
+        return run_from_xml(options)
+    if options.convert:
+        print("btq init: --convert goes with --from-xml", file=sys.stderr)
+        return 2
     folder = options.folder
     there = [name for name in FILES if os.path.lexists(os.path.join(folder, name))]
     if there:

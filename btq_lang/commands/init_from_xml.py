@@ -1,0 +1,156 @@
+"""`btq init --from-xml`: a project file that says which of the XML files that are there are registered together.
+
+One invariant: only the project file is written, and with `--convert` the .btq files that an import makes.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import posixpath
+import shlex
+import sys
+from argparse import Namespace
+from collections.abc import Iterator, Sequence
+
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.versions import VERSIONS
+from btq_lang.commands.files import Files
+from btq_lang.syntax.tree import Tree
+from btq_lang.util.record import Record, replace
+from btq_lang.workspace.file import GROOT_SUFFIX
+from btq_lang.workspace.loader import absolute, shown, write_whole
+from btq_lang.workspace.workspace import Workspace
+
+_HEAD = f"""\
+# What holds for all missions of this project
+engine = {json.dumps(VERSIONS)}  # the versions of BehaviorTree.CPP that must load them
+"""
+
+
+def run(options: Namespace) -> int:
+    """Write the project file, unless there is one."""
+    folder = absolute(options.folder)
+    target = f"{folder}/btq.toml"
+    if os.path.lexists(target):
+        print(f"btq init: {shown(target)} is there already; nothing was written", file=sys.stderr)
+        return 2
+    workspace = _xml_below(folder)
+    if not workspace.files:
+        print(f"btq init: no BehaviorTree.CPP XML below {options.folder}; nothing was written", file=sys.stderr)
+        return 2
+    factories = [*_factories(workspace, folder)]
+    if options.convert:
+        from btq_lang.commands.import_xml import run as convert
+
+        files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
+        if code := convert(Namespace(files=files, output=None, force=False, keep_v3=False)):
+            return code
+    ending = ".btq" if options.convert else ".xml"
+    try:
+        write_whole(target, "\n".join((_HEAD, *(each.written(ending) for each in factories))))
+    except OSError as error:
+        print(f"btq init: {shown(target)}: {error.strerror}", file=sys.stderr)
+        return 2
+    count = f"{len(factories) or 'no'} factor{'y' if len(factories) == 1 else 'ies'}"
+    print(f"Wrote {shown(target)} with {count}. Next: btq check {shlex.quote(options.folder)}")
+    return 0
+
+
+class _Together(Record):
+    """Files that need each other, as a factory.
+
+    Attributes:
+        load: patterns without the suffix of the files.
+        main: the trees that no other tree runs.
+        nodes: the files of models, as patterns with their suffixes.
+    """
+
+    name: str
+    load: tuple[str, ...]
+    main: tuple[str, ...]
+    nodes: tuple[str, ...]
+
+    def written(self, ending: str) -> str:
+        """The table in the project file; `ending`: the suffix of the files."""
+        values = {
+            "name": self.name,
+            "load": [f"{pattern}{ending}" for pattern in self.load],
+            "main": self.main[0] if len(self.main) == 1 else list(self.main),
+            "nodes": list(self.nodes),
+        }
+        lines = (f"{key} = {json.dumps(value, ensure_ascii=False)}\n" for key, value in values.items() if value)
+        return f"[[factory]]\n{''.join(lines)}"
+
+
+def _xml_below(folder: str) -> Workspace:
+    """The XML files of the engine below a folder, each of which has all as its pool."""
+    groups, _ = Files().groups([folder], with_xml=True)
+    files = {
+        path: group.workspace.files[path]
+        for group in groups
+        for path in group.given
+        if group.workspace.files[path].origin is not None
+    }
+    project = groups[0].workspace.project if groups else Workspace.of({}).project
+    return Workspace(files, replace(project, pools=(folder,)))
+
+
+def _factories(workspace: Workspace, folder: str) -> Iterator[_Together]:
+    """What belongs together; files of which two define one tree do not, whatever refers to them."""
+    models = [path for path, file in workspace.files.items() if not file.of_type(Tree)]
+    nodes = tuple(posixpath.relpath(path, folder) for path in models)
+    names: set[str] = set()
+    for paths in _connected(workspace):
+        trees = [name for path in paths for name in workspace.files[path].names_of(Kind.TREE)]
+        if len(set(trees)) < len(trees):
+            twice = next(name for name in sorted(trees) if trees.count(name) > 1)
+            files = ", ".join(shown(path) for path in paths)
+            print(f"not a factory, because several define the tree `{twice}`: {files}", file=sys.stderr)
+            continue
+        name = posixpath.basename(posixpath.commonpath([posixpath.dirname(path) for path in paths])) or "robot"
+        name = next(each for each in (name, *(f"{name}{number}" for number in range(2, 10_000))) if each not in names)
+        names.add(name)
+        items = [facts for path in paths for facts in workspace.files[path].facts.values()]
+        called = {other for facts in items if isinstance(facts.item, Tree) for other in facts.runs}
+        main = tuple(sorted(each for each in trees if each not in called))
+        yield _Together(name, tuple(_patterns(workspace, paths, folder)), main, nodes)
+
+
+def _connected(workspace: Workspace) -> list[list[str]]:
+    """The files with trees that need each other beyond what they include, or are in a project of Groot2, in groups."""
+    group = {path: {path} for path in workspace.files}
+    needing = {path for path in workspace.files if path.endswith(GROOT_SUFFIX)}
+
+    def join(one: str, other: str) -> None:
+        if group[one] is not group[other]:
+            group[one] |= group[other]
+            for path in group[other]:
+                group[path] = group[one]
+
+    for path, file in workspace.files.items():
+        for included in workspace.closure(path):
+            join(path, included)
+        scope = workspace.scope(path)
+        for name in file.used(Kind.TREE):
+            found = () if scope.defines(Kind.TREE, name) else workspace.pooled(path, Kind.TREE, name)
+            if len(found) == 1:
+                join(path, found[0].path)
+                needing.add(path)
+    groups = {id(each): each for each in group.values()}
+    needed = [sorted(each) for each in groups.values() if not needing.isdisjoint(each)]
+    with_trees = [[path for path in each if workspace.files[path].of_type(Tree)] for each in needed]
+    return [each for each in with_trees if len(each) > 1]
+
+
+def _patterns(workspace: Workspace, paths: Sequence[str], folder: str) -> Iterator[str]:
+    """Patterns for some files, without suffix: one for a folder whose files are all among them."""
+    for place in dict.fromkeys(map(posixpath.dirname, paths)):
+        here = [
+            path for path, file in workspace.files.items() if posixpath.dirname(path) == place and file.of_type(Tree)
+        ]
+        relative = "" if place == folder else f"{posixpath.relpath(place, folder)}/"
+        if set(here) <= {*paths}:
+            yield f"{relative}*"
+        else:
+            yield from (f"{relative}{posixpath.basename(path)[:-4]}" for path in paths if path in here)

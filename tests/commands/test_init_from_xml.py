@@ -1,0 +1,88 @@
+"""`btq init --from-xml`: a project file for what lies there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from in_process import run_btq
+
+Write = Callable[..., None]
+
+HEAD = """\
+# What holds for all missions of this project
+engine = ["4.6", "4.8", "4.10"]  # the versions of BehaviorTree.CPP that must load them
+"""
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Write:
+    def write(name: str, *trees: str) -> None:
+        """A file with trees, each `Name`, or `Name: OTHER` if it runs another."""
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        text = ""
+        for tree in trees:
+            own, _, other = tree.partition(": ")
+            text += f'<BehaviorTree ID="{own}">' + (f'<SubTree ID="{other}"/>' if other else "<AlwaysSuccess/>")
+            text += "</BehaviorTree>\n"
+        (tmp_path / name).write_text(f'<root BTCPP_format="4">\n{text}</root>\n')
+
+    return write
+
+
+def test_files_that_need_each_other_are_a_factory(tmp_path: Path, write: Write) -> None:
+    write("trees/main.xml", "Main: Dock", "Patrol")
+    write("trees/dock.xml", "Dock: Align")
+    write("lib/align.xml", "Align")
+    write("lib/alone.xml", "Alone")
+    (tmp_path / "models.xml").write_text('<root><TreeNodesModel><Action ID="Go"/></TreeNodesModel></root>')
+    (tmp_path / "package.xml").write_text("<package/>")
+    code, out, err = run_btq("init", "--from-xml", cwd=tmp_path)
+    assert (code, out, err) == (0, "Wrote btq.toml with 1 factory. Next: btq check .\n", "")
+    table = '[[factory]]\nname = "{}"\nload = {}\nmain = ["Main", "Patrol"]\nnodes = ["models.xml"]\n'
+    loaded = '["lib/align.xml", "trees/*.xml"]'
+    assert (tmp_path / "btq.toml").read_text() == f"{HEAD}\n{table.format(tmp_path.name, loaded)}"
+    assert run_btq("check", cwd=tmp_path)[:2] == (0, "No problems found in 5 files\n")
+    assert (
+        run_btq("init", "--from-xml", cwd=tmp_path)[2] == "btq init: btq.toml is there already; nothing was written\n"
+    )
+
+
+def test_what_defines_a_tree_twice_is_no_factory(tmp_path: Path, write: Write) -> None:
+    write("a.xml", "Main: Dock")
+    write("b.xml", "Main: Dock")
+    write("dock.xml", "Dock")
+    code, out, err = run_btq("init", "--from-xml", cwd=tmp_path)
+    assert (code, out) == (0, "Wrote btq.toml with no factories. Next: btq check .\n")
+    assert err == "not a factory, because several define the tree `Main`: a.xml, b.xml, dock.xml\n"
+    assert (tmp_path / "btq.toml").read_text() == HEAD
+    assert run_btq("check", cwd=tmp_path)[0] == 0
+
+
+def test_a_project_of_groot_says_what_belongs_together(tmp_path: Path, write: Write) -> None:
+    write("a.xml", "A")
+    write("b.xml", "B")
+    (tmp_path / "robot.btproj").write_text('<root><include path="a.xml"/><include path="b.xml"/></root>')
+    assert run_btq("init", "--from-xml", cwd=tmp_path)[0] == 0
+    table = 'load = ["*.xml"]\nmain = ["A", "B"]\nnodes = ["robot.btproj"]\n'
+    assert (tmp_path / "btq.toml").read_text().endswith(table)
+
+
+def test_xml_is_converted_and_what_changes_is_said(tmp_path: Path, write: Write) -> None:
+    write("main.xml", "Main: Dock")
+    write("dock.xml", "Dock")
+    (tmp_path / "dock.xml").write_text((tmp_path / "dock.xml").read_text().replace(' BTCPP_format="4"', ""))
+    code, out, err = run_btq("init", "--from-xml", "--convert", cwd=tmp_path)
+    assert (code, out.splitlines()[-1]) == (0, "Wrote btq.toml with 1 factory. Next: btq check .")
+    assert 'dock.xml:1:2: BTCPP_format="4" is added\n' in err
+    assert (tmp_path / "btq.toml").read_text().endswith('load = ["*.btq"]\nmain = "Main"\n')
+    assert sorted(path.name for path in tmp_path.glob("*.btq")) == ["dock.btq", "main.btq"]
+    assert run_btq("check", "main.btq", "dock.btq", cwd=tmp_path)[:2] == (0, "No problems found in 2 files\n")
+
+
+def test_nothing_to_start_from(tmp_path: Path) -> None:
+    nothing = "btq init: no BehaviorTree.CPP XML below .; nothing was written\n"
+    assert run_btq("init", "--from-xml", cwd=tmp_path) == (2, "", nothing)
+    assert run_btq("init", "--convert", cwd=tmp_path) == (2, "", "btq init: --convert goes with --from-xml\n")
+    assert [*tmp_path.iterdir()] == []
