@@ -639,3 +639,8 @@ def test_a_lost_quote_before_a_string_that_begins_with_a_sign() -> None:
 def test_a_line_that_ends_after_from() -> None:
     (only,) = parse("from\n").diagnostics
     assert (only.rule, only.notes) == ("syntax-error", ("a clause goes in the block of a QualityReq, indented",))
+
+
+def test_xml_below_what_has_no_block_is_part_of_it() -> None:
+    (found,) = parse('include "a.btq"\n    xml "<a/>"\nsignal b : m\n').diagnostics
+    assert found.message == "unexpected indentation: the line above opens no block"

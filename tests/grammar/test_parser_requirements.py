@@ -651,3 +651,16 @@ def test_a_value_of_many_cases_has_an_end() -> None:
     at = len("QualityReq a takes at most " + "1 s if b, " * 100)
     for cases in (101, 5000):
         assert_parse(limit(cases), None, f"1:{at + 1} nested-too-deep «1 s» more than 100 cases in one value")
+
+
+@pytest.mark.parametrize(
+    "clause",
+    [
+        *("in at least 98 % of runs", "with probability >= 98 %", "on violation fail", "over last 20 runs"),
+        *("verified by test", 'because "of people"'),
+    ],
+)
+def test_a_title_without_quotes_ends_where_a_clause_begins(clause: str) -> None:
+    text = f"QualityReq r : safety The arm stays still {clause}\n"
+    (found,) = parse(text).diagnostics
+    assert (found.message, text[found.span.start : found.span.end]) == ("a title goes in quotes", "The arm stays still")
