@@ -146,7 +146,7 @@ class _Writer:
         at = contents.index(document.root)
         for content in contents[:at]:
             self.comment_line(content, 0)
-        if at:
+        if at and self.symbols:  # for checks, a comment above the root silences rules on it
             self.blank_line()
         behind = contents[at + 1 :]
         level = 1 if behind else 0

@@ -14,7 +14,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     measures.py, clauses.py, conditions.py, bounds.py, limits.py, odds.py   requirements by themselves
     requirements.py, attached.py, qualities.py, repeated.py, prose.py, unused.py   names of requirements and qualities
     demanded.py, demands.py, budgets.py, signals.py, renewals.py, unenforced.py   requirements at their nodes
-    calls.py, origins.py, wording.py, placeholders.py, suppressions.py   what these share, XML, and silenced rules
+    calls.py, origins.py, wording.py, placeholders.py, suppressions.py, silencing.py   shared, XML, silenced rules
 """
 
 from __future__ import annotations

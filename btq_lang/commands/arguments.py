@@ -117,6 +117,13 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
         "--baseline", metavar="FILE", help="do not report the findings in this file; default: `baseline` of btq.toml"
     )
     parser.add_argument("--update-baseline", action="store_true", help="write the findings of today into the baseline")
+    parser.add_argument(
+        "--add-ignore",
+        nargs="?",
+        const="",
+        metavar="REASON",
+        help="write a comment that silences them for all findings; with `=`, it says why",
+    )
     parser.add_argument("--watch", action="store_true", help="check again whenever a file changes")
     parser.add_argument("--jobs", type=int, metavar="N", help="number of processes; default: chosen by btq")
     _add_color(parser)

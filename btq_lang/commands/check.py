@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping
+from copy import copy
 from typing import TYPE_CHECKING
 
 from btq_lang.checks import check, check_each
@@ -51,15 +52,19 @@ def _usage_problem(options: CheckOptions) -> str | None:
         return f"--jobs {options.jobs}: expected a number of processes, or 0 to let btq choose"
     rules = _rules(options.select) + _rules(options.ignore)
     unknown = next(filter(None, map(unknown_rule, rules)), None)
-    return usage_problem(options.paths) or unknown or report_problem(options) or _baseline_problem(options)
+    return usage_problem(options.paths) or unknown or report_problem(options) or _writing_problem(options)
 
 
-def _baseline_problem(options: CheckOptions) -> str | None:
-    if not options.update_baseline:
-        return None
-    from btq_lang.commands.baseline import update_problem
+def _writing_problem(options: CheckOptions) -> str | None:
+    if options.update_baseline:
+        from btq_lang.commands.baseline import update_problem
 
-    return update_problem(options)
+        return update_problem(options)
+    if options.add_ignore is not None:
+        from btq_lang.commands.ignoring import ignore_problem
+
+        return ignore_problem(options)
+    return None
 
 
 def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
@@ -91,6 +96,16 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         findings, known, trouble = compared(findings, groups, options, is_whole=not problems)
         _tell(trouble)
         problems += trouble
+    if options.add_ignore is not None:
+        from btq_lang.commands.ignoring import add_ignores
+
+        count, trouble = add_ignores(groups, findings, options.add_ignore)
+        _tell(trouble)
+        print(f"Added {count} comment{'' if count == 1 else 's'}", file=sys.stderr)
+        again = copy(options)
+        again.add_ignore = None
+        code, watched = _check(again, files)
+        return 2 if trouble else code, watched
     empty = no_mission_below(options.paths, groups, "no .btq file and no BehaviorTree.CPP XML")
     report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), empty, known)
     is_written = write_report(report, options, mended)

@@ -36,7 +36,7 @@ def fix(groups: Iterable[Group], is_wanted: Callable[[Diagnostic], bool]) -> tup
                 break
             count += applied
             for path, text in texts.items():
-                workspace = _with_source(workspace, path, text)
+                workspace = with_source(workspace, path, text)
         finished.update((path, workspace.files[path]) for path in group.given)
         done.append(replace(group, workspace=workspace))
     return tuple(done), count
@@ -89,7 +89,7 @@ def show_fixes(before: Iterable[Group], after: Iterable[Group], is_coloured: boo
     return is_changed
 
 
-def _with_source(workspace: Workspace, path: str, text: str) -> Workspace:
+def with_source(workspace: Workspace, path: str, text: str) -> Workspace:
     """The workspace after a change of a file on the disk, whatever its language."""
     if workspace.files[path].origin is None:
         return workspace.with_file(path, text)

@@ -25,6 +25,7 @@ class CheckOptions:
     severity = "hint"
     baseline: str | None = None
     update_baseline = False
+    add_ignore: str | None = None
     fix = False
     diff = False
     watch = False

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from btq_lang.checks import check
+from btq_lang.checks.silencing import at_line_end
 from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.diagnostics.rules import UNREADABLE
 from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.refactor import refactorings
 from btq_lang.ide.short_form import short_form
 from btq_lang.ide.unused import UNUSED, needless_includes, removal, without
-from btq_lang.syntax.scan import string_end
-from btq_lang.syntax.tokens import COMMENT, STRING
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
-from btq_lang.util.text import Edit, Position, Span
+from btq_lang.util.text import Edit, Span
 from btq_lang.workspace.fixes import fixed
 from btq_lang.workspace.workspace import Workspace
 
@@ -131,23 +130,10 @@ def _silencing(workspace: Workspace, path: str, found: Sequence[Diagnostic]) -> 
     """A comment at the end of the line that silences a rule there, if it can be written and has an effect."""
     file = workspace.files[path]
     for diagnostic in found:
-        line = file.lines.position(diagnostic.span.start).line
-        end = file.lines.offset(Position(line, len(file.lines.line(line))))
-        inside = any(
-            token.start < end <= token.end and _runs_on(token.text, token.kind) for token in file.parsed.tokens
-        )
-        if diagnostic.rule in UNREADABLE or inside:
-            continue
-        comment = f"  # btq: ignore[{diagnostic.rule}]"
-        title = f"Silence `{diagnostic.rule}` on this line"
-        yield Action(title, QUICK_FIX, {path: (Edit(Span(end, end), comment),)}, diagnostic)
-
-
-def _runs_on(text: str, kind: int) -> bool:
-    """Whether nothing can follow a token on its line: it is a comment, or a text that goes on or is not closed."""
-    if kind == STRING and string_end(text, 1, text[0]) < 0:
-        return True
-    return kind == COMMENT or ("\n" in text.strip() or "\r" in text.strip())
+        edit = at_line_end(file, file.lines.position(diagnostic.span.start).line, (diagnostic.rule,))
+        if diagnostic.rule not in UNREADABLE and edit is not None:
+            title = f"Silence `{diagnostic.rule}` on this line"
+            yield Action(title, QUICK_FIX, {path: (edit,)}, diagnostic)
 
 
 def _fix_all(workspace: Workspace, path: str, diagnostics: Sequence[Diagnostic]) -> Iterator[Action]:

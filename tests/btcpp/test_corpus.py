@@ -118,7 +118,10 @@ def test_diagnostics_point_at_the_words_of_the_xml(
     for name, text in corpus.items():
         for each in found[name]:
             assert 0 <= each.span.start <= each.span.end <= len(text), name
-            assert each.fixes == ()
+            for fix in each.fixes:  # of words, and in the file itself
+                spans = [change.place.span for change in fix.changes if change.place.path is None]
+                words = {text[span.start : span.end] for span in spans}
+                assert (len(words), len(spans)) == (1, len(fix.changes)), (name, fix)
             if each.rule in ("unknown-node", "unknown-tree", "forbidden-name", "not-an-engine-node"):
                 word = text[each.span.start : each.span.end]
                 assert word in each.message or word == "BehaviorTree", (name, each)

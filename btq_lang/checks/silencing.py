@@ -1,0 +1,68 @@
+"""Where a comment that silences rules goes: at the end of a line or above it; in XML before the element.
+
+One invariant: an edit adds a comment, and blanks and line ends around it, and changes nothing else.  Whether the
+comment has the effect is for `suppressions`, which reads it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from btq_lang.syntax.scan import string_end
+from btq_lang.syntax.tokens import COMMENT, STRING
+from btq_lang.util.text import LINE_END, Edit, Position, Span
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.file import File
+
+
+def at_line_end(file: File, line: int, rules: Sequence[str], reason: str = "") -> Edit | None:
+    """A comment at the end of a line; None if it would be in another comment or a text there."""
+    end = file.lines.offset(Position(line, len(file.lines.line(line))))
+    tokens = file.parsed.tokens
+    if any(token.start < end <= token.end and _runs_on(token.text, token.kind) for token in tokens):
+        return None
+    return Edit(Span(end, end), f"  # {_directive(rules, reason)}")
+
+
+def above_line(file: File, line: int, rules: Sequence[str], reason: str = "") -> Edit | None:
+    """A comment on a line of its own above; None if it would be in another comment or a text there."""
+    start = file.lines.offset(Position(line, 0))
+    if any(token.start < start < token.end and token.text.strip() for token in file.parsed.tokens):
+        return None
+    text = file.lines.line(line)
+    blanks = text[: len(text) - len(text.lstrip())]
+    return Edit(Span(start, start), f"{blanks}# {_directive(rules, reason)}{_line_end(file.text)}")
+
+
+def before_element(file: File, line: int, rules: Sequence[str], reason: str = "") -> Edit | None:
+    """A comment before the element of the XML from which a line was made."""
+    if file.origin is None:
+        return None
+    xml, start = file.origin.text, file.lines.offset(Position(line, 0))
+    end = start + len(file.lines.line(line))
+    begins = [piece[2] for piece in file.origin.places.pieces if start <= piece[0] < end]
+    at = xml.rfind("<", 0, begins[0]) if begins else -1
+    if at < 0:
+        return None
+    blanks = xml[xml.rfind("\n", 0, at) + 1 : at]
+    above = "" if not blanks.strip() else _line_end(xml)  # else the comment would belong to what is before it
+    after = _line_end(xml) + (blanks if not above else "")
+    return Edit(Span(at, at), f"{above}<!-- {_directive(rules, reason)} -->{after}")
+
+
+def _directive(rules: Sequence[str], reason: str) -> str:
+    return f"btq: ignore[{', '.join(rules)}]{' ' if reason else ''}{reason}"
+
+
+def _line_end(text: str) -> str:
+    found = LINE_END.search(text)
+    return found[0] if found else "\n"
+
+
+def _runs_on(text: str, kind: int) -> bool:
+    """Whether nothing can follow a token on its line: it is a comment, or a text that goes on or is not closed."""
+    if kind == STRING and string_end(text, 1, text[0]) < 0:
+        return True
+    return kind == COMMENT or ("\n" in text.strip() or "\r" in text.strip())

@@ -1,0 +1,97 @@
+"""`btq check --add-ignore`: a comment for each line with findings, so that a check reports only new ones.
+
+One invariant: a file is written only if a check of it then finds nothing but what no comment can silence.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from itertools import islice
+from typing import TYPE_CHECKING, TypeAlias
+
+from btq_lang.btcpp.marks import is_generated
+from btq_lang.checks import check
+from btq_lang.checks.silencing import above_line, at_line_end, before_element
+from btq_lang.commands.fixing import with_source
+from btq_lang.diagnostics.rules import UNREADABLE
+from btq_lang.util.text import apply_edits
+from btq_lang.workspace.loader import LoadProblem, write_whole
+
+if TYPE_CHECKING:
+    from btq_lang.commands.files import Group
+    from btq_lang.commands.options import CheckOptions
+    from btq_lang.diagnostics.model import Diagnostic
+    from btq_lang.render import Finding
+    from btq_lang.util.text import Edit
+    from btq_lang.workspace.file import File
+    from btq_lang.workspace.workspace import Workspace
+
+    Added: TypeAlias = tuple[Edit, list[Diagnostic]]  # a comment, and what it silences
+
+
+def add_ignores(
+    groups: Iterable[Group], findings: Sequence[Finding], reason: str
+) -> tuple[int, tuple[LoadProblem, ...]]:
+    """Write comments for the findings into their files; returns how many, and what could not be written."""
+    of_file: dict[str, list[Diagnostic]] = {}
+    for finding in findings:
+        of_file.setdefault(finding.path, []).append(finding.diagnostic)
+    count = 0
+    trouble: list[LoadProblem] = []
+    done: set[str] = set()
+    for group in groups:
+        for path in group.given:
+            found = of_file.get(path, ())
+            if path in done or not found or path in group.damaged:
+                continue
+            done.add(path)
+            file = group.workspace.files[path]
+            added = _added(file, found, reason)
+            if not _is_silent(group.workspace, file, added):
+                added = [each for each in added if _is_silent(group.workspace, file, [each])]
+                if not _is_silent(group.workspace, file, added):
+                    continue
+            text = apply_edits(file.source, (edit for edit, _ in added))
+            try:
+                write_whole(path, text)
+                count += len(added)
+            except OSError as error:
+                trouble.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
+    return count, tuple(trouble)
+
+
+def ignore_problem(options: CheckOptions) -> str | None:
+    """The usage error of options together with `--add-ignore`."""
+    reason = options.add_ignore or ""
+    if "\n" in reason or "\r" in reason or "--" in reason or reason.endswith("-"):
+        return "the reason of --add-ignore must be one line without `--`, and not end with `-`"
+    others = {"--fix": options.fix, "--diff": options.diff, "--watch": options.watch, "-": "-" in options.paths}
+    some = [option for option, is_given in others.items() if is_given]
+    return f"--add-ignore cannot be used together with {some[0]}" if some else None
+
+
+def _added(file: File, found: Iterable[Diagnostic], reason: str) -> list[Added]:
+    of_line: dict[int, list[Diagnostic]] = {}
+    own = {each.rule for each in file.origin.diagnostics} if file.origin else set()  # of the XML, not of a line
+    for each in found:
+        at = each.span.start if file.origin is None else file.origin.places.made(each.span.start)
+        if at is not None and each.rule not in UNREADABLE and each.rule not in own:
+            of_line.setdefault(file.lines.position(at).line, []).append(each)
+    places = (at_line_end, above_line) if file.origin is None else (before_element,)
+    added: list[Added] = []
+    for line, here in of_line.items():
+        rules = tuple(dict.fromkeys(each.rule for each in here))
+        made = (edit for place in places if (edit := place(file, line, rules, reason)) is not None)
+        added += [(edit, here) for edit in islice(made, 1)]
+    return added
+
+
+def _is_silent(workspace: Workspace, file: File, added: Sequence[Added]) -> bool:
+    """Whether a check of a file with comments finds what it has found, but for what they silence."""
+    if not added or is_generated(file.source):
+        return False
+    text = apply_edits(file.source, (edit for edit, _ in added))
+    before = Counter(each.rule for each in check(workspace, file.path))
+    after = Counter(each.rule for each in check(with_source(workspace, file.path, text), file.path))
+    return after == before - Counter(each.rule for _, silenced in added for each in silenced)
