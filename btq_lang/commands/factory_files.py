@@ -10,11 +10,10 @@ from btq_lang.btcpp.recognition import included_in
 from btq_lang.util.record import replace
 from btq_lang.workspace.factories import Factory
 from btq_lang.workspace.file import GROOT_SUFFIX, SUFFIXES
-from btq_lang.workspace.loader import absolute, collect, matching, package_folder, read
+from btq_lang.workspace.loader import absolute, matching, package_folder, read
 
 if TYPE_CHECKING:
     from btq_lang.commands.xml_below import XmlBelow
-    from btq_lang.workspace.config import Project
 
 PACKAGE: Final = "package://"
 
@@ -46,10 +45,9 @@ def resolved(factory: Factory, root: str, xml: XmlBelow) -> Factory:
     return replace(factory, files=loaded, node_files=nodes, lost=tuple(lost))
 
 
-def groot_projects(folders: Iterable[str], project: Project, wanted: Container[str]) -> Iterator[Factory]:
-    """The projects of Groot2 below some folders that register one of the wanted files, or are one, as factories."""
-    paths, _ = collect(folders, project, (GROOT_SUFFIX,))
-    for path in paths:
+def groot_projects(pools: Iterable[Iterable[str]], wanted: Container[str]) -> Iterator[Factory]:
+    """The projects of Groot2 in some pools that register one of the wanted files, or are one, as factories."""
+    for path in dict.fromkeys(path for pool in pools for path in pool if path.endswith(GROOT_SUFFIX)):
         folder = os.path.dirname(path)
         included = (absolute(os.path.join(folder, each)) for each in included_in(read(path)[0] or ""))
         if path in wanted or any(each in wanted for each in included):

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
 from btq_lang.workspace.loader import (
@@ -164,13 +163,13 @@ class Files:
         """
         factories = self._factories(home.project)
         groot: tuple[Factory, ...] = ()
-        pools: tuple[str, ...] = ()
-        if for_checks and (xml := {path: top for path, top in tops.items() if not path.endswith(SUFFIXES)}):
+        pools: dict[str, tuple[str, ...]] = {}
+        if for_checks and (xml := {path: top for path, top in tops.items() if self._may_be_xml(path)}):
             from btq_lang.commands.factory_files import groot_projects  # many projects have no XML
 
-            pools = (home.project.root,) if home.path else tuple(sorted({pool_of(*each) for each in _folders(xml)}))
+            pools = self._pools(xml, home)
             registered = {path for factory in factories for path in factory.files}
-            groot = tuple(groot_projects(pools, home.project, xml.keys() - registered))
+            groot = tuple(groot_projects(pools.values(), xml.keys() - registered))
         group, problems = self._load(tuple(tops), home, factories + groot)
         lacking = [each for each in factories if not each.files]
         problems += [LoadProblem(home.path or "", f"the factory `{each.name}` loads no file") for each in lacking]
@@ -180,9 +179,20 @@ class Files:
             known = {path for each in groups for path in each.given}
             group = replace(group, given=tuple(path for path in group.given if path not in known))
         if group.given or not groups:
-            has_pools = any(not path.endswith(SUFFIXES) for path in group.given)
-            groups.append(self._with_pools(group, pools, project_of) if for_checks and has_pools else group)
+            has_xml = any(group.workspace.files[path].origin is not None for path in group.given)
+            groups.append(self._with_pools(group, pools, project_of) if pools and has_xml else group)
         return groups, problems
+
+    def _may_be_xml(self, path: str) -> bool:
+        text = self.overlay.get(path)
+        return not path.endswith(SUFFIXES) and (text is None or text.lstrip().startswith("<"))
+
+    def _pools(self, tops: Mapping[str, str], home: Found) -> dict[str, tuple[str, ...]]:
+        """The pools of XML files, each with all files in it that may be missions."""
+        folders = {(os.path.dirname(path), top) for path, top in tops.items()}
+        pools = {home.project.root} if home.path else {pool_of(*each) for each in folders}
+        suffixes = (*SUFFIXES, *XML_SUFFIXES)
+        return {pool: collect([pool], home.project, suffixes)[0] for pool in sorted(pools)}
 
     def _factories(self, project: Project) -> tuple[Factory, ...]:
         """The factories of a project with their files."""
@@ -192,14 +202,15 @@ class Files:
 
         return tuple(resolved(factory, project.root, self.xml) for factory in project.factories)
 
-    def _with_pools(self, group: Group, pools: tuple[str, ...], project_of: Callable[[str], Found]) -> Group:
+    def _with_pools(
+        self, group: Group, pools: Mapping[str, tuple[str, ...]], project_of: Callable[[str], Found]
+    ) -> Group:
         """The group with the files of its pools that define what its XML lacks."""
         workspace = group.workspace
-        project = replace(workspace.project, pools=pools)
+        project = replace(workspace.project, pools=tuple(pools))
         lacking = lacking_names(workspace, group.given)
         files = dict(workspace.files)
-        for pool in pools if lacking else ():
-            found, _ = collect([pool], project, (*SUFFIXES, *XML_SUFFIXES))
+        for pool, found in pools.items() if lacking else ():
             wanted = tuple(path for path in found if path not in files and project_of(path).path == group.project_file)
             for path in self._missions(pool, wanted):
                 if self.xml.may_define(path, lacking) and (text := self.overlay.get(path) or read(path)[0]) is not None:
@@ -279,13 +290,10 @@ def _by_factory(group: Group, factories: Iterable[Factory], in_each: bool) -> It
             taken.update(() if in_each else given)
 
 
-def _folders(tops: Mapping[str, str]) -> set[tuple[str, str]]:
-    """The folders of some files, each with the one in which they were requested."""
-    return {(os.path.dirname(path), top) for path, top in tops.items()}
-
-
 def lacking_names(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:
     """The trees and nodes that XML files and their includes lack."""
+    from btq_lang.catalog.nodes import BUILTINS  # a large table, and many projects have no XML
+
     found: set[str] = set()
     for path in paths:
         scope, file = workspace.scope(path), workspace.files[path]
