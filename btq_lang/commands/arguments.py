@@ -114,6 +114,11 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
         "--diff", action="store_true", help="write nothing, show what --fix would change; exit 1 if there is anything"
     )
     parser.add_argument(
+        "--since",
+        metavar="REV",
+        help="only files that changed since a git revision, and those that depend on such a file",
+    )
+    parser.add_argument(
         "--baseline", metavar="FILE", help="do not report the findings in this file; default: `baseline` of btq.toml"
     )
     parser.add_argument("--update-baseline", action="store_true", help="write the findings of today into the baseline")

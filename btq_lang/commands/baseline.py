@@ -60,16 +60,15 @@ def compared(
 
 def update_problem(options: CheckOptions) -> str | None:
     """The usage error of options together with `--update-baseline`."""
-    chosen = {"--select": options.select, "--ignore": options.ignore, "--severity": options.severity != "hint"}
-    some = [
-        option
-        for option, is_given in (
-            *chosen.items(),
-            ("--diff", options.diff),
-            ("--add-ignore", options.add_ignore is not None),
-        )
-        if is_given
-    ]
+    others = {
+        "--select": options.select,
+        "--ignore": options.ignore,
+        "--severity": options.severity != "hint",
+        "--since": options.since,
+        "--diff": options.diff,
+        "--add-ignore": options.add_ignore is not None,
+    }
+    some = [option for option, is_given in others.items() if is_given]
     return f"--update-baseline needs all findings; leave out {some[0]}" if some else None
 
 

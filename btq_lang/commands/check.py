@@ -56,6 +56,8 @@ def _usage_problem(options: CheckOptions) -> str | None:
 
 
 def _writing_problem(options: CheckOptions) -> str | None:
+    if options.since and STDIN in options.paths:
+        return "--since cannot be used for standard input"
     if options.update_baseline:
         from btq_lang.commands.baseline import update_problem
 
@@ -71,6 +73,16 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     """Check once; returns the exit code and the files that another run depends on."""
     groups, problems = files.groups(options.paths, options.stdin_filename, with_xml=True, for_checks=True)
     groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
+    empty = no_mission_below(options.paths, groups, "no .btq file and no BehaviorTree.CPP XML")
+    if options.since:
+        from btq_lang.commands.git import GitTrouble
+        from btq_lang.commands.since import affected
+
+        try:
+            groups = affected(groups, options.since)
+        except GitTrouble as reason:
+            print(f"btq check: --since: {reason}", file=sys.stderr)
+            return 2, _watched(groups)
     mended = 0
     if options.diff:
         _tell(problems)
@@ -106,8 +118,8 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         again.add_ignore = None
         code, watched = _check(again, files)
         return 2 if trouble else code, watched
-    empty = no_mission_below(options.paths, groups, "no .btq file and no BehaviorTree.CPP XML")
-    report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), empty, known)
+    why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)
+    report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), why_empty, known)
     is_written = write_report(report, options, mended)
     if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
         print(f"btq check: {empty}", file=sys.stderr)

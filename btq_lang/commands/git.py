@@ -64,6 +64,13 @@ class Revisions:
                 pairs[before, after] = None
         return [*pairs]
 
+    def changed_paths(self) -> frozenset[str]:
+        """The files of the repository that differ between the old revision and the working tree; those that git does
+        not know yet, and under both names those that were renamed."""
+        words = _git(self._root, "diff", "--name-only", "--no-renames", "-z", self.old, "--")
+        words += _git(self._root, "ls-files", "--others", "--exclude-standard", "-z")
+        return frozenset(self._outside(path) for path in words.split("\0") if path)
+
     def workspace(self, commit: str, path: str, known: dict[str, str] | None = None) -> Workspace | None:
         """A file of a commit with all its includes there; None if the commit has no such file.
 

@@ -1,0 +1,82 @@
+"""`btq check --since REV`: the files that changed since a revision, and those that depend on such a file.
+
+A file depends on itself; on the project file; on what it includes, directly or not, also where an included file is not
+there any more; in a factory on all files of it; and XML on the files of its pool that define the trees and nodes it
+uses, or on all of them if a tree is nowhere.
+
+One invariant: a file that is left out has the findings that it had at the revision, as far as they depend on files.
+"""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.commands.git import GitTrouble, revisions
+from btq_lang.util.record import replace
+from btq_lang.workspace.config import include_candidates
+
+if TYPE_CHECKING:
+    from btq_lang.commands.files import Group
+    from btq_lang.workspace.workspace import Workspace
+
+
+def affected(groups: Iterable[Group], revision: str) -> tuple[Group, ...]:
+    """The groups with only those requested files that a change since a revision concerns.
+
+    Raises:
+        GitTrouble: files are in no repository, the revision is not known, git is not installed.
+    """
+    if ".." in revision:
+        raise GitTrouble(f"expected one revision, which the files are compared with, not `{revision}`")
+    of_folder: dict[str, frozenset[str]] = {}
+    done: list[Group] = []
+    for group in groups:
+        for path in group.given[:1]:
+            folder = posixpath.dirname(path)
+            if folder not in of_folder:
+                of_folder[folder] = revisions(revision, folder).changed_paths()
+            changed = of_folder[folder]
+            concerned = _Concerned(group.workspace, changed)
+            if group.project_file not in changed:
+                group = replace(group, given=tuple(filter(concerned, group.given)))
+        done.append(group)
+    return tuple(done)
+
+
+class _Concerned:
+    """Whether a change of some files concerns a file of a workspace."""
+
+    def __init__(self, workspace: Workspace, changed: frozenset[str]) -> None:
+        self._workspace = workspace
+        self._changed = changed
+
+    def __call__(self, path: str) -> bool:
+        seen: set[str] = set()
+        waiting = [path]
+        while waiting:
+            each = waiting.pop()
+            if each in self._changed:
+                return True
+            if each in self._workspace.files and each not in seen:
+                seen.add(each)
+                waiting += self._needed(each)
+        return False
+
+    def _needed(self, path: str) -> Iterator[str]:
+        """What a file itself depends on; paths that are not there too."""
+        workspace = self._workspace
+        yield from workspace.scope(path).paths
+        for include, is_of_package in workspace.files[path].included_paths:
+            if not is_of_package:
+                yield from include_candidates(workspace.project, path, include)
+        pool = workspace.project.pool_of(path) if workspace.files[path].origin else None
+        if pool is None:
+            return
+        for kind, name in workspace.files[path].used_names:
+            found = workspace.pooled(path, kind, name) if kind in (Kind.TREE, Kind.MODEL) else ()
+            yield from (each.path for each in found)
+            if kind is Kind.TREE and workspace.find(path, kind, name) is None:
+                yield from (each for each in self._changed if each.startswith(pool) and each.endswith(".xml"))
