@@ -80,6 +80,7 @@ class MissionEvaluation:
         for clause in self._clauses:
             for uid in clause.join(joined, signals, history, nearby):
                 at.setdefault(uid, []).append(clause)
+        judged = {uid: (clauses, tree.nodes[uid].path, nearby(uid)) for uid, clauses in at.items()}
         guards = Guards(tree, joined.enforcing(), at)
         over_runs = any(clause.is_over_run for clause in self._clauses)
         explainer = Explainer(tree, at, signals, has_clauses_over_runs=over_runs)
@@ -100,12 +101,13 @@ class MissionEvaluation:
                 self._timelines.see(activation)
             if activation.uid in guards.concerned:  # few nodes are
                 for refusal in guards.refused(activation):
-                    for clause in at[refusal.uid]:
-                        clause.refuse(refusal, tree.nodes[refusal.uid].path)
+                    clauses, path, _ = judged[refusal.uid]
+                    for clause in clauses:
+                        clause.refuse(refusal, path)
                 for ended, guard in guards.settled(activation):
-                    path, is_end_known = tree.nodes[ended.uid].path, ended.timing != "latest"
-                    observed = Observed(signals, nearby(ended.uid), ended.started, ended.ended, is_end_known)
-                    for clause in at[ended.uid]:
+                    clauses, path, others = judged[ended.uid]
+                    observed = Observed(signals, others, ended.started, ended.ended, ended.timing != "latest")
+                    for clause in clauses:
                         clause.judge(ended, guard, observed, path)
             if activation.uid == ROOT:
                 run = Run(first_run + runs, source, activation.begin, activation.end)

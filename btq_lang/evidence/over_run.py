@@ -79,7 +79,7 @@ class OverRun:
     def starts(self) -> list[tuple[Activation, bool | Unknown]]:
         """The activations of the clause's nodes that count or may count."""
         found = [(each, self.counts_one(each)) for each in self.own]
-        return [(each, counts) for each, counts in found if counts is not False]
+        return [each for each in found if each[1] is not False]
 
     def stretches(self) -> list[Stretch]:
         """The parts of the run whose time counts or may count."""

@@ -42,7 +42,7 @@ def activations(session: Session) -> Iterator[Activation]:
         if time < before[0]:
             odd.count("rows earlier than the row before them, so durations across them are unknown", time)
             nodes.distrust()
-        completes = status in (SUCCESS, FAILURE)
+        completes = status in _RESULTS
         if idle is not None:
             halted, then = idle
             idle = None
@@ -119,7 +119,7 @@ class _OpenNodes:
         """End a node; returns the activations that end with it, innermost first, its own last."""
         found: list[Activation] = []
         last = self._tree.last[uid]
-        if last > uid and len(self.begun) > 1:
+        if last > uid and max(self.begun) > uid:  # mostly nothing below is open any more
             for each in sorted([each for each in self.begun if uid < each <= last], reverse=True):
                 if each in self.running:
                     found.append(self._made(each, now, below, "latest" if below == "H" else "exact"))
@@ -164,4 +164,5 @@ class _Oddities:
 
 ONE_COMPLETION: Final = 1000  # µs between a node's IDLE and its own result
 _UNWRITTEN: Final = "halts without a row of their own, so only the latest possible end is known"
-_STATUSES: Final = range(SKIPPED + 1)
+_STATUSES: Final = frozenset(range(SKIPPED + 1))
+_RESULTS: Final = (SUCCESS, FAILURE)
