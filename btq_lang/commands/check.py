@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping
-from copy import copy
 from typing import TYPE_CHECKING
 
 from btq_lang.checks import check, check_each
@@ -109,6 +108,8 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         _tell(trouble)
         problems += trouble
     if options.add_ignore is not None:
+        from copy import copy  # as all here only where it is needed
+
         from btq_lang.commands.ignoring import add_ignores
 
         count, trouble = add_ignores(groups, findings, options.add_ignore)
