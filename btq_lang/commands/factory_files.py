@@ -21,7 +21,7 @@ PACKAGE: Final = "package://"
 def resolved(factory: Factory, root: str, xml: XmlBelow) -> Factory:
     """A factory with its files, and with the patterns that match none, as their package may not be here.
 
-    XML that was built of a mission that is there stands for that mission, and other XML than the engine's for nothing.
+    XML that was built of a mission that is there counts as that mission; XML that is not the engine's is left out.
 
     Args:
         root: the folder that patterns are relative to.

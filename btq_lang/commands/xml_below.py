@@ -1,6 +1,6 @@
 """Which XML files below a folder are missions, of the many that are not.
 
-One invariant: a file that somebody has written for the engine is among them, unless git ignores it.
+One invariant: each file that people wrote for the engine is in the result, unless git ignores it.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class XmlBelow:
         text = read(path)[0] or ""
         beside = (f"{os.path.splitext(path)[0]}{suffix}" for suffix in SUFFIXES)
         named = (each for each in beside if is_built_of(text, (os.path.basename(each),)))
-        return next((each for each in (*named, *_told_by_side_file(path)) if os.path.isfile(each)), None)
+        return next((each for each in (*named, *_named_by_side_file(path)) if os.path.isfile(each)), None)
 
     def _look(self, path: str) -> tuple[frozenset[str] | None, bool]:
         """The IDs of trees and models in an XML file, None if it is not the engine's, and whether a build wrote it."""
@@ -75,7 +75,7 @@ class XmlBelow:
         return known[1:]
 
 
-def _told_by_side_file(path: str) -> tuple[str, ...]:
+def _named_by_side_file(path: str) -> tuple[str, ...]:
     """The mission that the side file of built XML names."""
     import json
 
