@@ -13,7 +13,6 @@ import os
 import re
 import stat
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from glob import glob
 from typing import BinaryIO
 
 from btq_lang.util.record import Record, replace
@@ -107,6 +106,8 @@ def pool_of(folder: str, top: str) -> str:
 
 def matching(folder: str, pattern: str) -> tuple[str, ...]:
     """The files that a pattern below a folder matches, sorted."""
+    from glob import glob  # few projects name files by patterns
+
     found = glob(pattern, root_dir=folder, recursive=True)
     paths = sorted(absolute(os.path.join(folder, each)) for each in found)
     return tuple(path for path in paths if _is_file(path))
