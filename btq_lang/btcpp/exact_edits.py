@@ -28,9 +28,9 @@ def exact_edits(file: File, edit: Edit) -> tuple[Edit, ...] | None:
     if origin is None or not origin.is_complete or is_generated(origin.text):
         return None
     xml = origin.text
-    for start, end, begin, stop in origin.places.pieces:
+    for start, end, begin, stop in origin.places.containing(edit.span):
         old = file.text[start:end]
-        if start <= edit.span.start < edit.span.end <= end and old == xml[begin:stop]:
+        if edit.span.start < edit.span.end and old == xml[begin:stop]:
             new = file.text[start : edit.span.start] + edit.text + file.text[edit.span.end : end]
             if not new or _SPECIAL.search(new):
                 return None

@@ -29,7 +29,6 @@ from btq_lang.lsp.convert import Converter
 from btq_lang.lsp.protocol import Json, Messages, Protocol
 from btq_lang.lsp.session import Session
 from btq_lang.util.version import __version__
-from btq_lang.workspace.findings import Findings
 from btq_lang.workspace.queries import Cancelled
 
 if TYPE_CHECKING:
@@ -246,14 +245,14 @@ class Server(LanguageServer):
     # ---- calling features ----
 
     def at(self, document: types.TextDocumentIdentifier, *, reads: bool = False) -> tuple[Workspace, str] | None:
-        """The workspace and the path of a document; None if it is unknown, or written in XML.
+        """The workspace and the path of a document; None if it is unknown, or XML that is not the engine's, or any XML.
 
         Args:
             reads: the request changes nothing and its result has places that `convert.range` maps, so XML is allowed.
         """
         path = self.convert.path(document.uri)
         workspace = self.session.workspace_of(path)
-        if workspace is None or (workspace.files[path].origin is not None and not reads):
+        if workspace is None or (workspace.files[path].origin is not None and not (reads and self.session.knows(path))):
             return None
         return workspace, path
 
@@ -275,21 +274,14 @@ class Server(LanguageServer):
 
     # ---- publishing diagnostics ----
 
-    def findings(self, path: str) -> Findings:
-        """The findings of a file; none for XML without a tree: an editor may send any XML file."""
-        found = self.session.findings(path)
-        workspace = self.session.workspace_of(path)
-        if workspace is None or workspace.files[path].origin is None or path in workspace.included_files:
-            return found
-        is_strange = any(one.rule == "xml-root" for one in found.diagnostics)
-        return Findings([]) if is_strange else found
-
     def diagnostics_of(self, path: str) -> Json | None:
-        """All diagnostics of a file, a mission or a project file, as JSON; None: the file is unknown."""
+        """All diagnostics of a file, a mission or a project file, as JSON; None: the file is not reported on."""
         if path in self.session.projects:
             return self.convert.problems(*self.session.projects[path])
         workspace = self.session.workspace_of(path)
-        return None if workspace is None else self.convert.findings(workspace, path, self.findings(path))
+        if workspace is None or not self.session.knows(path):
+            return None
+        return self.convert.findings(workspace, path, self.session.findings(path))
 
     def check_soon(self, paths: Iterable[str]) -> None:
         """Schedule files, in their order, for checking and publishing, before those already waiting."""

@@ -20,6 +20,7 @@ from btq_lang.workspace.findings import Findings
 if TYPE_CHECKING:  # imported on use: the server must start fast
     from btq_lang.commands.files import Files
     from btq_lang.diagnostics.model import Diagnostic
+    from btq_lang.workspace.file import File
     from btq_lang.workspace.item_index import Name
     from btq_lang.workspace.loader import LoadProblem
     from btq_lang.workspace.workspace import Workspace
@@ -54,29 +55,37 @@ class Session:
 
     def edit(self, path: str, text: str) -> tuple[str, ...]:
         """Change the text of an open file; returns the files to check again, the most important first."""
+        is_new = path not in self.open
         self.open[path] = text
         home = self._home.get(path)
-        if home is None or self._workspaces[home].files[path].origin is not None:
+        if home is None:
             return (path, *self.reload())
         before = self._workspaces[home]
-        if before.files[path].text == text:  # opened, and equal to the file on the disk
+        old = before.files[path]
+        if old.source == text and (old.origin is None or not is_new):  # opened, and equal to the file on the disk
             return (path,)
+        from btq_lang.btcpp.opening import file_of
         from btq_lang.workspace.inputs import advance
 
+        new = file_of(path, text)
+        if (is_new and new.origin is not None) or not _is_xml_alike(old, new):
+            return (path, *self.reload())  # open XML has a pool, in which it finds what it lacks
+        is_pool_same = True
         for index, workspace in enumerate(self._workspaces):
             if path in workspace.files:
-                self._workspaces[index] = workspace.with_file(path, text)
+                self._workspaces[index] = workspace.with_file(path, new.text, new.origin)
                 advance(workspace, self._workspaces[index])
-        after = self._workspaces[home]
-        old, new = before.files[path], after.files[path]
-        if old.included_paths != new.included_paths:
+                lacking = [_lacking(each, self.open) for each in (workspace, self._workspaces[index])]
+                is_pool_same = is_pool_same and lacking[0] == lacking[1]
+        if old.included_paths != new.included_paths or not is_pool_same:
             return (path, *self.reload())
-        linked = {
-            other for each in self.workspaces_of(path) for other in each.linked(path)
-        }  # they know each other's uses
-        if renamed := old.defined_names ^ new.defined_names:
-            if any(_is_included_by_xml(each, path) for each in self._workspaces if path in each.files):
-                return (path, *self.reload())  # it may need another pool
+        after = self._workspaces[home]
+        linked: set[str] = set()  # uses are known in both directions
+        for each in self._workspaces:
+            if path in each.files:
+                looking = each.origins.keys() - self._pooled if each.project.pools else ()  # XML, for what it lacks
+                linked.update(each.linked(path, *looking))
+        if renamed := old.defined_names ^ after.files[path].defined_names:
             linked.update(other for other in after.files if other != path and _lacks_definition(after, other, renamed))
         return self._in_order(path, linked)
 
@@ -85,6 +94,7 @@ class Session:
         from btq_lang.workspace.loader import read
 
         text = self.open.pop(path, None)
+        is_xml = path in self._home and self._workspaces[self._home[path]].files[path].origin is not None
         for workspace in self.workspaces_of(path):
             from btq_lang.checks import forget
 
@@ -92,7 +102,7 @@ class Session:
         self.check_seconds.pop(path, None)
         self._checked.pop(path, None)  # its offsets count from items that are no longer kept
         is_of_folder = any(path.startswith(f"{folder}/") for folder in self.folders)
-        if is_of_folder and text is not None and read(path)[0] == text:
+        if is_of_folder and not is_xml and text is not None and read(path)[0] == text:
             return (path,)
         return self.reload()
 
@@ -185,11 +195,19 @@ class Session:
                     each.let_go(idle[:_AT_ONCE])
 
     def _active_files(self) -> set[str]:
-        """The open files and those linked with them, in any workspace: workspaces may share files."""
+        """The open files, those linked with them, and those in which linked XML finds what it lacks, in any workspace:
+        workspaces may share files.
+        """
+        from btq_lang.catalog.name_kinds import Kind  # the server must start fast
+
         found: set[str] = set()
         for workspace in self.workspaces():
             missions = {workspace.missions.get(path) for path in self.open} - {None}
-            found.update([path for path, mission in workspace.missions.items() if mission in missions])
+            linked = [path for path, mission in workspace.missions.items() if mission in missions]
+            found.update(linked)
+            for name in _lacking(workspace, linked):
+                for kind in (Kind.TREE, Kind.MODEL):
+                    found.update(workspace.files_defining(kind, name))
         return found
 
     # ---- queries ----
@@ -212,8 +230,16 @@ class Session:
         return tuple(each for each in self._workspaces if path in each.registered)
 
     def knows(self, path: str) -> bool:
-        """Whether a path is a known mission's or project file's."""
-        return path in self._home or path in self.projects
+        """Whether a path is that of a mission or project file that is reported on."""
+        workspace = self.workspace_of(path)
+        if workspace is None or path in self._pooled:
+            return path in self.projects
+        origin = workspace.files[path].origin
+        return (
+            origin is None
+            or path in workspace.included_files
+            or (path in workspace.registered or _is_mission(origin.text))
+        )
 
     def workspaces(self) -> tuple[Workspace, ...]:
         return tuple(self._workspaces)
@@ -297,11 +323,25 @@ class Session:
         return value if isinstance(value, bool) else default
 
 
-def _is_included_by_xml(workspace: Workspace, path: str) -> bool:
-    """Whether XML that has a pool may include a file, directly or not."""
-    return workspace.factory is None and any(
-        workspace.files[each].origin is not None for each in workspace.linked(path)
-    )
+def _is_mission(xml: str) -> bool:
+    """Whether XML is the engine's: an editor may send any XML file."""
+    from btq_lang.btcpp.recognition import is_mission  # as below
+
+    return is_mission(xml)
+
+
+def _is_xml_alike(old: File, new: File) -> bool:
+    """Whether both texts of a file, or neither, look like XML, so that it has a pool."""
+    of_each = [each.origin is not None and each.source.lstrip()[:1] for each in (old, new)]
+    return of_each[0] == of_each[1]
+
+
+def _lacking(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:
+    """The names that those of the paths that are XML look up in their pool."""
+    from btq_lang.commands.files import lacking_names  # the server must start fast
+
+    xml = workspace.origins.keys() & paths if workspace.project.pools else ()
+    return lacking_names(workspace, xml) if xml else frozenset()
 
 
 def _lacks_definition(workspace: Workspace, path: str, names: Set[Name]) -> bool:

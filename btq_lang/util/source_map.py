@@ -51,6 +51,12 @@ class Places:
         start, end, original_start, original_end = min(around, key=lambda piece: (piece[3] - piece[2], -piece[2]))
         return start + offset - original_start if end - start == original_end - original_start else start
 
+    def containing(self, span: Span) -> Sequence[Piece]:
+        """The pieces around a span of the generated text: more than one only if some are empty."""
+        pieces = self.pieces
+        first = bisect_left(pieces, span.end, key=_end)
+        return pieces[first : bisect_right(pieces, span.start, lo=first, key=_begin)]
+
     def __reduce__(self) -> tuple[object, ...]:
         return Places, (self.pieces, (), _as_they_are)
 

@@ -46,10 +46,14 @@ class File:
         self.text = text
         self.origin = origin
 
-    def edited(self, text: str) -> File:
-        """The file after an edit, which shares what the edit does not touch."""
-        after = File(self.path, text)
-        if self.origin is None and "parsed" in self.__dict__ and is_btq(self.path):
+    def edited(self, text: str, origin: Origin | None = None) -> File:
+        """The file after an edit, which shares what the edit does not touch.
+
+        Args:
+            origin: the file in another language after the edit, of which `text` is the translation.
+        """
+        after = File(self.path, text, origin)
+        if "parsed" in self.__dict__ and self._is_read and after._is_read:
             change = changed(self.text, text)
             after.parsed = _sharing(self.parsed, reparse(self.parsed, text, change), change)
             known = self.facts
@@ -96,7 +100,12 @@ class File:
 
     @cached_property
     def parsed(self) -> Parsed:
-        return parse(self.text if self.origin or is_btq(self.path) else "")
+        return parse(self.text if self._is_read else "")
+
+    @property
+    def _is_read(self) -> bool:
+        """Whether its text is in this language."""
+        return self.origin is not None or is_btq(self.path)
 
     @property
     def source(self) -> str:

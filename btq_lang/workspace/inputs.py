@@ -39,7 +39,9 @@ Placed: TypeAlias = tuple[str, Facts]  # an item, and the path of its file
 def of_viewpoint(
     read: Callable[Concatenate[Workspace, str, P], T],
 ) -> Callable[Concatenate[Store[Workspace], str, P], T]:
-    """An input that may change with an edit of any file that is linked with the viewpoint by includes."""
+    """An input that may change with an edit of any file that is linked with the viewpoint by includes, or in which XML
+    that is linked with it looks up names.
+    """
 
     @wraps(read)
     def ask(store: Store[Workspace], viewpoint: str, /, *key: P.args, **_: P.kwargs) -> T:
@@ -85,7 +87,8 @@ def advance(before: Workspace, after: Workspace) -> None:
 
 def _touched(after: Workspace, old: File, new: File) -> Iterator[Hashable]:
     """The topics in which an edit of one file may change something."""
-    yield from after.linked(new.path)
+    looking = after.origins if after.project.pools else ()  # XML, for what it lacks
+    yield from after.linked(new.path, *looking)
     for item in old.facts.keys() ^ new.facts.keys():
         for symbol in (old.facts.get(item) or new.facts[item]).summary.symbols:
             yield symbol.kind, symbol.name

@@ -56,10 +56,14 @@ class Workspace:
         """A workspace of these texts, by path."""
         return cls({path: File(path, text) for path, text in texts.items()}, project or Project())
 
-    def with_file(self, path: str, text: str) -> Workspace:
-        """The workspace after an edit that replaces the text of a file; every other file is shared."""
+    def with_file(self, path: str, text: str, origin: Origin | None = None) -> Workspace:
+        """The workspace after an edit that replaces the text of a file; every other file is shared.
+
+        Args:
+            origin: the file in another language, if `text` is its translation.
+        """
         before = self.files.get(path)
-        file = before.edited(text) if before else File(path, text)
+        file = before.edited(text, origin) if before else File(path, text, origin)
         after = Workspace({**self.files, path: file}, self.project, self.factory)
         if before is not None and before.included_paths == file.included_paths:
             after._take_over(self, path)
@@ -219,10 +223,10 @@ class Workspace:
                 found[other] = one
         return {path: first(path) for path in self.files}
 
-    def linked(self, path: str) -> list[str]:
-        """A file, those that see it, and those that it sees, directly or not."""
-        mission = self.missions[path]
-        return [other for other, of in self.missions.items() if of == mission]
+    def linked(self, *paths: str) -> list[str]:
+        """Files, those that see them, and those that they see, directly or not."""
+        missions = {self.missions[path] for path in paths}
+        return [other for other, of in self.missions.items() if of in missions]
 
     # ---- definitions and references ----
 

@@ -61,6 +61,13 @@ load = ["skills.btq", "requirements.btq", "gone/*.btq"]
 """
 OTHER = "BehaviorTree Alone\n    Pick\n"
 FILES = {"main.btq": MAIN, "skills.btq": SKILLS, "requirements.btq": REQUIREMENTS, "other.btq": OTHER}
+WITH_XML = {
+    "main.btq": 'include "nav.xml"\ninclude "skills.btq"\nBehaviorTree Main\n    SubTree Nav\n',
+    "skills.btq": SKILLS,
+    "nav.xml": XML,
+    "top.xml": TOP,
+    "dock.xml": XML.replace("Nav", "Dock").replace("Carry", "Nav"),
+}
 PIECES = (
     *(
         "\n",
@@ -79,6 +86,33 @@ PIECES = (
         "BehaviorTree ",
     ),
     *("QualityReq rq2 ", "input ", "Root ", "3 s", "takes ", "Action Place\n"),
+)
+XML_PIECES = (
+    *(
+        "<",
+        ">",
+        "/",
+        '"',
+        " ",
+        "\n",
+        "🤖",
+        "<!-- ",
+        "-->",
+        "Carry",
+        "Nav",
+        "Dock",
+        'ID="',
+        "Sequence",
+        "&amp;",
+        "<Pick/>",
+    ),
+    *(
+        '<SubTree ID="Carry"/>',
+        '<SubTree ID="Dock" to="x"/>',
+        '<include path="dock.xml"/>',
+        '<BehaviorTree ID="Dock"/>',
+    ),
+    '<TreeNodesModel><Action ID="Pick"><input_port name="from" type="int"/></Action></TreeNodesModel>',
 )
 
 
@@ -382,6 +416,41 @@ def test_a_check_after_all_was_read_again_asks_nothing_again(folder: Path) -> No
 
 
 # ---- XML ----
+
+
+@pytest.mark.usefixtures("strict_queries")
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_told_of_xml_is_what_a_new_session_finds(
+    tmp_path: Path, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("btq_lang.lsp.session._MOST_IDLE", 0 if seed % 2 else 100_000)
+    for name, text in WITH_XML.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    chance = random.Random(seed)
+    session = session_of(tmp_path, {})
+    told = {path: session.diagnostics(path) for path in session.paths()}
+    texts: dict[str, str] = {}
+    for step in range(60):
+        name = chance.choice(sorted(WITH_XML))
+        path = f"{tmp_path}/{name}"
+        if path in texts and chance.random() < 0.1:
+            del texts[path]
+            changed = session.close(path)
+        else:
+            text = texts.get(path, WITH_XML[name])
+            if chance.random() < 0.3:
+                text = WITH_XML[name]
+            at = chance.randrange(len(text) + 1)
+            piece = chance.choice(XML_PIECES if name.endswith(".xml") else PIECES)
+            texts[path] = text[:at] + piece + text[at + chance.choice((0, 0, 1, 5, 20)) :]
+            changed = session.edit(path, texts[path])
+        told.update({each: session.diagnostics(each) for each in changed})
+        told = {each: found for each, found in told.items() if session.knows(each)}
+        session.let_go()
+        new = session_of(tmp_path, texts)
+        known = filter(new.knows, new.paths())
+        assert told == {each: new.diagnostics(each) for each in known}, (seed, step, texts)
+        assert session.workspaces() == new.workspaces()
 
 
 def test_open_xml_finds_what_it_lacks_in_its_folder(tmp_path: Path) -> None:

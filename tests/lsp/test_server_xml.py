@@ -1,0 +1,296 @@
+"""XML in an editor: what the language server says of documents that are BehaviorTree.CPP's XML, and of no others."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from lsp_editor import Editor, Message, part
+
+from btq_lang.btcpp.recognition import is_mission
+from btq_lang.checks import check
+from btq_lang.commands.files import Files
+from btq_lang.util.text import LineIndex
+
+DOCK = """<root BTCPP_format="4">
+  <BehaviorTree ID="Dock">
+    <Timeout msec="1000">
+      <SubTree ID="Home"/>
+    </Timeout>
+  </BehaviorTree>
+  <BehaviorTree ID="Home">
+    <Action ID="Pick" from="{shelf}"/>
+  </BehaviorTree>
+</root>
+"""
+
+
+@pytest.fixture
+def editor(tmp_path: Path) -> Iterator[Editor]:
+    editor = Editor(tmp_path)
+    yield editor
+    assert editor.close() == ""
+
+
+@pytest.fixture
+def foreign(tmp_path: Path) -> Iterator[Editor]:
+    """An editor that sends the server an XML file, which a mission includes."""
+    (tmp_path / "dock.xml").write_text(DOCK, encoding="utf-8")
+    (tmp_path / "main.btq").write_text('include "dock.xml"\nBehaviorTree Main\n    SubTree Dock\n', encoding="utf-8")
+    (tmp_path / "other.btq").write_text("BehaviorTree Other\n    Pick\n", encoding="utf-8")
+    editor = Editor(tmp_path)
+    editor.open("dock.xml", DOCK)
+    yield editor
+    assert editor.close() == ""
+
+
+def test_xml_is_checked_as_it_is_typed(foreign: Editor) -> None:
+    assert foreign.diagnostics("dock.xml") == []
+    foreign.change("dock.xml", DOCK.replace("Timeout", "Timeot"))
+    assert foreign.diagnostics("dock.xml") == [("unknown-node", 2, 5, 11)]
+    foreign.change("dock.xml", DOCK.replace('ID="Dock"', 'ID="Station"'))
+    assert foreign.diagnostics("dock.xml") == []
+    assert foreign.diagnostics("main.btq") == [("unknown-tree", 2, 12, 16)]
+    foreign.change("dock.xml", DOCK[:-9])
+    assert [found[0] for found in foreign.diagnostics("dock.xml")] == ["xml-syntax"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<project><name/></project>",
+        "<project><na",
+        "",
+        "<root><item/></root>",
+        "<root",
+        "<BehaviorTree ID='T'/>",
+        '<Root BTCPP_format="4"><BehaviorTree ID="T"/></Root>',
+    ],
+)
+@pytest.mark.parametrize("capabilities", [{}, {"textDocument": {"diagnostic": {}}}], ids=["push", "pull"])
+def test_nothing_is_published_for_xml_that_is_not_the_engines(tmp_path: Path, text: str, capabilities: Message) -> None:
+    editor = Editor(tmp_path, capabilities=capabilities)
+    editor.open("pom.xml", text)
+    editor.change("pom.xml", f"{text} ")
+    pulled = editor.request("textDocument/diagnostic", **editor.document("pom.xml"))
+    assert pulled == {"kind": "full", "items": []}
+    assert editor.request("textDocument/documentSymbol", **editor.document("pom.xml")) == []
+    assert editor.kept == []
+    assert editor.close() == ""
+
+
+def test_xml_that_a_mission_includes_is_reported_on(editor: Editor) -> None:
+    editor.open("pom.xml", "<project><name/></project>")
+    editor.open("main.btq", 'include "pom.xml"\n')
+    assert editor.diagnostics("pom.xml") == [("xml-root", 0, 1, 8)]
+
+
+def test_xml_that_stops_being_the_engines_is_left_alone(foreign: Editor) -> None:
+    foreign.open("alone.xml", DOCK.replace("Timeout", "Timeot"))
+    assert foreign.diagnostics("alone.xml") == [("unknown-node", 2, 5, 11)]
+    foreign.change("alone.xml", "<project/>")
+    assert foreign.diagnostics("alone.xml") == []
+    foreign.change("alone.xml", "<project>")
+    foreign.change("alone.xml", DOCK.replace('msec="1000"', ""))
+    assert foreign.published("alone.xml")["version"] == 4
+
+
+def test_closed_xml_is_no_longer_reported_on(foreign: Editor) -> None:
+    text = DOCK.replace("Timeout", "Timeot")
+    for at_the_disk in (text, DOCK):
+        (foreign.root / "alone.xml").write_text(at_the_disk, encoding="utf-8")
+        foreign.open("alone.xml", text)
+        assert foreign.diagnostics("alone.xml") == [("unknown-node", 2, 5, 11)]
+        foreign.shut("alone.xml")
+        assert foreign.diagnostics("alone.xml") == []
+
+
+def test_open_xml_counts_instead_of_the_disk(foreign: Editor) -> None:
+    """For a mission that includes it, and for XML that looks for its trees there."""
+    user = DOCK.replace("Home", "Base").replace("Dock", "Other").replace("Base", "Dock", 1)
+    foreign.open("user.xml", user)
+    assert foreign.diagnostics("user.xml") == []
+    foreign.open("main.btq", 'include "dock.xml"\nBehaviorTree Main\n    SubTree Dock\n')
+    assert foreign.diagnostics("main.btq") == []
+    foreign.change("dock.xml", part((1, 20), (1, 24), "Dok"))
+    assert foreign.diagnostics("main.btq") == [("unknown-tree", 2, 12, 16)]
+    assert foreign.diagnostics("user.xml") == [("unknown-tree", 3, 19, 23)]
+    foreign.change("dock.xml", part((1, 22), (1, 22), "c"))
+    assert foreign.diagnostics("main.btq") == []
+    assert foreign.diagnostics("user.xml") == []
+
+
+@pytest.mark.parametrize(("encoding", "column"), [("utf-8", 36), ("utf-16", 34), ("utf-32", 33)])
+def test_columns_of_xml_are_counted_as_agreed(tmp_path: Path, encoding: str, column: int) -> None:
+    editor = Editor(tmp_path, capabilities={"general": {"positionEncodings": [encoding]}})
+    tree = '<BehaviorTree ID="🤖"><Sequence name="🤖"/></BehaviorTree>'
+    editor.open("main.xml", f'<root BTCPP_format="4">\n{tree}\n</root>\n')
+    found = editor.diagnostics("main.xml")
+    pulled = editor.request("textDocument/diagnostic", **editor.document("main.xml"))["items"]
+    assert [each["code"] for each in pulled] == [each[0] for each in found]
+    place = {"start": {"line": 1, "character": 22 + column - 33}, "end": {"line": 1, "character": 30 + column - 33}}
+    assert [each["range"] for each in pulled if each["code"] == "child-count"] == [place]
+    assert editor.close() == ""
+
+
+def test_a_tag_is_typed_key_by_key(foreign: Editor) -> None:
+    """While the text is not well-formed its mistake is shown where it is, and nothing else; then all is as before."""
+    foreign.change("dock.xml", DOCK.replace("Timeout", "Timeot"))
+    said = '<Sleep msec="5"/>'
+    shown = []
+    for at, key in enumerate(said):
+        foreign.change("dock.xml", part((7, 4 + at), (7, 4 + at), key))
+        pulled = foreign.request("textDocument/diagnostic", **foreign.document("dock.xml"))["items"]
+        shown.append([(each["code"], each["range"]["start"]["line"]) for each in pulled])
+    assert shown[:-1] == [[("xml-syntax", 7)]] * (len(said) - 1)
+    assert shown[-1] == [("unknown-node", 2), ("tree-root-count", 7)]
+
+
+SOME = 12  # files of the corpus, of about 500: each is checked by two programs, and after each edit again
+PIECES = (
+    "<",
+    ">",
+    "/>",
+    '"',
+    "🤖",
+    "x",
+    "",
+    '<Sequnce name="🤖"/>',
+    '<SubTree ID="Nowhere"/>',
+    "<!-- -->",
+    "\n",
+    "&amp;",
+)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_server_finds_in_xml_what_the_command_line_does(shared: Path, tmp_path: Path, seed: int) -> None:
+    """In files that others wrote, and after edits in them."""
+    chance = random.Random(seed)
+    editor = Editor(tmp_path)
+    files = Files()
+    files.folders = (str(tmp_path),)
+    compared = 0
+    corpus = sorted((shared / "corpus" / "dev").iterdir())
+    for number, path in enumerate(chance.sample(corpus, SOME)):
+        text = path.read_bytes().decode().removeprefix("\ufeff")
+        name = f"{number}/{path.name}"
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).write_bytes(text.encode())
+        editor.open(name, text)
+        for _ in range(4):
+            compared += assert_same(editor, name, text, files)
+            start = chance.randrange(len(text) + 1)
+            end = min(start + chance.choice((0, 0, 1, 9)), len(text))
+            if "\r" in text[max(start - 1, 0) : end + 1]:
+                continue
+            lines, piece = LineIndex(text), chance.choice(PIECES)
+            places = [lines.position(at, "utf-16") for at in (start, end)]
+            editor.change(name, part((places[0][0], places[0][1]), (places[1][0], places[1][1]), piece))
+            text = text[:start] + piece + text[end:]
+    assert compared > 20
+    assert editor.close() == ""
+
+
+def assert_same(editor: Editor, name: str, text: str, files: Files) -> int:
+    """Compare what the server reports with what `btq check` does; return the number of diagnostics.
+
+    Of what is not the engine's, `btq check` reports that, because somebody named the file, and the server nothing.
+    """
+    path = str(editor.root / name)
+    files.overlay[path] = text
+    (group,), problems = files.groups([path], with_xml=True, for_checks=True)
+    del files.overlay[path]
+    assert problems == ()
+    pulled = editor.request("textDocument/diagnostic", **editor.document(name))["items"]
+    lines = LineIndex(text)
+    wanted = []
+    for each in check(group.workspace, path) if is_mission(text) else ():
+        start, end = (lines.position(at, "utf-16") for at in each.span)
+        wanted.append((each.rule, tuple(start), tuple(end), "\n".join((each.message, *each.notes))))
+    shown = [
+        (each["code"], *(tuple(each["range"][end].values()) for end in ("start", "end")), each["message"])
+        for each in pulled
+    ]
+    assert shown == [(rule, (start[0], start[1]), (end[0], end[1]), message) for rule, start, end, message in wanted], (
+        name,
+        text,
+    )
+    return len(wanted)
+
+
+def test_what_stands_in_xml_is_explained_and_found(foreign: Editor) -> None:
+    shown = foreign.request("textDocument/hover", **foreign.at("dock.xml", 2, 6))
+    assert shown["contents"]["value"].startswith("**Timeout** (Decorator)")
+    assert shown["range"] == {"start": {"line": 2, "character": 5}, "end": {"line": 2, "character": 12}}
+    assert foreign.request("textDocument/hover", **foreign.at("dock.xml", 9, 7)) is None
+    called, defined = (
+        {"start": {"line": line, "character": start}, "end": {"line": line, "character": start + 4}}
+        for line, start in ((3, 19), (6, 20))
+    )
+    uri = foreign.uri("dock.xml")
+    here = foreign.at("dock.xml", 3, 21)
+    assert foreign.request("textDocument/definition", **here) == [{"uri": uri, "range": defined}]
+    context = {"includeDeclaration": False}
+    assert foreign.request("textDocument/references", **here, context=context) == [{"uri": uri, "range": called}]
+    highlighted = foreign.request("textDocument/documentHighlight", **here)
+    assert [each["range"] for each in highlighted] == [called, defined]
+    (home,) = foreign.request("textDocument/prepareCallHierarchy", **here)
+    (caller,) = foreign.request("callHierarchy/incomingCalls", item=home)
+    assert (caller["from"]["name"], caller["fromRanges"]) == ("Dock", [called])
+    lenses = foreign.request("textDocument/codeLens", **foreign.document("dock.xml"))
+    assert [lens["command"]["title"] for lens in lenses] == ["1 call", "1 call"]
+
+
+def test_the_outline_of_xml(foreign: Editor) -> None:
+    outline = foreign.request("textDocument/documentSymbol", **foreign.document("dock.xml"))
+    dock = outline[1]
+    assert [dock["name"], dock["children"][0]["name"], dock["children"][0]["children"][0]["name"]] == [
+        *("Dock", "Timeout", "Home")
+    ]
+
+    def check(symbols: list[Message], around: Message | None) -> None:
+        for one in symbols:
+            inner, outer = one["selectionRange"], one["range"]
+            assert order(outer["start"]) <= order(inner["start"]) <= order(inner["end"]) <= order(outer["end"])
+            assert around is None or order(around["start"]) <= order(outer["start"])
+            assert around is None or order(outer["end"]) <= order(around["end"])
+            check(one["children"], outer)
+
+    check(outline, None)
+
+
+def order(place: Message) -> tuple[int, int]:
+    return place["line"], place["character"]
+
+
+def test_xml_is_never_edited(foreign: Editor) -> None:
+    options = {"tabSize": 4, "insertSpaces": True}
+    assert foreign.request("textDocument/formatting", **foreign.document("dock.xml"), options=options) is None
+    for method in ("completion", "signatureHelp", "linkedEditingRange"):
+        assert foreign.request(f"textDocument/{method}", **foreign.at("dock.xml", 3, 21)) is None
+    place = {"start": {"line": 3, "character": 21}, "end": {"line": 3, "character": 21}}
+    context = {"diagnostics": []}
+    asked = {**foreign.document("dock.xml"), "range": place, "context": context}
+    assert foreign.request("textDocument/codeAction", **asked) == []
+    foreign.open("main.btq", 'include "dock.xml"\nBehaviorTree Main\n    SubTree Dock\n')
+    foreign.open("other.btq", "BehaviorTree Other\n    Pick\n")
+    for name, line, character, reason in (
+        (
+            "dock.xml",
+            3,
+            21,
+            "cannot rename `Home`: its definition is in dock.xml, which is not a .btq file",
+        ),
+        (
+            "main.btq",
+            2,
+            13,
+            "cannot rename `Dock`: its definition is in dock.xml, which is not a .btq file",
+        ),
+        ("other.btq", 1, 5, "cannot rename `Pick`: dock.xml, which is not a .btq file, also uses it"),
+    ):
+        refused = foreign.ask("textDocument/rename", **foreign.at(name, line, character), newName="another")
+        assert refused["error"] == {"code": -32803, "message": reason}
