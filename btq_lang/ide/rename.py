@@ -67,7 +67,7 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     if reason:
         return Refusal(reason)
     places = tuple(everywhere(workspace, wanted))
-    foreign = next((place.path for place in places if not is_btq(place.path)), None)
+    foreign = next((place.path for place in places if not _is_ours(workspace, place.path)), None)
     if foreign is not None:  # a node without a model is the same in unrelated files
         shown = workspace.project.shown(foreign)
         return Refusal(f"cannot rename `{wanted.name}`: {shown}, which is not a .btq file, also uses it")
@@ -91,6 +91,11 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     return Refusal(reasons[0])
 
 
+def _is_ours(workspace: Workspace, path: str) -> bool:
+    """Whether a file can be edited: it is in this language, and not XML, whatever its name."""
+    return workspace.files[path].origin is None and is_btq(path)
+
+
 def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
     """Why a subject cannot be renamed; empty if it can."""
     mention = found.mention
@@ -101,7 +106,7 @@ def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
     if wanted.home.startswith(ENGINE):
         return f"cannot rename `{wanted.name}`: the engine defines it"
     place, shown = definition(workspace, found.path, wanted), workspace.project.shown
-    if place is not None and not is_btq(place.path):
+    if place is not None and not _is_ours(workspace, place.path):
         return f"cannot rename `{wanted.name}`: its definition is in {shown(place.path)}, which is not a .btq file"
     if place is not None and not wanted.home:
         return (
@@ -114,7 +119,7 @@ def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
         return "cannot rename: `_autoremap` passes every entry under its own name"
     for path in workspace.scope(found.path).paths:
         file = workspace.files[path]
-        if not is_btq(path) and wanted.name in file.text:
+        if not _is_ours(workspace, path) and wanted.name in file.text:
             return f"cannot rename `{wanted.name}`: {shown(path)}, which is not a .btq file, may also use it"
     return ""
 

@@ -294,3 +294,11 @@ def test_xml_is_never_edited(foreign: Editor) -> None:
     ):
         refused = foreign.ask("textDocument/rename", **foreign.at(name, line, character), newName="another")
         assert refused["error"] == {"code": -32803, "message": reason}
+
+
+@pytest.mark.parametrize("name", ["trees.xml", "trees.tree"])
+def test_xml_under_any_name_is_not_renamed_in(editor: Editor, name: str) -> None:
+    editor.open(name, DOCK)
+    asked = editor.ask("textDocument/rename", **editor.at(name, 3, 21), newName="another")
+    reason = f"cannot rename `Home`: its definition is in {name}, which is not a .btq file"
+    assert asked["error"] == {"code": -32803, "message": reason}
