@@ -38,7 +38,7 @@ def shared() -> Path:
 # once, for it takes a core by itself.
 LONGEST = (
     *("test_typing", "test_damage", "test_compiled", "test_vscode", "test_server", "test_neovim", "test_mutations"),
-    *("test_freeze", "test_many_mistakes", "test_checks_kept", "test_documents", "test_requirements_kept", "test_cli"),
+    *("test_many_mistakes", "test_checks_kept", "test_documents", "test_requirements_kept", "test_cli"),
 )
 
 

@@ -1,6 +1,6 @@
 """`btq` run in this process: what a process of its own would print and return, without its start.
 
-That a process does so, `commands/test_cli.py` and `freeze/` say.
+`commands/test_cli.py` says that a process does so.
 """
 
 from __future__ import annotations
