@@ -6,6 +6,7 @@ two words of a tree is nearly always one of a few, so its tokens are cached by t
 
 from __future__ import annotations
 
+import re
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -187,11 +188,8 @@ def _between(text: str, start: int, end: int) -> list[Token]:
 
 @lru_cache(2_000)
 def _tokens_of(text: str) -> list[Token]:
-    head, sign, comment = text.partition("\n#")
-    end = comment.find("\n")
-    if sign and end == len(comment.rstrip()) and _BEGINNING.isdisjoint(head) and "\r" not in comment:
-        start = len(head) + 1  # an item is often preceded by a comment, each a different one
-        return [*_tokens_of(text[:start]), (start, start + 1 + end, PLAIN[COMMENT])]
+    if commented := _COMMENTED.fullmatch(text):  # items are often preceded by comments, each a different one
+        return [*_tokens_of(commented[1]), (*commented.span(2), PLAIN[COMMENT])]
     found: list[Token] = []
     before = ""
     for kind, start, raw in pieces(text):
@@ -249,4 +247,6 @@ def _lines(text: str, start: int, end: int) -> list[tuple[int, int]]:
     return found
 
 
-_BEGINNING: Final = frozenset("\"'=/\r")  # what may continue after a line end, and what a comment must not follow
+# A comment on a line of its own, the last one.  Before it is nothing that may continue after a line end, or that a
+# comment must not follow.
+_COMMENTED: Final = re.compile(r"([^\"'=/\r#]*\n[ \t]*)(#[^\r\n]*)[ \t\n]*")
