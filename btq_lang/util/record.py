@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     from typing_extensions import dataclass_transform
 
     @dataclass_transform(frozen_default=True, eq_default=True)
-    class Record(_Frozen): ...
+    class Record(_Frozen, metaclass=_Maker): ...
 else:
     Record = type.__new__(_Maker, "Record", (), {})  # only the base in a class statement: no record is an instance
 
