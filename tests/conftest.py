@@ -21,6 +21,9 @@ settings.load_profile("usual")
 for name in ("GITHUB_ACTIONS", "GITLAB_CI", "CI_PROJECT_DIR"):
     os.environ.pop(name, None)
 
+# Without their bytecode, processes that tests start would compile all modules each time.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
 # So that what fails in them is shown as in a test.
 pytest.register_assert_rewrite("check_asserts", "syntax_asserts", "feature_asserts")
 

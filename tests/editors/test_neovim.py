@@ -62,7 +62,7 @@ def test_installed_as_the_page_says(nvim: Path, tmp_path: Path) -> None:
     )
     server = tmp_path / "bin" / "btq-lsp"
     server.parent.mkdir()
-    server.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}" exec "{sys.executable}" -m btq_lang.server "$@"\n')
+    server.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m btq_lang.server "$@"\n')
     server.chmod(0o755)
     environment = {name: value for name, value in os.environ.items() if not name.startswith("XDG_")}
     environment |= {"HOME": str(tmp_path), "PATH": f"{server.parent}:{os.environ['PATH']}"}

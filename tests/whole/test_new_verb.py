@@ -29,7 +29,7 @@ from btq_lang.evidence.verbs.takes import duration, judged
 
 rests = ModuleType("btq_lang.evidence.verbs.rests")
 rests.judge = lambda claim, activation, observed: judged(
-    duration(claim.limit, activation, observed), activation, VERBS["rests"].said
+    claim.limit, duration(claim.limit, activation, observed), activation, VERBS["rests"].said
 )
 sys.modules[rests.__name__] = rests
 
