@@ -664,3 +664,9 @@ def test_a_title_without_quotes_ends_where_a_clause_begins(clause: str) -> None:
     text = f"QualityReq r : safety The arm stays still {clause}\n"
     (found,) = parse(text).diagnostics
     assert (found.message, text[found.span.start : found.span.end]) == ("a title goes in quotes", "The arm stays still")
+
+
+@pytest.mark.parametrize(("value", "fixes"), [("30 s", ["Put `takes` before it"]), ("30 m", []), ("thirty", [])])
+def test_a_bound_without_its_verb_is_one_of_takes_only_if_it_is_a_time(value: str, fixes: list[str]) -> None:
+    (found,) = parse(f"QualityReq r : safety\n    at most {value}\n").diagnostics
+    assert [fix.title for fix in found.fixes] == fixes
