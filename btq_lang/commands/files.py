@@ -213,8 +213,9 @@ class Files:
         for pool, found in pools.items() if lacking else ():
             wanted = tuple(path for path in found if path not in files and project_of(path).path == group.project_file)
             for path in self._missions(pool, wanted):
-                if self.xml.may_define(path, lacking) and (text := self.overlay.get(path) or read(path)[0]) is not None:
-                    files[path] = self._file(path, text)
+                if self.xml.may_define(path, lacking):
+                    text = self.overlay[path] if path in self.overlay else read(path)[0]
+                    files.update({path: self._file(path, text)} if text is not None else {})
         pooled = frozenset(files.keys() - workspace.files.keys())
         return replace(group, workspace=Workspace(files, project), pooled=pooled)
 

@@ -7,12 +7,9 @@ import subprocess
 from collections.abc import Iterable
 
 
-def ignored(paths: Iterable[str], repository_of: dict[str, str | None]) -> frozenset[str]:
-    """Those of some absolute paths that git ignores; a file that is tracked is not ignored.
-
-    Args:
-        repository_of: known repositories by folder, which are added to.
-    """
+def ignored(paths: Iterable[str]) -> frozenset[str]:
+    """Those of some absolute paths that git ignores; a file that is tracked is not ignored."""
+    repository_of: dict[str, str | None] = {}  # by folder
     by_repository: dict[str, list[str]] = {}
     for path in paths:
         repository = _repository(os.path.dirname(path), repository_of)

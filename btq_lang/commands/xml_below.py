@@ -32,7 +32,7 @@ class XmlBelow:
         paths = tuple(paths)
         sources = {os.path.basename(path) for path in paths if path.endswith(SUFFIXES)}
         xml = [path for path in paths if not path.endswith(SUFFIXES) and self._is_written(path, sources)]
-        left_out = ignored((top, *xml), {}) if xml else frozenset()
+        left_out = ignored((top, *xml)) if xml else frozenset()
         kept = {path for path in xml if top in left_out or path not in left_out}
         return tuple(path for path in paths if path in kept or path.endswith(SUFFIXES))
 

@@ -77,4 +77,4 @@ def replace(instance: T, **changes: Any) -> T:
 
 def fields_of(part: object) -> tuple[str, ...]:
     """The names of the fields, in order, of a record or of another class with `__match_args__`."""
-    return type(part).__match_args__  # type: ignore[attr-defined, no-any-return]  # the field names of a record
+    return type(part).__match_args__  # type: ignore[attr-defined, no-any-return]  # `part` may be of any class

@@ -10,6 +10,7 @@ import pytest
 from in_process import run_btq
 
 from btq_lang.btcpp.recognition import is_mission, may_be_mission
+from btq_lang.commands.files import Files
 
 TREE = '<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequnce/></BehaviorTree></root>\n'
 MISSION = "BehaviorTree Main\n    Dock satisfies rq1\nQualityReq rq1\n    takes at most 3 s\n"
@@ -158,3 +159,14 @@ def test_a_folder_that_is_named_is_a_pool(tmp_path: Path, write: Write) -> None:
     write("b/dock.xml", text=DOCK)
     assert run_btq("check", cwd=tmp_path)[1] == "No problems found in 2 files\n"
     assert run_btq("check", "a", cwd=tmp_path)[0] == 1
+
+
+def test_an_empty_text_in_an_editor_counts_instead_of_the_file(tmp_path: Path) -> None:
+    root = '<root BTCPP_format="4"><BehaviorTree ID="{}">{}</BehaviorTree></root>'
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "a.xml").write_text(root.format("A", '<SubTree ID="B"/>'))
+    (tmp_path / "b.xml").write_text(root.format("B", "<AlwaysSuccess/>"))
+    files = Files()
+    files.overlay[str(tmp_path / "b.xml")] = ""
+    ((group,), problems) = files.groups([str(tmp_path / "a.xml")], for_checks=True)
+    assert (problems, group.workspace.files[str(tmp_path / "b.xml")].source) == ((), "")
