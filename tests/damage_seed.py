@@ -6,7 +6,7 @@ from datetime import date
 
 import pytest
 
-CASES = 8_000
+CASES = 4_000
 
 
 def seed_of(config: pytest.Config) -> int:

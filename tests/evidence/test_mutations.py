@@ -36,7 +36,7 @@ CHANGES = tree_log(TWO_RUNS, names_of(MAIN_XML))
 DEMANDS = "QualityReq rq : safety\n    Move needs battery > 1 %\n    Move takes at most 6 ms\n"
 MISSION = Candidate(Workspace.of({"a.btq": f"signal battery : % from {{level}}\n{DEMANDS}{MAIN}"}), "a.btq", "a", None)
 SOURCES = (SignalSource("battery", topic="/charge", field="data"),)
-MUTATIONS = 2000
+MUTATIONS = 1000
 
 
 # ---- a file of each format ----

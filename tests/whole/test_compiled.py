@@ -127,7 +127,7 @@ def test_what_is_compiled_reads_and_checks_as_the_pure_form(compiled: Path) -> N
     texts += [text for _, language, text in blocks() if language == "btq"]
     texts += [mission(1_000, 2, "classic"), mission(1_000, 2, "short")]
     texts += [deep(60), f"context c : {' * '.join('a' * 80)}"]
-    texts += [torn(draw.choice((CLASSIC, SHORT, *texts[: len(EXAMPLES)])), draw) for _ in range(500)]
+    texts += [torn(draw.choice((CLASSIC, SHORT, *texts[: len(EXAMPLES)])), draw) for _ in range(150)]
     pure_files, pure = answers(ROOT, texts)
     compiled_files, by_compiled = answers(compiled, texts, PYTHONMALLOC="debug")  # writing beside an object is fatal
     names = ("parser.py", "syntax/tree.py", "syntax/script/parser.py")

@@ -1,4 +1,4 @@
-"""Some thousands of the damaged missions that `damage.py` makes by the hundred thousand: some three minutes of them.
+"""Some thousands of the damaged missions that `damage.py` makes by the hundred thousand: a minute or two of them.
 
 Which they are, conftest.py says at the end of the run.
 """
@@ -9,7 +9,7 @@ import pytest
 from damage import run
 from damage_seed import CASES, seed_of
 
-PARTS = 12
+PARTS = 8
 
 
 @pytest.mark.parametrize("part", range(PARTS))
