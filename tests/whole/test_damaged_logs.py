@@ -1,6 +1,6 @@
 """Truncated files, and files with changed bytes: a result or one clear error, in every format.
 
-`python tests/evidence/test_mutations.py 20000` makes that many of each format, with another seed each time unless one
+`python tests/whole/test_damaged_logs.py 20000` makes that many of each format, with another seed each time unless one
 follows; it prints the seed.
 """
 
