@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from itertools import accumulate
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element, Text
@@ -465,10 +464,9 @@ class _Writer:
                 self.changes.append(Change(span, f"a carriage return in `{each.name}` is written as a line end"))
 
 
-def located(marks: Sequence[Mark], lines: Sequence[str]) -> list[tuple[int, int, int, int]]:
+def located(marks: Sequence[Mark], starts: Sequence[int]) -> list[tuple[int, int, int, int]]:
     """Which parts of the lines were made of which parts of the XML: pieces for `Places`."""
     places: list[tuple[int, int, int, int]] = []
-    starts = [0, *accumulate(map(len, lines))]
     for line, column, element, head, pairs, attributes, between in marks:
         at = starts[line] + column
         if element is not None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 from functools import cached_property
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from btq_lang.util.text import Span
@@ -19,18 +20,21 @@ if TYPE_CHECKING:
 
 
 class Places:
-    """Pieces of a generated text, each with its origin; computed on first use, because most files have no diagnostics
-    to map.
+    """Pieces of a generated text, each with its origin; computed on first use, and only those of the lines that are
+    asked for, because most lines have no diagnostics to map.
 
     Args:
-        marks, lines: the arguments of `located`, which computes the pieces.
+        marks: from which `located` computes pieces, at least one from each; in the order of the text, each with the
+            index of its line first.
+        lines: of the generated text; empty if marks have no lines.
+        located: gives the pieces of some marks, from them and the offsets at which all lines begin.
     """
 
     def __init__(
         self,
         marks: Sequence[Any] = (),
         lines: Sequence[str] = (),
-        located: Callable[[Sequence[Any], Sequence[str]], Sequence[Piece]] | None = None,
+        located: Callable[[Sequence[Any], Sequence[int]], Sequence[Piece]] | None = None,
     ) -> None:
         self._marks = marks
         self._lines = lines
@@ -39,7 +43,19 @@ class Places:
     @cached_property
     def pieces(self) -> Sequence[Piece]:
         """The pieces, in the order of the generated text."""
-        return self._located(self._marks, self._lines) if self._located else ()
+        return self._located(self._marks, self._starts) if self._located else ()
+
+    @cached_property
+    def _starts(self) -> Sequence[int]:
+        return [0, *accumulate(map(len, self._lines))]
+
+    def _near(self, span: Span) -> Sequence[Piece]:
+        """The pieces in the lines of a span of the generated text, and the last one before them."""
+        if not self._lines or self._located is None:
+            return self.pieces
+        first = bisect_left(self._marks, bisect_right(self._starts, span.start) - 1, key=_line)
+        end = bisect_right(self._marks, bisect_right(self._starts, span.end) - 1, lo=first, key=_line)
+        return self._located(self._marks[max(first - 1, 0) : end], self._starts)
 
     def made(self, offset: int) -> int | None:
         """The offset in the generated text for one of the original, in the shortest piece that contains it or ends
@@ -53,7 +69,7 @@ class Places:
 
     def containing(self, span: Span) -> Sequence[Piece]:
         """The pieces around a span of the generated text: more than one only if some are empty."""
-        pieces = self.pieces
+        pieces = self._near(span)
         first = bisect_left(pieces, span.end, key=_end)
         return pieces[first : bisect_right(pieces, span.start, lo=first, key=_begin)]
 
@@ -66,7 +82,7 @@ class Places:
         A part of a piece maps to a part of the original if both have the same length; a span without a piece maps to
         the nearest one before it, or to the start.
         """
-        pieces = self.pieces
+        pieces = self._near(span)
         first = bisect_right(pieces, span.start, key=_end)
         if first < len(pieces) and pieces[first][0] == pieces[first][1] == span.start:
             return Span(*pieces[first][2:])
@@ -81,7 +97,7 @@ class Places:
         return Span(start, end)
 
 
-def _as_they_are(pieces: Sequence[Piece], _: Sequence[str]) -> Sequence[Piece]:
+def _as_they_are(pieces: Sequence[Piece], _: Sequence[int]) -> Sequence[Piece]:
     return pieces
 
 
@@ -91,6 +107,10 @@ def _within(piece: Piece, at: int, at_end: bool = False) -> int:
     if end - start == original_end - original_start:
         return original_start + at - start
     return original_end if at_end else original_start
+
+
+def _line(mark: Sequence[Any]) -> Any:
+    return mark[0]
 
 
 def _begin(piece: Piece) -> int:

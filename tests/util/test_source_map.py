@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import random
 from pathlib import Path
 
 import pytest
 
+from btq_lang.btcpp.importing import import_xml
 from btq_lang.commands.files import Files
 from btq_lang.util.source_map import Places
 from btq_lang.util.text import Span
@@ -40,3 +42,17 @@ def test_there_and_back(path: Path) -> None:
                         made = places.made(first)
                         assert made is not None
                         assert places.origin(Span(made, made)).start == first
+
+
+@pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
+def test_a_span_is_mapped_by_its_lines_as_by_all_pieces(path: Path) -> None:
+    xml = path.read_text(encoding="utf-8")
+    done = import_xml(xml, for_people=False)
+    pieces = import_xml(xml, for_people=False).places.pieces
+    whole = Places(pieces, (), lambda pieces, _: pieces)
+    draw = random.Random(1)
+    for _ in range(300):
+        start = draw.randrange(len(done.text) + 1)
+        span = Span(start, min(start + draw.choice((0, 0, 1, 5, 40, 400)), len(done.text)))
+        assert done.places.origin(span) == whole.origin(span)
+        assert [*done.places.containing(span)] == [*whole.containing(span)]
