@@ -262,7 +262,9 @@ def check_each(workspace: Workspace, paths: Iterable[str]) -> Iterator[tuple[Dia
 
 def findings(store: Store[Workspace], path: str) -> Findings:
     """The same for a file of the store's workspace, with the diagnostics of each item."""
-    return findings_of(store.state, path, store.ask(reported_in_file, path, False))
+    # Without a text, as XML that cannot be read, it has no items: what was found in them is kept until it can be read.
+    reported = store.ask(reported_in_file, path, False) if store.state.files[path].text else ()
+    return findings_of(store.state, path, reported)
 
 
 def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -> Findings:

@@ -186,6 +186,8 @@ class Session:
 
         for workspace in self._workspaces:
             let_go(workspace)
+        if any(home.files[path].last_read for path in self.open if (home := self.workspace_of(path))):
+            return  # what such a file looked up in others counts again when it can be read
         active = self._active_files()
         for workspace in self.workspaces():
             held = [path for path, file in workspace.files.items() if file.is_parsed]

@@ -39,7 +39,10 @@ class File:
     Attributes:
         text: in this language, whatever the language of the file on the disk.
         origin: that file, if it is in another language.
+        last_read: the file before the edits since which it cannot be read, and so has no text.
     """
+
+    last_read: File | None = None
 
     def __init__(self, path: str, text: str, origin: Origin | None = None) -> None:
         self.path = path
@@ -52,7 +55,11 @@ class File:
         Args:
             origin: the file in another language after the edit, of which `text` is the translation.
         """
+        if text and self.last_read is not None:
+            return self.last_read.edited(text, origin)
         after = File(self.path, text, origin)
+        if origin is not None and not text:
+            after.last_read = self.last_read or self
         if "parsed" in self.__dict__ and self._is_read and after._is_read:
             change = changed(self.text, text)
             after.parsed = _sharing(self.parsed, reparse(self.parsed, text, change), change)

@@ -105,6 +105,7 @@ class Store(Generic[State]):
         self._state = state
         self._answers: dict[tuple[Any, ...], _Answer] = {}
         self._inputs: dict[Hashable, list[_Answer]] = {}  # by topic
+        self._touched: set[Hashable] = set()  # the topics of inputs that may differ since the last question
         self._pinned: set[tuple[Any, ...]] = set()
         self._size = 0  # after the last sweep
         self._dependencies: dict[_Answer, None] | None = None  # of the query that is being computed
@@ -124,6 +125,7 @@ class Store(Generic[State]):
             LookupError: the query depends on itself, and no answer is declared for that.
         """
         if self._dependencies is None:
+            self._read_again()
             while self._hubs:
                 if self._hubs[-1].state != _CLEAN:
                     self._settle(self._hubs[-1])
@@ -140,6 +142,8 @@ class Store(Generic[State]):
 
     def read(self, topic: Hashable, read: Callable[..., T], *key: Hashable) -> T:
         """The answer of an input, `read(state, *key)`."""
+        if self._dependencies is None:
+            self._read_again()
         name = (read, *key)
         answer = self._answers.get(name)
         if answer is None:
@@ -164,22 +168,13 @@ class Store(Generic[State]):
         return tuple(self._inputs)
 
     def advance(self, state: State, topics: Iterable[Hashable]) -> None:
-        """Set a new state.
+        """Set a new state.  It is read when the next question comes: what differs only until then invalidates nothing.
 
         Args:
             topics: that may differ from the last state.
         """
         self._state = state
-        for topic in topics:
-            inputs = self._inputs.pop(topic, ())
-            kept = [each for each in inputs if each.dependents]
-            for answer in inputs:
-                if answer.dependents:
-                    self._replace(answer, answer.key[0](state, *answer.key[1:]))
-                else:
-                    del self._answers[answer.key]
-            if kept:
-                self._inputs[topic] = kept
+        self._touched.update(topics)
 
     def pin(self, query: Callable[..., object], *key: Hashable) -> None:
         """Keep an answer, and all that it depends on, until it is unpinned."""
@@ -212,6 +207,20 @@ class Store(Generic[State]):
         self._size = len(self._answers)
 
     # ---- how answers are settled ----
+
+    def _read_again(self) -> None:
+        """Read the inputs that may differ since the last question."""
+        while self._touched:
+            topic = self._touched.pop()
+            inputs = self._inputs.pop(topic, ())
+            kept = [each for each in inputs if each.dependents]
+            for answer in inputs:
+                if answer.dependents:
+                    self._replace(answer, answer.key[0](self._state, *answer.key[1:]))
+                else:
+                    del self._answers[answer.key]
+            if kept:
+                self._inputs[topic] = kept
 
     def _settle(self, answer: _Answer) -> bool:
         """Bring an answer up to date unless it is part of an open circle; return whether it is up to date."""

@@ -9,12 +9,15 @@ from pathlib import Path
 
 import pytest
 
+from btq_lang.checks import _reported
 from btq_lang.ide.colours import Change, Colours, colours, delta
 from btq_lang.ide.completion import complete
 from btq_lang.ide.navigation import find_references
 from btq_lang.ide.outline import document_symbols
 from btq_lang.lsp.convert import Converter
 from btq_lang.lsp.session import Session
+from btq_lang.workspace.queries import Store, _Answer
+from btq_lang.workspace.workspace import Workspace
 
 MAIN = """include "skills.btq"
 include "requirements.btq"
@@ -451,6 +454,40 @@ def test_what_is_told_of_xml_is_what_a_new_session_finds(
         known = filter(new.knows, new.paths())
         assert told == {each: new.diagnostics(each) for each in known}, (seed, step, texts)
         assert session.workspaces() == new.workspaces()
+
+
+def test_xml_that_can_be_read_again_is_checked_only_where_it_differs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("btq_lang.lsp.session._MOST_IDLE", 0)
+    (tmp_path / "skills.btq").write_text("Action Pick\n    input from : int\n", encoding="utf-8")
+    path = str(tmp_path / "main.xml")
+    tree = '<BehaviorTree ID="{}"><Pick {}/></BehaviorTree>'.format
+    session = session_of(tmp_path, {})
+    session.settings = {"rules": {"unused-tree": "off"}}
+
+    def found(*trees: str, end: str = "</root>") -> list[tuple[str, int]]:
+        xml = f'<root BTCPP_format="4" main_tree_to_execute="One">{"".join(trees)}{end}'
+        session.edit(path, xml)
+        told = [(each.rule, xml.count(">", 0, each.span.start)) for each in session.diagnostics(path)]
+        session.let_go()
+        return told
+
+    checked: list[str] = []
+    compute = Store._compute
+
+    def counted(store: Store[Workspace], answer: _Answer) -> object:
+        if answer.key[0] is _reported:
+            checked.append(answer.key[2].item.name.text)
+        return compute(store, answer)
+
+    trees = [tree(name, "") for name in ("One", "Two", "Three")]
+    assert found(*trees) == [("missing-port", 2), ("missing-port", 5), ("missing-port", 8)]
+    monkeypatch.setattr(Store, "_compute", counted)
+    for end in ("</root", "</roo", "<Pick></root>", "</root"):
+        assert [rule for rule, _ in found(*trees, end=end)] == ["xml-syntax"]
+    assert found(trees[0], tree("Two", 'from="1"'), trees[2]) == [("missing-port", 2), ("missing-port", 8)]
+    assert checked == ["Two"]
 
 
 def test_open_xml_finds_what_it_lacks_in_its_folder(tmp_path: Path) -> None:

@@ -179,6 +179,17 @@ def test_no_query_runs_unless_something_that_it_asked_differs(seed: int) -> None
         store.advance(graph, touched)
 
 
+def test_what_differs_only_between_two_questions_invalidates_nothing() -> None:
+    edges: dict[int, tuple[int, ...]] = {0: (1, 2), 1: (), 2: ()}
+    store = Store(Graph({0: 1, 1: 1, 2: 0}, edges, {}))
+    assert store.ask(total, 0) == 2
+    RUNS.clear()
+    store.advance(Graph({0: 1, 1: 2, 2: 0}, edges, {}), [1])
+    store.advance(Graph({0: 1, 1: 1, 2: 1}, edges, {}), [1, 2])
+    assert store.ask(total, 0) == 3
+    assert RUNS == [2, 0]
+
+
 @pytest.mark.parametrize("is_circle", [False, True])
 def test_no_chain_is_too_long(is_circle: bool) -> None:
     count = 3_000
