@@ -16,7 +16,7 @@ from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Eleme
 from btq_lang.btcpp.generated import may_be_generated, without_generated
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.version3 import Change, is_version_3, translated
-from btq_lang.btcpp.wording import comment, is_kept, kind, name, pair, string, string_of, type_, value
+from btq_lang.btcpp.wording import comment, is_kept, kind, name, pair, spelt_parts, string, string_of, type_, value
 from btq_lang.catalog.nodes import PLACEHOLDERS
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import RULES, Severity
@@ -473,25 +473,46 @@ def located(marks: Sequence[Mark], starts: Sequence[int]) -> list[tuple[int, int
             places.append((at, at + len(head[0][0]), element.start + 1, element.start + 1 + len(element.tag)))
         for word, origin in head:
             if isinstance(origin, tuple):
-                places.append((at, at + len(word), *origin))
+                places.append(_unlike(word, at, *origin))
             elif origin is not None and element is not None and (start := element.place(origin)[1]) >= 0:
-                places.append((at, at + len(word), start, start + len(origin.raw)))
+                places += _aligned(word, at, origin.raw, start)
             at += len(word) + 1
         if not attributes or element is None:
             continue
         at += len("(") + (len(between) if between != " " else 0)
         for said, attribute in zip(pairs, attributes, strict=True):
-            key, (name_start, start) = len(name(attribute.name)), element.place(attribute)
+            key, (name_start, start) = name(attribute.name), element.place(attribute)
             if start >= 0:
-                places.append((at, at + key, name_start, name_start + len(attribute.name)))
-                end, size = at + len(said), len(attribute.raw)
-                value_at = at + key + len(" = ")
-                if said[-1] == '"' and 0 < size == end - value_at - 2:
-                    places.append((value_at + 1, end - 1, start, start + size))
-                else:
-                    places.append((value_at, end, start, start + size))
+                places += _aligned(key, at, attribute.name, name_start)
+                value_at = len(key) + len(" = ")
+                places += _aligned(said[value_at:], at + value_at, attribute.raw, start)
             at += len(said) + len(between)
     return places
+
+
+def _aligned(said: str, at: int, raw: str, start: int) -> list[tuple[int, int, int, int]]:
+    """The pieces of a word and what it was made of: one if both are the same, in quotes or not; otherwise one for each
+    part of it that is, and one for each reference.  All of it if it is spelt in another way altogether."""
+    if said == raw:
+        return [(at, at + len(said), start, start + len(raw))]
+    if raw and said[1:-1] == raw:
+        return [(at + 1, at + 1 + len(raw), start, start + len(raw))]
+    parts = spelt_parts(raw)
+    if not raw or said[1:-1] != "".join([written for written, _ in parts]):
+        return [_unlike(said, at, start, start + len(raw))]
+    found: list[tuple[int, int, int, int]] = []
+    at += 1
+    for written, part in parts:
+        end = start + len(part)
+        found.append((at, at + len(part), start, end) if written == part else _unlike(written, at, start, end))
+        at += len(written)
+        start = end
+    return found
+
+
+def _unlike(said: str, at: int, start: int, end: int) -> tuple[int, int, int, int]:
+    """The piece of a word that the XML spells in another way: never of the same length, which means the same text."""
+    return at, at + len(said), start, end - (end - start == len(said))
 
 
 def _fits(text: str, column: int, columns: int) -> bool:

@@ -41,6 +41,14 @@ def open_workspace(*paths: str) -> Workspace:
     return Workspace(files, found.project)
 
 
+def with_source(workspace: Workspace, path: str, text: str) -> Workspace:
+    """The workspace after a change of the text that a file has on the disk, whatever its language."""
+    if workspace.files[path].origin is None:
+        return workspace.with_file(path, text)
+    after = file_of(path, text)
+    return workspace.with_file(path, after.text, after.origin)
+
+
 def file_of(path: str, text: str) -> File:
     """The file for a path and its text; XML is imported without changing it, whatever its version.
 

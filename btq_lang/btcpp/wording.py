@@ -46,7 +46,12 @@ def string(raw: str) -> str:
     """A STRING, from the text between the quotes of the XML."""
     if _PLAIN(raw):
         return f'"{raw}"'
-    return _quoted("".join(_written(part) for part in _PARTS(raw)))
+    return _quoted("".join([written for written, _ in spelt_parts(raw)]))
+
+
+def spelt_parts(raw: str) -> list[tuple[str, str]]:
+    """The parts of a value in quotes, each as it is written there, and as the XML spells it."""
+    return [(_written(part), part[0]) for part in _PARTS(raw)]
 
 
 def string_of(text: str) -> str:

@@ -9,12 +9,31 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from btq_lang.diagnostics.rules import UNREADABLE
 from btq_lang.syntax.scan import string_end
 from btq_lang.syntax.tokens import COMMENT, STRING
 from btq_lang.util.text import LINE_END, Edit, Position, Span
 
 if TYPE_CHECKING:
+    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.workspace.file import File
+
+
+def line_to_silence(file: File, diagnostic: Diagnostic) -> int | None:
+    """The line on which a comment can silence a diagnostic of a file; None: nothing can.
+
+    Args:
+        diagnostic: counted from the start of the file on the disk.
+    """
+    start, origin = diagnostic.span.start, file.origin
+    if diagnostic.rule in UNREADABLE:
+        return None
+    if origin is None:
+        return file.lines.position(start).line
+    if any(each.rule == diagnostic.rule for each in origin.diagnostics):  # it is about the XML, not about a line
+        return None
+    made = origin.places.made(start, exact=False)
+    return None if made is None else file.lines.position(made).line
 
 
 def at_line_end(file: File, line: int, rules: Sequence[str], reason: str = "") -> Edit | None:

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.btcpp.opening import file_of
+from btq_lang.btcpp.opening import with_source
 from btq_lang.checks import check_each
 from btq_lang.commands.files import Group, write_stdout
 from btq_lang.util.record import replace
@@ -87,13 +87,6 @@ def show_fixes(before: Iterable[Group], after: Iterable[Group], is_coloured: boo
                 sys.stdout.write(line)
                 is_changed = True
     return is_changed
-
-
-def with_source(workspace: Workspace, path: str, text: str) -> Workspace:
-    """The workspace after a change of a file on the disk, whatever its language."""
-    if workspace.files[path].origin is None:
-        return workspace.with_file(path, text)
-    return _with_files(workspace, {path: file_of(path, text)})
 
 
 def _with_files(workspace: Workspace, files: Mapping[str, File]) -> Workspace:

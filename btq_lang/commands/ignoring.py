@@ -11,10 +11,9 @@ from itertools import islice
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.btcpp.marks import is_generated
+from btq_lang.btcpp.opening import with_source
 from btq_lang.checks import check
-from btq_lang.checks.silencing import above_line, at_line_end, before_element
-from btq_lang.commands.fixing import with_source
-from btq_lang.diagnostics.rules import UNREADABLE
+from btq_lang.checks.silencing import above_line, at_line_end, before_element, line_to_silence
 from btq_lang.util.text import apply_edits
 from btq_lang.workspace.loader import LoadProblem, write_whole
 
@@ -73,11 +72,9 @@ def ignore_problem(options: CheckOptions) -> str | None:
 
 def _added(file: File, found: Iterable[Diagnostic], reason: str) -> list[Added]:
     of_line: dict[int, list[Diagnostic]] = {}
-    own = {each.rule for each in file.origin.diagnostics} if file.origin else set()  # of the XML, not of a line
     for each in found:
-        at = each.span.start if file.origin is None else file.origin.places.made(each.span.start)
-        if at is not None and each.rule not in UNREADABLE and each.rule not in own:
-            of_line.setdefault(file.lines.position(at).line, []).append(each)
+        if (line := line_to_silence(file, each)) is not None:
+            of_line.setdefault(line, []).append(each)
     places = (at_line_end, above_line) if file.origin is None else (before_element,)
     added: list[Added] = []
     for line, here in of_line.items():

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from btq_lang.btcpp.marks import is_generated
+from btq_lang.btcpp.opening import with_source
 from btq_lang.checks import check
-from btq_lang.checks.silencing import at_line_end
+from btq_lang.checks.silencing import at_line_end, before_element, line_to_silence
 from btq_lang.diagnostics.model import Diagnostic, Fix
-from btq_lang.diagnostics.rules import UNREADABLE
 from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.refactor import refactorings
 from btq_lang.ide.short_form import short_form
@@ -42,9 +43,10 @@ class Action(Record):
 def code_actions(
     workspace: Workspace, path: str, span: Span, only: Sequence[str] = (), found: Sequence[Diagnostic] | None = None
 ) -> tuple[Action, ...]:
-    """The code actions for a span of a file.
+    """The code actions for a span of a file; of XML those that mend it.
 
     Args:
+        span: counted from the start of the file on the disk, as are all edits.
         only: the kinds to return, with all their subkinds; none: every kind.
         found: the diagnostics of the file, if they are known already.
     """
@@ -52,25 +54,26 @@ def code_actions(
     def wanted(kind: str) -> bool:
         return not only or any(one in ("", kind) or kind.startswith(f"{one}.") for one in only)
 
+    is_foreign = workspace.files[path].origin is not None
     diagnostics = tuple(check(workspace, path) if found is None else found)
     actions: list[Action] = []
     if wanted(QUICK_FIX):
         here = [one for one in diagnostics if _touches(one.span, span)]
         for diagnostic in here:
             actions += _fixes(workspace, path, diagnostic)
-            actions += _removal(workspace, path, diagnostic)
-        for include in needless_includes(workspace, path):
+            actions += () if is_foreign else _removal(workspace, path, diagnostic)
+        for include in () if is_foreign else needless_includes(workspace, path):
             if _touches(include.span, span):
                 title = f"Remove the {include.why} include `{include.name}`"
                 actions.append(Action(title, QUICK_FIX, {path: without(workspace.files[path], [include])}))
         actions += _silencing(workspace, path, here)
-    if not only or any(one == "" or one.split(".")[0] == REFACTOR for one in only):
+    if not is_foreign and (not only or any(one == "" or one.split(".")[0] == REFACTOR for one in only)):
         for made in (*refactorings(workspace, path, span.start), *short_form(workspace, path, span.start, diagnostics)):
             if wanted(made.kind):
                 actions.append(Action(made.title, made.kind, made.edits))
     if wanted(FIX_ALL):
         actions += _fix_all(workspace, path, diagnostics)
-    if wanted(ORGANIZE) and (needless := needless_includes(workspace, path)):
+    if not is_foreign and wanted(ORGANIZE) and (needless := needless_includes(workspace, path)):
         title = f"Remove {len(needless)} duplicate or unused include{'s' if len(needless) > 1 else ''}"
         actions.append(Action(title, ORGANIZE, {path: without(workspace.files[path], needless)}))
     return tuple(actions)
@@ -81,11 +84,9 @@ def _touches(one: Span, other: Span) -> bool:
 
 
 def _fixes(workspace: Workspace, path: str, diagnostic: Diagnostic) -> Iterator[Action]:
-    obvious = _obvious(diagnostic, workspace.files[path].text)
+    obvious = _obvious(diagnostic, workspace.files[path].source)
     for fix in diagnostic.fixes:
-        edits = edits_of(fix, path)
-        if all(workspace.files[target].origin is None for target in edits):
-            yield Action(fix.title, QUICK_FIX, edits, diagnostic, fix is obvious)
+        yield Action(fix.title, QUICK_FIX, edits_of(fix, path), diagnostic, fix is obvious)
 
 
 def _obvious(diagnostic: Diagnostic, text: str) -> Fix | None:
@@ -98,10 +99,10 @@ def _obvious(diagnostic: Diagnostic, text: str) -> Fix | None:
 
 def _respells(fix: Fix, diagnostic: Diagnostic, text: str) -> bool:
     """Whether a fix replaces a word by a similar name, or by the one that the message suggests."""
-    if len(fix.changes) != 1 or fix.changes[0].place.path is not None:
+    places = [(change.place.path, text[slice(*change.place.span)], change.text) for change in fix.changes]
+    if len(set(places)) != 1 or places[0][0] is not None:  # the end tag of an element has its name too
         return False
-    (start, end), name = fix.changes[0].place.span, fix.changes[0].text.strip(_QUOTES)
-    word = text[start:end].strip(_QUOTES)
+    word, name = (each.strip(_QUOTES) for each in places[0][1:])
     if not word or not (name[:1].isalpha() or name[:1] == "_"):
         return False  # a number that is replaced by another is not misspelt
     return bool(near(word, (name,))) or diagnostic.message.endswith(did_you_mean((name,)))
@@ -127,18 +128,22 @@ def edits_of(fix: Fix, path: str) -> dict[str, tuple[Edit, ...]]:
 
 
 def _silencing(workspace: Workspace, path: str, found: Sequence[Diagnostic]) -> Iterator[Action]:
-    """A comment at the end of the line that silences a rule there, if it can be written and has an effect."""
+    """A comment that silences a rule, at the end of the line or before the XML's element, if it can be written and has
+    an effect."""
     file = workspace.files[path]
+    if is_generated(file.source):
+        return
+    comment, where = (at_line_end, "on this line") if file.origin is None else (before_element, "at this element")
     for diagnostic in found:
-        edit = at_line_end(file, file.lines.position(diagnostic.span.start).line, (diagnostic.rule,))
-        if diagnostic.rule not in UNREADABLE and edit is not None:
-            title = f"Silence `{diagnostic.rule}` on this line"
-            yield Action(title, QUICK_FIX, {path: (edit,)}, diagnostic)
+        line = line_to_silence(file, diagnostic)
+        edit = comment(file, line, (diagnostic.rule,)) if line is not None else None
+        if edit is not None:
+            yield Action(f"Silence `{diagnostic.rule}` {where}", QUICK_FIX, {path: (edit,)}, diagnostic)
 
 
 def _fix_all(workspace: Workspace, path: str, diagnostics: Sequence[Diagnostic]) -> Iterator[Action]:
     """All safe fixes at once; fixes that overlap with others come in further rounds."""
-    before = workspace.files[path].text
+    before = workspace.files[path].source
     total = 0
     while True:
         wanted = sum(any(fix.safe for fix in diagnostic.fixes) for diagnostic in diagnostics)
@@ -146,13 +151,13 @@ def _fix_all(workspace: Workspace, path: str, diagnostics: Sequence[Diagnostic])
         if path not in texts:
             break
         total += count
-        workspace = workspace.with_file(path, texts[path])
+        workspace = with_source(workspace, path, texts[path])
         if count == wanted:
             break
         diagnostics = check(workspace, path)
     if total:
         title = f"Apply {total} safe fix{'es' if total > 1 else ''}"
-        yield Action(title, FIX_ALL, {path: (Edit(Span(0, len(before)), workspace.files[path].text),)})
+        yield Action(title, FIX_ALL, {path: (Edit(Span(0, len(before)), workspace.files[path].source),)})
 
 
 _QUOTES = " \t\"'"

@@ -24,7 +24,7 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(code_action_kinds=KINDS))
     def actions(params: types.CodeActionParams) -> list[Plain]:
-        place = server.at(params.text_document)
+        place = server.at(params.text_document, reads=True)
         if place is None:
             return []
         workspace, path = place

@@ -79,17 +79,16 @@ class Converter:
         return Span(start, max(start, end))
 
     def offset(self, workspace: Workspace, path: str, position: types.Position) -> int:
-        return self._offset_in(workspace.files[path].lines, position)
+        """The offset in the file as the editor has it."""
+        return self._offset_in(workspace.files[path].source_lines, position)
 
     def _offset_in(self, lines: LineIndex, position: types.Position) -> int:
         return lines.offset(Position(position.line, position.character), self.encoding)
 
     def offset_made(self, workspace: Workspace, path: str, position: types.Position) -> int | None:
         """As `offset`; for a file in XML, the offset in the imported text; None: it has none."""
-        file = workspace.files[path]
-        if file.origin is None:
-            return self.offset(workspace, path, position)
-        return file.origin.places.made(self._offset_in(file.source_lines, position))
+        origin, offset = workspace.files[path].origin, self.offset(workspace, path, position)
+        return offset if origin is None else origin.places.made(offset)
 
     def span(self, workspace: Workspace, path: str, range_: types.Range) -> Span:
         start, end = (self.offset(workspace, path, position) for position in (range_.start, range_.end))
@@ -106,7 +105,7 @@ class Converter:
         self._spellings += 1
 
     def range(self, workspace: Workspace, path: str, span: Span) -> types.Range:
-        """The range of a span in the original file."""
+        """The range in the original file of a span that a feature returns, which counts in the imported text."""
         file = workspace.files[path]
         if file.origin is not None:
             span = file.origin.places.origin(span)
@@ -120,7 +119,9 @@ class Converter:
         return types.Location(self.uri(path), self.range(workspace, path, span))
 
     def edits(self, workspace: Workspace, path: str, edits: Iterable[Edit]) -> list[types.TextEdit]:
-        return [types.TextEdit(self.range(workspace, path, edit.span), edit.text) for edit in edits]
+        """Edits, which always count in the original file."""
+        lines = workspace.files[path].source_lines
+        return [types.TextEdit(self.plain_range(lines, edit.span), edit.text) for edit in edits]
 
     def workspace_edit(
         self, workspace: Workspace, edits: Mapping[str, Iterable[Edit]], versions: Mapping[str, int] | None

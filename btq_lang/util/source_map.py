@@ -1,7 +1,8 @@
 """Maps parts of a generated text to the parts of the original, to show on the original what was found in the generated
 text.
 
-One invariant: pieces are in order and do not overlap in the generated text.  Only offsets are known here.
+One invariant: pieces are in order and do not overlap in the generated text, and a piece that has the same length in
+both is the same text.  Only offsets are known here.
 """
 
 from __future__ import annotations
@@ -57,15 +58,18 @@ class Places:
         end = bisect_right(self._marks, bisect_right(self._starts, span.end) - 1, lo=first, key=_line)
         return self._located(self._marks[max(first - 1, 0) : end], self._starts)
 
-    def made(self, offset: int) -> int | None:
+    def made(self, offset: int, exact: bool = True) -> int | None:
         """The offset in the generated text for one of the original, in the shortest piece that contains it or ends
-        there; None: nothing was generated from it.
+        there; None: there is no such piece.
+
+        Args:
+            exact: only in pieces that are the same in both texts; of others the offset is their start.
         """
-        around = [piece for piece in self.pieces if piece[2] <= offset <= piece[3]]
+        around = [piece for piece in self.pieces if piece[2] <= offset <= piece[3] and (_is_same(piece) or not exact)]
         if not around:
             return None
-        start, end, original_start, original_end = min(around, key=lambda piece: (piece[3] - piece[2], -piece[2]))
-        return start + offset - original_start if end - start == original_end - original_start else start
+        piece = min(around, key=lambda piece: (piece[3] - piece[2], -piece[2]))
+        return piece[0] + offset - piece[2] if _is_same(piece) else piece[0]
 
     def containing(self, span: Span) -> Sequence[Piece]:
         """The pieces around a span of the generated text: more than one only if some are empty."""
@@ -103,10 +107,15 @@ def _as_they_are(pieces: Sequence[Piece], _: Sequence[int]) -> Sequence[Piece]:
 
 def _within(piece: Piece, at: int, at_end: bool = False) -> int:
     """The offset in the original for one in a piece."""
+    if _is_same(piece):
+        return piece[2] + at - piece[0]
+    return piece[3] if at_end else piece[2]
+
+
+def _is_same(piece: Piece) -> bool:
+    """Whether both texts have the piece: pieces that differ have different lengths."""
     start, end, original_start, original_end = piece
-    if end - start == original_end - original_start:
-        return original_start + at - start
-    return original_end if at_end else original_start
+    return end - start == original_end - original_start
 
 
 def _line(mark: Sequence[Any]) -> Any:

@@ -12,7 +12,7 @@ from lsp_editor import Editor, Message, part
 from btq_lang.btcpp.recognition import is_mission
 from btq_lang.checks import check
 from btq_lang.commands.files import Files
-from btq_lang.util.text import LineIndex
+from btq_lang.util.text import Edit, LineIndex, Position, Span, apply_edits
 
 DOCK = """<root BTCPP_format="4">
   <BehaviorTree ID="Dock">
@@ -264,6 +264,32 @@ def test_the_outline_of_xml(foreign: Editor) -> None:
 
 def order(place: Message) -> tuple[int, int]:
     return place["line"], place["character"]
+
+
+def test_what_is_found_in_xml_is_mended(foreign: Editor) -> None:
+    """By exact edits of the XML; a comment goes before the element."""
+    text = DOCK.replace("Timeout", "Timeot")
+    foreign.open("alone.xml", text)
+    place = {"start": {"line": 2, "character": 6}, "end": {"line": 2, "character": 6}}
+    asked = {**foreign.document("alone.xml"), "range": place, "context": {"diagnostics": []}}
+    actions = foreign.request("textDocument/codeAction", **asked)
+    assert [(each["title"], each.get("isPreferred")) for each in actions] == [
+        ("Replace `Timeot` with `Timeout`", True),
+        ("Silence `unknown-node` at this element", None),
+    ]
+    made = [applied(text, each["edit"]["changes"][foreign.uri("alone.xml")]) for each in actions]
+    ignored = "<!-- btq: ignore[unknown-node] -->\n    <Timeot"
+    assert made == [text.replace("Timeot", "Timeout"), text.replace("<Timeot", ignored)]
+
+
+def applied(text: str, edits: list[Message]) -> str:
+    """A text after edits of the protocol."""
+    lines = LineIndex(text)
+    made = []
+    for each in edits:
+        places = (Position(*order(each["range"][end])) for end in ("start", "end"))
+        made.append(Edit(Span(*(lines.offset(place, "utf-16") for place in places)), each["newText"]))
+    return apply_edits(text, made)
 
 
 def test_xml_is_never_edited(foreign: Editor) -> None:

@@ -17,12 +17,16 @@ GOLDEN = sorted((Path(__file__).parents[1] / "btcpp" / "golden").glob("*.xml"))
 
 
 @pytest.mark.parametrize(
-    ("offset", "made"),
-    [(9, None), (10, 0), (12, 2), (15, 5), (16, None), (20, 6), (25, 6), (45, 8), (51, 10), (53, 12), (60, 8)],
+    ("offset", "made", "near"),
+    [
+        *((9, None, None), (10, 0, 0), (12, 2, 2), (15, 5, 5), (16, None, None), (20, None, 6), (25, None, 6)),
+        *((45, None, 8), (51, 10, 10), (53, 12, 12), (60, None, 8)),
+    ],
 )
-def test_back_to_the_text_that_was_made(offset: int, made: int | None) -> None:
-    """As far into a piece where both are as long, else to its start; of pieces inside each other the shortest."""
-    assert Places(PIECES, (), lambda pieces, _: pieces).made(offset) == made
+def test_back_to_the_text_that_was_made(offset: int, made: int | None, near: int | None) -> None:
+    """As far into a piece, if both are as long; else, if that is enough, to its start; the shortest piece counts."""
+    places = Places(PIECES, (), lambda pieces, _: pieces)
+    assert (places.made(offset), places.made(offset, exact=False)) == (made, near)
 
 
 def test_nothing_was_made() -> None:
