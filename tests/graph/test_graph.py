@@ -255,16 +255,6 @@ def test_mermaid() -> None:
     )
 
 
-def test_the_picture_in_the_readme_is_fresh(update: bool) -> None:
-    workspace = open_workspace(str(ROOT / "examples" / "laboratory"))
-    (path,) = workspace.files
-    drawn = draw(figures(workspace, path, with_qualities=True))
-    target = ROOT / "docs" / "laboratory.svg"
-    if update:
-        target.write_text(drawn, encoding="utf-8")
-    assert target.read_text(encoding="utf-8") == drawn
-
-
 @pytest.mark.parametrize(("form", "direction"), [("png", "down"), ("svg", "up")])
 def test_what_there_is_not(form: str, direction: str) -> None:
     with pytest.raises(ValueError, match="expected one of"):

@@ -41,6 +41,8 @@ RUN_BY = {
     "commands.md text": "test_a_diff_says_what_the_page_shows",
     "evidence.md text": "evidence/test_page.py",
     "console": "requirements/test_requirements_page.py",
+    "README.md xml": "repository/test_home_page.py",
+    "README.md console": "repository/test_home_page.py",
     "day-in-the-life.md console": "evidence/test_day.py",
     "nav2.md console": "evidence/test_recipe_pages.py",
     "nav2.md text": "evidence/test_recipe_pages.py",

@@ -1,0 +1,68 @@
+"""The first page of the documentation and the README: their commands print what they show, and draw their picture."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from btq_lang.cli import main
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = ("docs/README.md", "README.md")
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+PICTURE = "btq graph deliver.btq --qualities -o deliver.svg"
+
+
+def blocks(page: str, language: str) -> list[str]:
+    return [text for each, text in BLOCK.findall((ROOT / page).read_text(encoding="utf-8")) if each == language]
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_the_xml_has_the_findings_that_are_shown(
+    page: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("deliver.xml").write_text(blocks(page, "xml")[0], encoding="utf-8")
+    command, _, shown = blocks(page, "console")[0].partition("\n")
+    prompt, program, *arguments = shlex.split(command)
+    assert (prompt, program) == ("$", "btq")
+    assert main(arguments) == 1
+    assert capsys.readouterr().out == shown
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_the_picture_is_that_of_the_mission(
+    page: str, tmp_path: Path, update: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("deliver.btq").write_text(blocks(page, "btq")[0], encoding="utf-8")
+    assert f"`{PICTURE}`" in (ROOT / page).read_text(encoding="utf-8")
+    assert main(shlex.split(PICTURE)[1:]) == 0
+    shown = ROOT / "docs/deliver.svg"
+    if update:
+        shown.write_bytes(Path("deliver.svg").read_bytes())
+    assert Path("deliver.svg").read_bytes() == shown.read_bytes()
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_the_verdicts_are_those_of_the_day(
+    page: str, shared: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of docs/day-in-the-life.md, on a terminal of 88 columns."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(shared / "logs" / "lab.btlog", "laboratory.btlog")
+    shutil.copy(shared / "logs" / "lab.battery.csv", "battery.csv")
+    Path("laboratory.btq").write_text(blocks("docs/day-in-the-life.md", "btq")[0], encoding="utf-8")
+    assert main(["build", "laboratory.btq"]) == 0
+    capsys.readouterr()
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    monkeypatch.setattr("btq_lang.commands.verify.terminal_width", lambda: 88)
+    command, _, shown = blocks(page, "console")[1].partition("\n")
+    assert main(shlex.split(command)[2:]) == 1
+    assert f"\n\n{shown}\n" in capsys.readouterr().out
