@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from contextlib import redirect_stderr, redirect_stdout
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from io import StringIO
 
 from btq_lang.commands.arguments import build_parser
@@ -21,7 +21,24 @@ def build_open(path: str, texts: Mapping[str, str]) -> tuple[int, tuple[str, ...
     options.report = "concise"
     files = Files()
     files.overlay = {**texts}
-    printed = StringIO()
-    with redirect_stdout(printed), redirect_stderr(printed):  # standard output belongs to the editor
+    with _printed() as printed:
         built = build(options, files)
     return built.code, built.files, printed.getvalue().strip()
+
+
+def import_saved(path: str) -> tuple[int, tuple[str, ...], str]:
+    """`btq import` of one file as it is on the disk: the exit code, the written missions, and the printed messages."""
+    from btq_lang.commands.import_xml import import_files
+
+    options = build_parser().parse_args(["import", "--color", "never", path])
+    with _printed() as printed:
+        code, files = import_files(options)
+    return code, files, printed.getvalue().strip()
+
+
+@contextmanager
+def _printed() -> Iterator[StringIO]:
+    """What is printed meanwhile: standard output belongs to the editor."""
+    printed = StringIO()
+    with redirect_stdout(printed), redirect_stderr(printed):
+        yield printed

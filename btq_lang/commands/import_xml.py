@@ -39,7 +39,15 @@ class _Job(Record):
 
 
 def run(options: Namespace) -> int:
-    """Import each file; a file that is not XML does not stop the others."""
+    return import_files(options)[0]
+
+
+def import_files(options: Namespace) -> tuple[int, tuple[str, ...]]:
+    """Import each file; a file that is not XML does not stop the others.
+
+    Returns:
+        the exit code, and the missions that were written.
+    """
     jobs: list[_Job] = []
     problems: list[LoadProblem] = []
     targets = {absolute(path): _target(path, options) for path in options.files if path != _STDIN}
@@ -58,9 +66,8 @@ def run(options: Namespace) -> int:
     for problem in problems:
         print(f"btq: {problem}", file=sys.stderr)
     _sum_up(written, len(jobs) - len(good))
-    if problems:
-        return 2
-    return int(len(good) < len(jobs))
+    code = 2 if problems else int(len(good) < len(jobs))
+    return code, tuple(job.target for job in written if job.target is not None)
 
 
 def _target(path: str, options: Namespace) -> str:

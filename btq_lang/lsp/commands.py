@@ -20,6 +20,7 @@ XML = "btq.server.xml"
 PICTURE = "btq.server.picture"
 OVERVIEW = "btq.server.overview"
 BUILD = "btq.server.build"
+IMPORT = "btq.server.import"
 USES = "btq.server.uses"
 
 
@@ -29,13 +30,14 @@ def register(server: Server) -> None:
     @server.command(NODE_PATH)
     def path_of_node(place: types.TextDocumentPositionParams) -> str | None:
         """The path of the node at a position."""
-        answer = server.ask(place.text_document, place.position, features.path_of_node)
+        answer = server.ask(place.text_document, place.position, features.path_of_node, reads=True)
         return answer[2] if answer else None
 
-    def mission(document: types.TextDocumentIdentifier) -> tuple[Workspace, str]:
-        place = server.at(document)
+    def mission(document: types.TextDocumentIdentifier, *, reads: bool = False) -> tuple[Workspace, str]:
+        place = server.at(document, reads=reads)
         if place is None:
-            raise Refused("this is not a .btq file of the open folders")
+            what = "neither a .btq file nor BehaviorTree.CPP's XML" if reads else "not a .btq file"
+            raise Refused(f"this is {what} of the open folders")
         return place
 
     @server.command(XML)
@@ -53,7 +55,7 @@ def register(server: Server) -> None:
     @server.command(PICTURE)
     def picture(document: types.TextDocumentIdentifier, *folded: str) -> dict[str, object]:
         """The trees of a document as SVG, and the range of each node in the text, by the node's key."""
-        workspace, path = mission(document)
+        workspace, path = mission(document, reads=True)
         from btq_lang.graph.picture import picture as drawn  # as above
 
         found = drawn(workspace, path, folded)
@@ -63,7 +65,7 @@ def register(server: Server) -> None:
     @server.command(OVERVIEW)
     def overview(document: types.TextDocumentIdentifier) -> str:
         """The page that `btq trace --format html` writes for a document in its current state, saved or not."""
-        workspace, path = mission(document)
+        workspace, path = mission(document, reads=True)
         from btq_lang.trace.missions import trace_table  # as above
 
         return trace_table(workspace, path).write("html")
@@ -80,6 +82,24 @@ def register(server: Server) -> None:
         if code:
             raise Refused(output)
         return {"files": [convert.uri(file) for file in files], "said": output}
+
+    @server.command(IMPORT)
+    def import_(document: types.TextDocumentIdentifier) -> dict[str, object]:
+        """Write the .btq file for XML as `btq import` does, beside it."""
+        workspace, path = mission(document, reads=True)
+        from btq_lang.workspace.loader import read  # as above
+
+        file = workspace.files[path]
+        if file.origin is None:
+            raise Refused("this is a .btq file already")
+        if not document.uri.startswith("file:") or read(path)[0] != file.source:
+            raise Refused("save this document to a file first")
+        from btq_lang.commands.for_editors import import_saved
+
+        code, files, output = import_saved(path)
+        if code:
+            raise Refused(output)
+        return {"files": [convert.uri(written) for written in files], "said": output}
 
     @server.command(USES)
     def uses(places: list[types.Location]) -> None:

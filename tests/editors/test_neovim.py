@@ -562,3 +562,66 @@ def test_a_wrong_project_file_is_told_in_that_file_and_goes_when_it_is_mended(ne
     first, second = neovim.run({"main.btq": "BehaviorTree Main\n    Dock\n"}, script)
     assert first == "unknown rule `unknwn-node`; did you mean `unknown-node`?"
     assert second.endswith("; did you mean `error`?")
+
+
+TREES = """\
+<?xml version="1.0"?>
+<!-- <root> -->
+<root BTCPP_format="4">
+  <BehaviorTree ID="Main">
+    <Sequnce/>
+  </BehaviorTree>
+</root>
+"""
+
+
+def test_xml_of_the_engine_is_served(neovim: Neovim) -> None:
+    """Like a mission, with the edits that are typed; the file keeps its type."""
+    script = """
+    local before = btq.diagnostics(1)
+    vim.api.nvim_buf_set_lines(0, 4, 5, true, { '    <Sequence><Dock/></Sequence>' })
+    local mended = btq.diagnostics(0)
+    btq.to('Sequence')
+    local shown = btq.ask('textDocument/hover').contents.value
+    return { before, mended, shown:sub(1, 12), vim.bo.filetype, vim.fn.exists(':BtqPreview') }
+    """
+    found = neovim.run({"main.xml": TREES}, script)
+    assert found == [["5:6-12 unknown-node"], [], "**Sequence**", "xml", 2]
+
+
+def test_xml_is_converted_with_both_open(neovim: Neovim) -> None:
+    script = """
+    btq.wait(btq.client, 'the server')
+    btq.diagnostics(1)
+    vim.cmd('BtqConvert')
+    local names = vim.tbl_map(function(window)
+      return vim.fn.fnamemodify(vim.api.nvim_buf_get_name(vim.api.nvim_win_get_buf(window)), ':t')
+    end, vim.api.nvim_list_wins())
+    table.sort(names)
+    return { names, btq.lines() }
+    """
+    names, lines = neovim.run({"main.xml": TREES}, script)
+    assert names == ["main.btq", "main.xml"]
+    assert lines[:3] == ["# <root>", "", "Root (BTCPP_format = 4)"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<project><root/></project>\n",
+        "<root><item path='x'/></root>\n",
+        "<!-- a\n<root BTCPP_format='4'> -->\n<rooted BTCPP_format='4'/>\n",
+        "",
+    ],
+)
+def test_other_xml_starts_no_server_until_it_is_the_engines(neovim: Neovim, text: str) -> None:
+    script = """
+    vim.wait(300)
+    local before = #(vim.lsp.get_clients or vim.lsp.buf_get_clients)() + vim.fn.exists(':BtqPreview')
+    local trees = { '<root>', '<BehaviorTree ID="A">', '<Sequnce/>', '</BehaviorTree>', '</root>' }
+    vim.api.nvim_buf_set_lines(0, 0, -1, true, trees)
+    vim.cmd('doautocmd TextChanged')
+    return { before, btq.diagnostics(1) }
+    """
+    before, after = neovim.run({"pom.xml": text}, script)
+    assert (before, len(after)) == (0, 1)

@@ -14,6 +14,8 @@ from pathlib import Path
 import pytest
 from installed import ROOT, STORE, there
 
+from btq_lang.btcpp import recognition
+
 FILES_OF_THE_EXTENSION = {
     "LICENSE.txt",
     "dist/extension.js",
@@ -63,7 +65,7 @@ def test_there_is_what_belongs_there_and_no_more(unpacked: Path) -> None:
 def test_every_setting_and_every_command_is_tested() -> None:
     """In the workbench: a setting is written, a command is chosen by its title or by a button that runs it."""
     contributes = json.loads((ROOT / "editors/vscode/package.json").read_text(encoding="utf-8"))["contributes"]
-    tests = Path(__file__).with_name("test_vscode.py").read_text(encoding="utf-8")
+    tests = "".join(path.read_text(encoding="utf-8") for path in Path(__file__).parent.glob("test_vscode*.py"))
     settings = contributes["configuration"]["properties"]
     assert [name for name in settings if f'"{name}"' not in tests] == []
     assert [each["title"] for each in contributes["commands"] if each["title"] not in tests] == []
@@ -161,3 +163,10 @@ def test_the_commands_of_the_pages_pack_and_install(page: str, node: Path, unpac
 
 
 IGNORED = shutil.ignore_patterns("node_modules", "libs", "dist", "__pycache__", "*.vsix")
+
+
+def test_xml_is_told_apart_as_the_server_does() -> None:
+    """The extension looks at XML before it starts a server, by the same patterns."""
+    source = (ROOT / "editors/vscode/src/documents.ts").read_text(encoding="utf-8")
+    patterns = [pattern.replace("\\/", "/") for pattern in re.findall(r"/\^(.*)/s;", source)]
+    assert patterns == [recognition._PROLOG.pattern, recognition._ROOT.pattern]

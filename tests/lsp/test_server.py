@@ -834,10 +834,14 @@ def test_commands(editor: Editor) -> None:
     page = editor.request("workspace/executeCommand", command="btq.server.overview", arguments=[document])
     assert page.startswith("<!DOCTYPE html>")
     assert "Retry" in page
-    for command in ("xml", "picture", "overview", "build"):
+    neither = "neither a .btq file nor BehaviorTree.CPP's XML"
+    whats = {"xml": "not a .btq file", "build": "not a .btq file"} | dict.fromkeys(
+        ("picture", "overview", "import"), neither
+    )
+    for command, what in whats.items():
         arguments = [{"uri": editor.uri("nowhere.btq")}]
         refused = editor.ask("workspace/executeCommand", command=f"btq.server.{command}", arguments=arguments)
-        assert refused["error"]["message"] == "this is not a .btq file of the open folders"
+        assert refused["error"]["message"] == f"this is {what} of the open folders"
 
 
 def test_a_build_writes_what_the_command_line_writes(tmp_path: Path) -> None:

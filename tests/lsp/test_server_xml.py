@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from lsp_editor import Editor, Message, part
@@ -242,6 +243,31 @@ def test_what_stands_in_xml_is_explained_and_found(foreign: Editor) -> None:
     assert (caller["from"]["name"], caller["fromRanges"]) == ("Dock", [called])
     lenses = foreign.request("textDocument/codeLens", **foreign.document("dock.xml"))
     assert [lens["command"]["title"] for lens in lenses] == ["1 call", "1 call"]
+
+
+def test_commands_for_xml(foreign: Editor) -> None:
+    """A path, the picture with places in the XML, the overview, and the conversion of what is saved."""
+
+    def run(command: str, *arguments: Message) -> Any:
+        return foreign.ask("workspace/executeCommand", command=f"btq.server.{command}", arguments=[*arguments])
+
+    document = foreign.document("dock.xml")["textDocument"]
+    assert run("nodePath", foreign.at("dock.xml", 3, 21))["result"] == "Dock/Timeout/Home"
+    picture = run("picture", document)["result"]
+    assert [place["line"] for place in picture["nodes"].values()] == [2, 3, 7]
+    assert run("overview", document)["result"].startswith("<!DOCTYPE html>")
+    for command in ("xml", "build"):
+        assert run(command, document)["error"]["message"] == "this is not a .btq file of the open folders"
+    foreign.change("dock.xml", f"{DOCK}<!-- -->\n")
+    assert run("import", document)["error"]["message"] == "save this document to a file first"
+    foreign.change("dock.xml", DOCK)
+    done = run("import", document)["result"]
+    assert done["files"] == [foreign.uri("dock.btq")]
+    assert done["said"].startswith("1 file imported\n")
+    assert (foreign.root / "dock.btq").read_text("utf-8").startswith("Root (BTCPP_format = 4)\n\nBehaviorTree Dock\n")
+    assert "dock.btq: already exists" in run("import", document)["error"]["message"]
+    mission = foreign.document("main.btq")["textDocument"]
+    assert run("import", mission)["error"]["message"] == "this is a .btq file already"
 
 
 def test_the_outline_of_xml(foreign: Editor) -> None:

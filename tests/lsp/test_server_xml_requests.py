@@ -55,7 +55,7 @@ NOT_IN_XML = {
     *("textDocument/formatting", "textDocument/rangeFormatting", "textDocument/foldingRange"),
     *("textDocument/selectionRange", "textDocument/inlayHint", "workspace/willRenameFiles"),
     *("textDocument/prepareRename", "textDocument/rename", "textDocument/completion"),
-    *("textDocument/typeDefinition", "workspace/executeCommand"),
+    "textDocument/typeDefinition",
 }
 COMMANDS = ("btq.server.nodePath", "btq.server.xml", "btq.server.picture", "btq.server.overview")
 REFUSED = -32803

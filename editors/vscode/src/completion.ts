@@ -11,7 +11,7 @@ let typed: { document: vscode.TextDocument; end: vscode.Position; time: number }
 
 export function watchTyping(): vscode.Disposable {
   return vscode.workspace.onDidChangeTextDocument(({ document, contentChanges: [change, ...others] }) => {
-    if (document.languageId !== "btq" || change === undefined) return;
+    if (!["btq", "xml"].includes(document.languageId) || change === undefined) return;
     const isLetter = change.text.length === 1 && others.length === 0;
     typed = isLetter ? { document, end: change.range.start.translate(0, 1), time: Date.now() } : undefined;
   });

@@ -13,6 +13,8 @@ import {
 } from "vscode-languageclient/node";
 
 import { completion, watchTyping } from "./completion";
+import { convert } from "./conversion";
+import { isOurs, isTrees, SELECTOR } from "./documents";
 import { OverviewView } from "./overview";
 import { activeInterpreter, onInterpreterChange } from "./pythonExtension";
 import { findServer, NoPython, type Server } from "./server";
@@ -46,9 +48,16 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   });
 
   // One start at a time, in the order asked for: two servers would answer everything twice.
+  let isWanted = false;
   const restart = (): Promise<void> => {
+    isWanted = true;
     waiting += 1;
     return (turn = turn.then(() => start(context, log, status)));
+  };
+  const again = async (): Promise<void> => (isWanted ? restart() : undefined);
+  // The first one of ours is enough: most XML is none, and starts nothing.
+  const begin = async (document: vscode.TextDocument): Promise<void> => {
+    if (!isWanted && isOurs(document)) await restart();
   };
 
   context.subscriptions.push(
@@ -72,6 +81,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     vscode.commands.registerCommand("btq.showTree", () => tree.show()),
     vscode.commands.registerCommand("btq.saveTree", orSay(() => tree.save())),
     vscode.commands.registerCommand("btq.showXml", () => xml.show()),
+    vscode.commands.registerCommand("btq.convert", orSay(() => convert(ask, log))),
     vscode.commands.registerCommand("btq.openOverview", orSay(() => overview.show())),
     vscode.commands.registerCommand("btq.copyNodePath", orSay(() => copyNodePath(ask))),
     vscode.tasks.registerTaskProvider("btq", tasks),
@@ -82,14 +92,34 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     }),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (["btq.interpreter", "btq.importStrategy", "btq.server"].some((name) => change.affectsConfiguration(name))) {
-        void restart();
+        void again();
       }
     }),
-    vscode.workspace.onDidGrantWorkspaceTrust(restart),
+    vscode.workspace.onDidGrantWorkspaceTrust(again),
+    vscode.workspace.onDidOpenTextDocument(begin),
+    vscode.workspace.onDidChangeTextDocument(({ document }) => begin(document)),
+    vscode.window.onDidChangeActiveTextEditor(offer),
+    vscode.workspace.onDidChangeTextDocument(({ document }) => {
+      if (document === vscode.window.activeTextEditor?.document) offer(vscode.window.activeTextEditor);
+    }),
   );
-  await onInterpreterChange(context, restart);
+  offer(vscode.window.activeTextEditor);
+  await onInterpreterChange(context, again);
   await openNewMission(context);
-  await restart();
+  if (vscode.workspace.textDocuments.some(isOurs) || (await hasMissions())) await restart();
+}
+
+/** Whether a file of the open folders is in the language: the server reports on closed files, too. */
+async function hasMissions(): Promise<boolean> {
+  return (await vscode.workspace.findFiles("**/*.{btq,qualitybtcpp}", undefined, 1)).length > 0;
+}
+
+let isOffered = false;
+
+/** Offers the commands for trees where the active editor has XML with some. */
+function offer(editor: vscode.TextEditor | undefined): void {
+  const hasTrees = isTrees(editor?.document);
+  if (hasTrees !== isOffered) void vscode.commands.executeCommand("setContext", "btq.inXml", (isOffered = hasTrees));
 }
 
 /** Says nothing of requests that fail because the server is being stopped: their answers are nobody's loss. */
@@ -133,10 +163,7 @@ async function start(
       "btq",
       { command: server.command, args: server.args, transport: TransportKind.stdio },
       {
-        documentSelector: [
-          { scheme: "file", language: "btq" },
-          { scheme: "untitled", language: "btq" },
-        ],
+        documentSelector: SELECTOR,
         outputChannel: log,
         synchronize: { configurationSection: "btq" },
         diagnosticCollectionName: "btq",
@@ -220,7 +247,7 @@ async function chooseInterpreter(): Promise<void> {
 
 async function copyNodePath(ask: Ask): Promise<void> {
   const editor = vscode.window.activeTextEditor;
-  if (editor?.document.languageId !== "btq") return;
+  if (!isOurs(editor?.document)) return;
   const { line, character } = editor.selection.active;
   const textDocument = { uri: editor.document.uri.toString() };
   const path = await ask("btq.server.nodePath", { textDocument, position: { line, character } });

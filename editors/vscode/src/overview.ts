@@ -4,6 +4,7 @@
 import { randomBytes } from "node:crypto";
 import * as vscode from "vscode";
 
+import { isOurs } from "./documents";
 import { iconPath } from "./treeView";
 import type { Ask } from "./xml";
 
@@ -17,8 +18,8 @@ export class OverviewView {
   ) {
     context.subscriptions.push(
       // Requirements may be in any other mission.  While somebody types, tables that jump would only disturb.
-      vscode.workspace.onDidSaveTextDocument(({ languageId }) => {
-        if (languageId === "btq") void this.draw();
+      vscode.workspace.onDidSaveTextDocument((document) => {
+        if (isOurs(document)) void this.draw();
       }),
       vscode.window.onDidChangeActiveColorTheme(() => this.draw()),
     );
@@ -28,7 +29,7 @@ export class OverviewView {
   async show(): Promise<void> {
     const editor = vscode.window.activeTextEditor;
     const document = editor?.document;
-    if (document?.languageId !== "btq") {
+    if (!isOurs(document)) {
       void vscode.window.showInformationMessage("Open a mission first: its overview is shown beside it.");
       return;
     }

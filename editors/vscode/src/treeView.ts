@@ -5,6 +5,7 @@ import { readFile } from "node:fs/promises";
 import path from "node:path";
 import * as vscode from "vscode";
 
+import { isOurs } from "./documents";
 import type { Ask } from "./xml";
 
 interface Picture {
@@ -36,13 +37,13 @@ export class TreeView {
     context.subscriptions.push(
       vscode.workspace.onDidChangeTextDocument(({ document }) => {
         // Requirements may be in any other mission.
-        if (document.languageId === "btq") this.soon();
+        if (this.panel && isOurs(document)) this.soon();
       }),
       vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => {
         if (textEditor.document === this.document) this.mark(textEditor.selection.active);
       }),
       vscode.window.onDidChangeActiveTextEditor((editor) => {
-        if (editor?.document.languageId === "btq" && this.panel) void this.show();
+        if (this.panel && isOurs(editor?.document)) void this.show();
       }),
     );
   }
@@ -50,7 +51,7 @@ export class TreeView {
   /** Draw the mission of the active editor, beside it. */
   async show(): Promise<void> {
     const document = vscode.window.activeTextEditor?.document;
-    if (document?.languageId !== "btq") {
+    if (!isOurs(document)) {
       void vscode.window.showInformationMessage("Open a mission first: its tree is drawn beside it.");
       return;
     }
@@ -77,7 +78,7 @@ export class TreeView {
   /** Write the picture to a file: as it is shown, or of the active editor's mission if that is another. */
   async save(): Promise<void> {
     const document = vscode.window.activeTextEditor?.document ?? this.document;
-    if (document?.languageId !== "btq") return;
+    if (!isOurs(document)) return;
     const folded = document === this.document && this.panel ? this.folded : ["+notes"];
     await this.write(document, (await this.asked(document, folded)).svg);
   }

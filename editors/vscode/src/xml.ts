@@ -1,6 +1,8 @@
 // The XML of a mission as it is in the editor, saved or not, in a document beside it that cannot be edited.
 import * as vscode from "vscode";
 
+import { isOurs } from "./documents";
+
 const SCHEME = "btq-xml";
 
 /** Asks the server a command; rejects with the reason why not. */
@@ -19,7 +21,7 @@ export class XmlView implements vscode.TextDocumentContentProvider {
       this.changed,
       vscode.workspace.registerTextDocumentContentProvider(SCHEME, this),
       vscode.workspace.onDidChangeTextDocument(({ document }) => {
-        if (document.languageId !== "btq") return;
+        if (!isOurs(document)) return;
         clearTimeout(timer);
         timer = setTimeout(() => {
           // Any mission may be included by the one that is shown.

@@ -82,6 +82,67 @@ function M.setup()
       end
     end,
   })
+  vim.api.nvim_create_autocmd('FileType', {
+    group = group,
+    pattern = 'xml',
+    desc = 'start the language server of btq for XML of BehaviorTree.CPP',
+    callback = function(event)
+      M.watch(event.buf)
+    end,
+  })
+end
+
+--- Attach the server to a buffer of XML, if that is BehaviorTree.CPP's or as soon as it becomes that; there is much other XML.
+function M.watch(buffer)
+  local function is_ours()
+    if not M.has_trees(buffer) then
+      return false
+    end
+    if M.found() then
+      M.attach(buffer)
+    end
+    if vim.fn.has('nvim-0.11') == 1 then -- as for missions
+      vim.api.nvim_set_option_value('completeopt', vim.go.completeopt .. ',noselect', { buf = buffer })
+    end
+    vim.api.nvim_buf_create_user_command(buffer, 'BtqPreview', function(given)
+      require('btq.preview').run(given.bang)
+    end, { bang = true })
+    vim.api.nvim_buf_create_user_command(buffer, 'BtqConvert', function()
+      require('btq.convert').run()
+    end, {})
+    return true
+  end
+  if not is_ours() then
+    local changes = { 'TextChanged', 'TextChangedI', 'TextChangedP' }
+    vim.api.nvim_create_autocmd(changes, { group = 'btq', buffer = buffer, callback = is_ours }) -- true ends it
+  end
+end
+
+--- Whether a buffer has XML of BehaviorTree.CPP: what begins with `<root`, and names a version or contains trees or models.
+function M.has_trees(buffer)
+  local text = table.concat(vim.api.nvim_buf_get_lines(buffer, 0, -1, false), '\n')
+  local at = 1
+  while true do -- before the root there may be declarations and comments
+    at = text:find('<', at, true)
+    if not at or not text:find('^<[?!]', at) then
+      break
+    end
+    local _, last = text:find(text:find('^<!%-%-', at) and '-->' or '>', at, true)
+    at = last or #text + 1
+  end
+  if not at or not text:find('^<root[%s/>]', at) then
+    return false
+  end
+  local root = text:match('^<root[^>]*', at)
+  if root:find('%sBTCPP_format%s*=') or root:find('%smain_tree_to_execute%s*=') then
+    return true
+  end
+  for _, tag in ipairs({ 'BehaviorTree', 'TreeNodesModel' }) do
+    if text:find('<' .. tag .. '%f[^%w_]', at) then
+      return true
+    end
+  end
+  return text:find('<include%s[^>]*%f[%w]path%s*=', at) ~= nil
 end
 
 --- Tell a server something: from 0.11 on it is the client's own function.
@@ -103,12 +164,12 @@ function M.found()
   return false
 end
 
---- Attach the server of the buffer's project; only for Neovim 0.7 to 0.10, newer ones do it themselves.
+--- Attach the server of the buffer's project; for missions Neovim 0.11 and newer do it themselves.
 function M.attach(buffer)
   local command = M.command()
   local file = vim.api.nvim_buf_get_name(buffer)
   local root = M.root(file)
-  if vim.lsp.start then -- 0.8 to 0.10
+  if vim.lsp.start then -- 0.8 and newer
     vim.lsp.start(
       { name = 'btq', cmd = command, capabilities = capabilities(), commands = COMMANDS, root_dir = root },
       { bufnr = buffer }
