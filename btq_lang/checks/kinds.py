@@ -236,6 +236,14 @@ def written(name: str) -> str:
     return name if is_name(name) else quote(name)
 
 
+def way_in(view: View) -> tuple[str, ...]:
+    """How to turn XML for version 3 into a file for version 4."""
+    origin = view.look_up(lookups.origin)
+    if origin is None or _SAYS_VERSION_4.search(origin.text):
+        return ()
+    return ("`btq import` converts the file to .btq in the syntax of version 4",)
+
+
 def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
     """The fix that replaces an older engine's node by its successor."""
     if known.replacement is not None:
@@ -248,11 +256,8 @@ def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ..
 
 
 def _way_in(view: View, known: KnownWord) -> tuple[str, ...]:
-    """How to turn XML for version 3 into a file for version 4, if the word comes from such."""
-    origin = view.look_up(lookups.origin)
-    if origin is None or known.word not in _TRANSLATED or _SAYS_VERSION_4.search(origin.text):
-        return ()
-    return ("`btq import` converts the file to .btq in the syntax of version 4",)
+    """How to turn a word of version 3 into one of version 4, if an import does."""
+    return way_in(view) if known.word in _TRANSLATED else ()
 
 
 def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:

@@ -84,6 +84,14 @@ def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Mean
 
 
 @of_name
+def ports_of_models(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> tuple[tuple[Port, ...], ...]:
+    """The ports of each model of a node in scope, else of the one that it has in the pool."""
+    found = workspace.scope(viewpoint).all(kind, name) or (workspace.find(viewpoint, kind, name),)
+    targets = [each.symbol.target for each in found if each is not None]
+    return tuple([target.ports for target in targets if isinstance(target, Model)])
+
+
+@of_name
 def declaration(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Declaration | None:
     """Where a name is defined."""
     found = workspace.find(viewpoint, kind, name)
@@ -358,6 +366,15 @@ def custom_node(workspace: Workspace, viewpoint: str, name: str) -> tuple[str, t
 
     found = found_in_uses(workspace, viewpoint, name)
     return found.category, found.ports
+
+
+@of_viewpoint
+def ports_in_use(workspace: Workspace, viewpoint: str, name: str) -> tuple[int, frozenset[str]]:
+    """How many nodes of an ID there are, and the ports that any of them has a value for."""
+    from btq_lang.workspace.custom_nodes import custom_node as found_in_uses  # few nodes lack a value
+
+    found = found_in_uses(workspace, viewpoint, name)
+    return found.uses, frozenset([port.name for port in found.ports])
 
 
 @of_viewpoint

@@ -56,18 +56,21 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if name is None or (name.text == "" and not seen.is_subtree):
             continue
         text = name.text
-        if seen.id is not None and text == seen.id.text and not seen.is_subtree:
+        is_subtree = seen.is_subtree and UNIQUE_SUBTREES.holds(view.project.target)
+        if seen.id is not None and text == seen.id.text and not is_subtree:
             continue  # the engine distinguishes such nodes by number
         if seen.is_placeholder and legal_name(text) == text:
             continue  # the name becomes the ID, and no instance name remains
-        other = first.setdefault((seen.is_subtree, text), name)
+        other = first.setdefault((is_subtree, text), name)
         if other is name:
             continue
         related = (Related(Place(other.span), "the first one"),)
-        if seen.is_subtree:
+        if is_subtree:
             message = f"the engine refuses two SubTrees with the name `{text}` in one tree"
             severity = Severity.ERROR if view.is_xml else Severity.WARNING
-            notes = () if view.is_xml else ("`btq build` writes the second one under another name",)
+            renames = ("`btq build` writes the second one under another name",)
+            older = view.pin_note(lambda version: not UNIQUE_SUBTREES.holds(version))
+            notes = older if view.is_xml else renames
             yield Diagnostic("duplicate-instance-name", name.span, message, related, notes, severity=severity)
         else:
             message = f"two nodes of this tree have the name `{text}`: logs show the same path for both"
@@ -79,7 +82,8 @@ def _of_id(view: View, seen: ResolvedNode, name: Word, reason: str) -> Iterator[
         yield _tree_name(view, name, reason, ())  # else it is reported at the tree, or as a missing tree
     elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
         refused = _refused("node ID", name, reason, _explicit(seen, name))
-        yield replace(refused, notes=_NO_NAMESPACES) if _is_prefixed(name.text) else refused
+        older = view.pin_note(lambda version: model_name_problem(name.text, version) is None)
+        yield replace(refused, notes=_NO_NAMESPACES if _is_prefixed(name.text) else older)
 
 
 def _is_prefixed(name: str) -> bool:
@@ -90,11 +94,14 @@ def _is_prefixed(name: str) -> bool:
 
 def _of_instance(view: View, entry: Entry, seen: ResolvedNode, label: Word, version: str) -> Iterator[Diagnostic]:
     if reason := instance_name_problem(label.text, version):
-        yield _refused("instance name", label, reason)
+        notes = view.pin_note(lambda version: instance_name_problem(label.text, version) is None)
+        yield replace(_refused("instance name", label, reason), notes=notes)
     if label.text == "" and seen.is_subtree and UNIQUE_SUBTREES.holds(version) and view.is_main:
         refused = _refused("instance name", label, "it is empty, like the name of the main tree")
-        note = "`btq build` leaves it out"
-        yield refused if view.is_xml else replace(refused, severity=Severity.WARNING, notes=(note,))
+        if view.is_xml:
+            yield replace(refused, notes=view.pin_note(lambda older: not UNIQUE_SUBTREES.holds(older)))
+        else:
+            yield replace(refused, severity=Severity.WARNING, notes=("`btq build` leaves it out",))
 
 
 def _nameless(view: View, entry: Entry, tree: Tree) -> Iterator[Diagnostic]:
@@ -110,7 +117,8 @@ def _nameless(view: View, entry: Entry, tree: Tree) -> Iterator[Diagnostic]:
 def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> Diagnostic:
     """Only a warning if a build writes the tree and all references to it under a legal name, which must be free."""
     if view.is_xml:
-        return _refused("tree ID", name, reason)
+        notes = view.pin_note(lambda version: model_name_problem(name.text, version) is None)
+        return replace(_refused("tree ID", name, reason), notes=notes)
     legal = legal_name(name.text)
     taken = view.look_up(lookups.taken_names, name.text).get(legal)
     note = f"`btq build` writes it as `{legal}`"

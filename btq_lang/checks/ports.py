@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
@@ -12,12 +13,12 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.checks import lookups
-from btq_lang.checks.kinds import is_torn, model_related, written
+from btq_lang.checks.kinds import is_torn, model_related, way_in, written
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
 
@@ -40,8 +41,10 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         names = ", ".join(f"`{port.name}`" for port in known)
         required = {port.name for port in ports.required}
         for key, likely in meant.items():
-            # The engine takes any port of a SubTree, and a model without ports is often an unfinished one.
+            # The engine takes any port of a SubTree, a model without ports is often an unfinished one, and a program
+            # may register another node than the one that another file of the project declares.
             harmless = (seen.is_subtree and not required.intersection(likely)) or not (known or seen.kind)
+            harmless = harmless or _is_of_pool(view, seen)
             fixes = tuple(
                 replace_fix(f"Replace `{key.text}` with `{port}`", key.span, written(port)) for port in likely
             )
@@ -50,7 +53,7 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 key.span,
                 f"{seen.shown_kind} has no port `{key.text}`{did_you_mean(likely)}",
                 related=_declared(view, seen),
-                notes=(f"it has {names}" if known else "it has no ports",),
+                notes=(f"it has {names}" if known else "it has no ports", *_of_version_3(view, seen, key.text)),
                 fixes=fixes,
                 severity=Severity.WARNING if harmless else None,
             )
@@ -67,7 +70,7 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         given = {pair.key.text for pair in seen.node.attributes}
         if seen.is_subtree:  # the engine passes to a tree only what it takes for ports
             given = set(filter(is_port_name, given))
-        missing = [port for port in ports.required if port.name not in given]
+        missing = _needed(view, seen, [port for port in ports.required if port.name not in given])
         if not missing or (seen.is_subtree and _remaps_all(seen)) or is_torn(view, entry, seen):
             continue  # a value may be on a line that could not be read
         if _may_have_more(view, seen):
@@ -228,12 +231,47 @@ def _may_have_more(view: View, seen: ResolvedNode) -> bool:
 
 
 def _model_ports(store: Store[Workspace], viewpoint: str, name: str) -> KnownPorts | None:
-    """The ports of a node with a model."""
-    meaning = View(store, viewpoint).find(Kind.MODEL, name)
-    ports = meaning.ports if meaning is not None else ()
-    return KnownPorts(
-        tuple([_declared_port(port, port.direction.raw == "input" and port.default is None) for port in ports])
-    )
+    """The ports of a node with a model; of several that differ, those that any has, required if all require them."""
+    models = [
+        [_declared_port(port, port.direction.raw == "input" and port.default is None) for port in ports]
+        for ports in lookups.ports_of_models(store, viewpoint, Kind.MODEL, name)
+    ]
+    needed = [{port.name for port in ports if port.required} for ports in models]
+    first: dict[str, KnownPort] = {}
+    for port in chain(*models):
+        first.setdefault(port.name, port)
+    ports = [replace(port, required=all(port.name in each for each in needed)) for port in first.values()]
+    return KnownPorts(tuple(ports))
+
+
+def _of_version_3(view: View, seen: ResolvedNode, key: str) -> tuple[str, ...]:
+    """What to do about a port that a built-in has in version 3 of the engine."""
+    if seen.kind is None or (seen.kind.tag, key) not in OLD_PORTS:
+        return ()
+    return (f"version 3 of the engine has `{key}`", *way_in(view))
+
+
+def _is_of_pool(view: View, seen: ResolvedNode) -> bool:
+    """Whether only the model of a file that this one does not include declares a node."""
+    return seen.kind is None and seen.id is not None and seen.is_defined and not view.defines(Kind.MODEL, seen.id.text)
+
+
+def _needed(view: View, seen: ResolvedNode, missing: list[KnownPort]) -> list[KnownPort]:
+    """Those of a node's missing ports that it seems to need.
+
+    A model in XML does not say which inputs its node can do without.  If there are several such nodes and none has a
+    value for a port, it can; and so it may if the model is one of another program.
+    """
+    if not missing or seen.kind is not None or seen.is_subtree or seen.id is None:
+        return missing
+    name = seen.id.text
+    definition = view.definition(Kind.MODEL, name)
+    if definition is None:
+        return []
+    if lookups.origin(view.store, definition[0]) is None:
+        return missing
+    uses, given = view.look_up(lookups.ports_in_use, name)
+    return missing if uses == 1 else [port for port in missing if port.name in given]
 
 
 @cache

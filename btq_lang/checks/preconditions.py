@@ -32,10 +32,10 @@ def one_shot_monitor(view: View, entry: Entry) -> Iterator[Diagnostic]:
             if pair.value is None or pair.value.text.strip() in ("true", "false", "1", "0"):
                 continue
             is_failure = key == "_failureIf"
-            watched = "`R->` with a ScriptCondition in front of the node, or a requirement with `keeps`"
-            if not is_failure:
-                watched = "`R?` with a ScriptCondition in front of the node"
-            start = "a requirement with `needs`, or `->`" if is_failure else "`?`"
+            watched = f"{view.spelt('R->' if is_failure else 'R?')} with a ScriptCondition in front of the node"
+            start = view.spelt("->" if is_failure else "?")
+            if is_failure and not view.is_xml:
+                watched, start = f"{watched}, or a requirement with `keeps`", f"a requirement with `needs`, or {start}"
             yield Diagnostic(
                 "one-shot-monitor",
                 pair.key.span,
@@ -70,7 +70,8 @@ def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
             "as if it had succeeded",
             notes=(
                 "the halted node returns SKIPPED, which a Sequence treats as done",
-                "to fail instead, use `R->` with a ScriptCondition in front of the node, or a requirement with `keeps`",
+                f"to fail instead, use {view.spelt('R->')} with a ScriptCondition in front of the node"
+                + ("" if view.is_xml else ", or a requirement with `keeps`"),
             ),
         )
 

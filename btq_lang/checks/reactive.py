@@ -41,7 +41,7 @@ def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for child in seen.node.nodes:
             results = result(view, child)
             if first is not None and results.ever & RUNNING:
-                yield _never_gets_further(seen, first, child, surely)
+                yield _never_gets_further(view, seen, first, child, surely)
                 break
             if first is None and not results.usual & goes_on and results.ever & goes_on:
                 first = child
@@ -72,7 +72,8 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 f"its message `Unknown node type: {category.raw}` refers to the tag: {shown if can_be_tag else _APART}"
             )
             message = f"the engine refuses <{category.raw}> directly below a {parent.kind.tag}"
-            yield Diagnostic("explicit-in-reactive", category.span, message, notes=(note,))
+            older = view.pin_note(lambda version: not NO_EXPLICIT_CHILD.holds(version))
+            yield Diagnostic("explicit-in-reactive", category.span, message, notes=(note, *older))
         elif name is None or can_be_tag or seen.kind is not None or seen.is_placeholder:
             continue
         elif category is not None or not is_forbidden:  # else forbidden-name reports it
@@ -93,7 +94,8 @@ def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
         guard: ResolvedNode | None = None
         for child in seen.node.nodes:
             if guard is not None and result(view, child).usual & RUNNING:
-                yield _not_asked_again(seen, guard, child, fixable=_can_be_asked_again(view, entry, nodes, seen))
+                fixable = _can_be_asked_again(view, entry, nodes, seen)
+                yield _not_asked_again(view, seen, guard, child, fixable=fixable)
                 break
             guard = guard or _guard(nodes, nodes[id(child)])
 
@@ -119,7 +121,7 @@ def _is_async_sequence(kind: NodeKind) -> bool:
     return kind.flow == "sequence" and kind.pauses and not kind.keeps_place
 
 
-def _never_gets_further(seen: ResolvedNode, first: Node, child: Node, surely: bool) -> Diagnostic:
+def _never_gets_further(view: View, seen: ResolvedNode, first: Node, child: Node, surely: bool) -> Diagnostic:
     other, this, shown = called(first), called(child), seen.shown_kind
     message = f"{this} never gets beyond its first tick: {other} restarts and halts it"
     if not surely:
@@ -131,7 +133,8 @@ def _never_gets_further(seen: ResolvedNode, first: Node, child: Node, surely: bo
         related=(Related(Place(first.head.span), "restarts"),),
         notes=(
             f"{shown} starts with its first child at every tick, and halts all others when one returns RUNNING",
-            f"only the last child of {shown} should run over several ticks; put the steps of a plan into a `->`",
+            f"only the last child of {shown} should run over several ticks; put the steps of a plan into a "
+            + view.spelt("->"),
         ),
         severity=None if surely else Severity.HINT,
     )
@@ -174,8 +177,8 @@ def _can_be_asked_again(view: View, entry: Entry, nodes: dict[int, ResolvedNode]
     )
 
 
-def _not_asked_again(seen: ResolvedNode, guard: ResolvedNode, branch: Node, *, fixable: bool) -> Diagnostic:
-    kind = seen.node.head
+def _not_asked_again(view: View, seen: ResolvedNode, guard: ResolvedNode, branch: Node, *, fixable: bool) -> Diagnostic:
+    kind, reactive = seen.node.head, view.spelt("R?")
     return Diagnostic(
         "condition-without-recheck",
         kind.span,
@@ -185,10 +188,10 @@ def _not_asked_again(seen: ResolvedNode, guard: ResolvedNode, branch: Node, *, f
             Related(Place(branch.head.span), "not interrupted"),
         ),
         notes=(
-            f"{seen.shown_kind} resumes the running child; `R?` starts with the first child at every tick",
+            f"{seen.shown_kind} resumes the running child; {reactive} starts with the first child at every tick",
             f"keep {seen.shown_kind} if the choice is to be made only once",
         ),
-        fixes=(replace_fix("Check at every tick: `R?`", kind.span, _reactive(kind)),) if fixable else (),
+        fixes=(replace_fix(f"Check at every tick: {reactive}", kind.span, _reactive(kind)),) if fixable else (),
     )
 
 

@@ -46,12 +46,20 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
         likely = view.near(use.name, Kind.TREE)
         fixes += tuple(replace_fix(f"Replace `{use.name}` with `{name}`", use.span, written(name)) for name in likely)
-        message = f"unknown tree `{use.name}`{NOWHERE if elsewhere or not likely else did_you_mean(likely)}"
+        message = f"unknown tree `{use.name}`{_nowhere(view) if elsewhere or not likely else did_you_mean(likely)}"
         model = view.find(Kind.MODEL, use.name)
         if use.node is not None and (use.name in BUILTINS or (model is not None and not _is_subtree_model(model))):
             message = f"`{use.name}` is a node, not a tree"
             fixes = _as_node(use)
         yield Diagnostic("unknown-tree", use.span, message, fixes=fixes)
+
+
+def _nowhere(view: View) -> str:
+    """Where a tree was looked for, for a message."""
+    if view.factory is not None:
+        return "; no file of its factory defines it"
+    is_pooled = view.is_xml and view.project.pool_of(view.path) is not None
+    return "; no file of the project defines it" if is_pooled else NOWHERE
 
 
 def nested_too_deep(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -236,7 +244,11 @@ def tree_root_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
         extra,
         f"a tree must have one node at its top, found {len(tree.children)}",
         related=(Related(Place(first), "first one"),),
-        notes=("put them below one node, such as a Sequence `->`",),
+        notes=(
+            "put them below one node, such as a Sequence"
+            if view.is_xml
+            else "put them below one node, such as a Sequence `->`",
+        ),
     )
 
 

@@ -12,7 +12,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS, spellings
+from btq_lang.catalog.nodes import BUILTINS, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.checks import lookups
 from btq_lang.checks.sorted_nodes import NO_NODES, SortedNodes, sorted_nodes
@@ -286,6 +286,22 @@ class View:
     def other_files(self) -> tuple[str, ...]:
         """The project's other files, as an include in this one names them."""
         return self.look_up(lookups.other_files)
+
+    def spelt(self, symbol: str) -> str:
+        """A built-in node as the language of the file writes it: `R->`, in XML `<ReactiveSequence>`."""
+        kind = lookup(symbol)
+        return f"`<{kind.tag}>`" if self.is_xml and kind is not None else f"`{symbol}`"
+
+    def pin_note(self, accepts: Callable[[str], bool]) -> tuple[str, ...]:
+        """A note for XML that only newer versions of the engine refuse: how to say that an older one runs.
+
+        Args:
+            accepts: whether a version accepts it.
+        """
+        older = [version for version in self.project.engines if accepts(version)]
+        if not older or self.project.pinned or not self.is_xml:
+            return ()
+        return (f'{older[-1]} accepts it: if you run that, set `engine = "{older[-1]}"` in btq.toml',)
 
     def script(self, text: str) -> Script:
         """A parsed script; several checks need each."""

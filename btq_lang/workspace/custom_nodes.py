@@ -39,13 +39,15 @@ class CustomNode:
     Attributes:
         stated_category: the category that a use names, if any does.
         children: the largest number in a use.
+        uses: how many there are.
     """
 
-    __slots__ = ("_values", "children", "stated_category")
+    __slots__ = ("_values", "children", "stated_category", "uses")
 
     def __init__(self, uses: Iterable[tuple[Node, str | None]] = ()) -> None:
         self.stated_category: str | None = None
         self.children = 0
+        self.uses = 0
         self._values: Final[dict[str, dict[str, Word]]] = {}  # by port and text
         for use, category in uses:
             self.add(use, category)
@@ -62,6 +64,7 @@ class CustomNode:
 
     def add(self, use: Node, category: str | None) -> None:
         """Add what a use tells, with its category, if the use names it."""
+        self.uses += 1
         self.stated_category = self.stated_category or category
         self.children = max(self.children, len(use.children))
         for pair in use.attributes:

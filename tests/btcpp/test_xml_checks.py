@@ -11,6 +11,7 @@ from btq_lang.btcpp.export import export
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import File
 from btq_lang.workspace.workspace import Workspace
@@ -145,7 +146,10 @@ def test_what_can_be_no_tag_is_refused_directly_below_a_reactive_sequence() -> N
         assert found(node) == []  # a forbidden tag is reported as such
     xml = '<root BTCPP_format="4"><BehaviorTree ID="T"><ReactiveSequence><Action ID="3d scan"/></ReactiveSequence>'
     (told,) = [each for each in problems(f"{xml}</BehaviorTree></root>") if each.rule == "explicit-in-reactive"]
-    assert told.notes == ("its message `Unknown node type: Action` refers to the tag: put it in a Sequence of its own",)
+    assert told.notes == (
+        "its message `Unknown node type: Action` refers to the tag: put it in a Sequence of its own",
+        '4.6 accepts it: if you run that, set `engine = "4.6"` in btq.toml',
+    )
 
 
 def test_files_of_any_name_that_begin_like_xml_are_xml() -> None:
@@ -193,6 +197,10 @@ def test_notes_on_xml_speak_of_xml() -> None:
     new = problems(OLD.replace("<root>", '<root BTCPP_format="4">'))
     assert [(each.rule, each.notes) for each in new] == [main, ("not-an-engine-node", (why,)), node]
 
+    choice = '<Fallback><Sequence><Condition ID="Low"/><Charge/></Sequence><Drive/></Fallback>'
+    (found,) = problems(f'<root BTCPP_format="4"><BehaviorTree ID="Main">{choice}</BehaviorTree></root>')
+    assert found.notes[0].startswith("`Fallback` resumes the running child; `<ReactiveFallback>` starts with the first")
+
 
 def problems(xml: str) -> tuple[Diagnostic, ...]:
     return check(workspace_of({"a.xml": xml}), "a.xml")
@@ -200,3 +208,73 @@ def problems(xml: str) -> tuple[Diagnostic, ...]:
 
 def assert_clean_xml(xml: str) -> None:
     assert [(each.rule, each.message) for each in problems(xml)] == []
+
+
+def test_what_only_newer_engines_refuse_says_how_to_name_an_older_one() -> None:
+    text = """
+        <root BTCPP_format="4" main_tree_to_execute="Fetch it">
+          <BehaviorTree ID="Fetch it">
+            <Sequence>
+              <SubTree ID="Dock" name="a"/>
+              <SubTree ID="Dock" name="a"/>
+              <SubTree ID="Dock" name=""/>
+            </Sequence>
+          </BehaviorTree>
+          <BehaviorTree ID="Dock">
+            <ReactiveSequence><Action ID="Go"/></ReactiveSequence>
+          </BehaviorTree>
+        </root>"""
+    workspace = workspace_of({"main.xml": text.strip()})
+    older = '4.6 accepts it: if you run that, set `engine = "4.6"` in btq.toml'
+    assert [(each.rule, older in each.notes) for each in check(workspace, "main.xml")] == [
+        ("forbidden-name", True),
+        ("duplicate-instance-name", True),
+        ("forbidden-name", True),
+        ("explicit-in-reactive", True),
+    ]
+    pinned = workspace.with_project(Project(engines=("4.6",)))
+    assert [(each.rule, each.effective_severity) for each in check(pinned, "main.xml")] == [
+        ("duplicate-instance-name", Severity.HINT)
+    ]
+
+
+def test_of_models_that_differ_no_port_is_unknown() -> None:
+    assert_problems(
+        """
+        //- main.xml
+        <root BTCPP_format="4">
+          <include path="a.xml"/>
+          <include path="b.xml"/>
+          <BehaviorTree ID="Main">
+            <Sequence><Go goal="1" speed="1"/><Go goal="1" sped="1"/></Sequence>
+          </BehaviorTree>
+        </root>
+        //- a.xml
+        <root BTCPP_format="4"><TreeNodesModel>
+          <Action ID="Go"><input_port name="goal"/></Action>
+        </TreeNodesModel></root>
+        //- b.xml
+        <root BTCPP_format="4"><TreeNodesModel>
+          <Action ID="Go"><input_port name="goal"/><input_port name="speed"/></Action>
+        </TreeNodesModel></root>
+        """,
+        "main.xml:3:18 warning duplicate-definition «b.xml» this file includes a second definition of the node model "
+        "`Go`",
+        "main.xml:5:52 error unknown-port «sped» `Go` has no port `sped`; did you mean `speed`?",
+    )
+
+
+def test_an_input_that_no_node_of_its_kind_has_is_optional_in_xml() -> None:
+    text = """
+        //- main.xml
+        <root BTCPP_format="4">
+          <BehaviorTree ID="Main"><Sequence>{}</Sequence></BehaviorTree>
+          <TreeNodesModel>
+            <Action ID="Go"><input_port name="goal"/><input_port name="server"/></Action>
+          </TreeNodesModel>
+        </root>
+        """
+    told = "2:38 warning missing-port «Go» `Go` requires {}"
+    assert_problems(text.format("<Go/>"), told.format("values for its ports `goal` and `server`"))
+    assert_problems(text.format('<Go/><Go goal="1"/>'), told.format("a value for its port `goal`"))
+    assert_problems(text.format("<Go/><Go/>"))

@@ -38,7 +38,7 @@ def test_trees_are_known_whatever_the_order_and_the_language() -> None:
     assert problems(factory("b.btq: BehaviorTree Dock\n    AlwaysSuccess\n", MAIN)) == []
     assert problems(factory("b.btq: BehaviorTree Main\n    SubTree Dock\n", "a.xml: " + tree("Dock"))) == []
     assert problems(factory(MAIN, "b.xml: " + tree("Undock"))) == [
-        "a.xml: unknown-tree: unknown tree `Dock`; neither this file nor its includes define it"
+        "a.xml: unknown-tree: unknown tree `Dock`; no file of its factory defines it"
     ]
 
 
@@ -76,7 +76,7 @@ def test_ports_and_models_of_other_files_count() -> None:
 
 def test_of_the_files_of_nodes_only_models_count() -> None:
     palette = "p.xml: " + tree("Dock") + '<TreeNodesModel><Action ID="Go"/></TreeNodesModel>'
-    found = "a.xml: unknown-tree: unknown tree `Dock`; neither this file nor its includes define it"
+    found = "a.xml: unknown-tree: unknown tree `Dock`; no file of its factory defines it"
     assert problems(factory(MAIN, palette, nodes=("p.xml",))) == [found]
     assert problems(factory("a.xml: " + tree("Dock"), palette, nodes=("p.xml",))) == []
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check, check_each
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
 
@@ -29,26 +30,28 @@ def problems(workspace: Workspace, path: str = "p/a.xml") -> list[str]:
 
 
 MAIN = "p/a.xml: " + tree("Main", '<SubTree ID="Dock"/>')
-UNKNOWN = "unknown-tree: unknown tree `Dock`; neither this file nor its includes define it"
+UNKNOWN = "unknown-tree: unknown tree `Dock`; {}"
+HERE = UNKNOWN.format("neither this file nor its includes define it")
+NOWHERE = UNKNOWN.format("no file of the project defines it")
 
 
 def test_a_tree_of_the_folder_or_the_project_is_known() -> None:
-    assert problems(pool(MAIN)) == [UNKNOWN]
+    assert problems(pool(MAIN)) == [NOWHERE]
     assert problems(pool(MAIN, "p/b.xml: " + tree("Dock"))) == []
     assert problems(pool(MAIN, "p/sub/b.xml: " + tree("Dock"))) == []
     assert problems(pool(MAIN, "p/sub/b.btq: BehaviorTree Dock\n    AlwaysSuccess\n")) == []
-    assert problems(pool(MAIN, "q/b.xml: " + tree("Dock"))) == [UNKNOWN]  # another project
+    assert problems(pool(MAIN, "q/b.xml: " + tree("Dock"))) == [NOWHERE]  # another project
 
 
 def test_the_innermost_pool_counts() -> None:
     files = (MAIN, "p/b.xml: " + tree("Dock"), "p/sub/a.xml: " + tree("Main", '<SubTree ID="Dock"/>'))
-    assert problems(pool(*files, pools=("p", "p/sub")), "p/sub/a.xml") == [UNKNOWN]
+    assert problems(pool(*files, pools=("p", "p/sub")), "p/sub/a.xml") == [NOWHERE]
     assert problems(pool(*files, pools=("p",)), "p/sub/a.xml") == []
 
 
 def test_a_mission_in_this_language_has_no_pool() -> None:
     workspace = pool("p/a.btq: BehaviorTree Main\n    SubTree Dock\n", "p/b.xml: " + tree("Dock"))
-    assert problems(workspace, "p/a.btq") == [UNKNOWN]
+    assert problems(workspace, "p/a.btq") == [HERE]
 
 
 PORTS = '<SubTree ID="Dock" x="1"/>'
@@ -107,3 +110,15 @@ def test_public_files_find_their_trees_in_one_folder_and_not_alone(shared: Path)
         alone += sum(each.rule == "unknown-tree" for each in by_itself)
         assert {each.rule for each in by_itself} - {each.rule for each in found} <= {"unknown-tree", "unknown-node"}
     assert alone == 415
+
+
+def test_a_model_of_the_pool_may_be_one_of_another_program() -> None:
+    main = "p/a.xml: " + tree("Main", '<Sequence><Go/><Go goal="1"/><Go gaol="1"/></Sequence>')
+    found = check(pool(main, "p/b.xml: " + model("goal")), "p/a.xml")
+    assert [(each.rule, each.effective_severity) for each in found] == [("unknown-port", Severity.WARNING)]
+    included = main.replace("a.xml: ", 'a.xml: <include path="b.xml"/>')
+    found = check(pool(included, "p/b.xml: " + model("goal")), "p/a.xml")
+    assert [(each.rule, each.effective_severity) for each in found] == [
+        ("missing-port", Severity.WARNING),
+        ("unknown-port", Severity.ERROR),
+    ]

@@ -258,7 +258,7 @@ def test_xml_is_checked_and_shown_as_it_stands(btq: Run, tmp_path: Path) -> None
     (tmp_path / "tree.xml").write_text(XML)
     done = btq("check", "--fix", "tree.xml")
     assert done.stdout == (
-        "error[unknown-tree]: unknown tree `Pick`; neither this file nor its includes define it\n"
+        "error[unknown-tree]: unknown tree `Pick`; no file of the project defines it\n"
         " --> tree.xml:3:18\n"
         "  |\n"
         '2 |   <BehaviorTree ID="Main">\n'

@@ -12,7 +12,8 @@ Write = Callable[..., None]
 
 MAIN = '<root BTCPP_format="4"><BehaviorTree ID="Main"><SubTree ID="Dock"/></BehaviorTree></root>\n'
 DOCK = '<root BTCPP_format="4"><BehaviorTree ID="Dock"><AlwaysSuccess/></BehaviorTree></root>\n'
-UNKNOWN = "unknown tree `Dock`; neither this file nor its includes define it"
+UNKNOWN = "unknown tree `Dock`; no file of its factory defines it"
+ELSEWHERE = "unknown tree `Dock`; neither this file nor its includes define it"
 
 
 @pytest.fixture
@@ -37,7 +38,7 @@ def test_files_of_a_factory_see_each_other(tmp_path: Path, write: Write) -> None
     write("trees/main.xml", MAIN)
     write("lib/deep/dock.btq", "BehaviorTree Dock\n    AlwaysSuccess\n")
     write("other.btq", "BehaviorTree Other\n    SubTree Dock\n")  # a factory of its own
-    assert check(tmp_path) == [f"other.btq:2:13: error[unknown-tree] {UNKNOWN}"]
+    assert check(tmp_path) == [f"other.btq:2:13: error[unknown-tree] {ELSEWHERE}"]
     assert check(tmp_path, "trees") == []
     assert check(tmp_path, "lib/deep/dock.btq") == []
     write("trees/a.xml", DOCK)
@@ -67,7 +68,7 @@ def test_built_xml_stands_for_its_mission(tmp_path: Path, write: Write) -> None:
     write("main.btq", "BehaviorTree Main\n    SubTree Dock\n")
     write("dock.xml", DOCK)
     write("package.xml", "<package/>\n")
-    assert check(tmp_path, "main.btq") == [f"main.btq:2:13: error[unknown-tree] {UNKNOWN}"]  # nothing is built
+    assert check(tmp_path, "main.btq") == [f"main.btq:2:13: error[unknown-tree] {ELSEWHERE}"]  # nothing is built
     write("btq.toml", '[[factory]]\nname = "nav"\nload = ["main.btq", "*.xml"]\nmain = "Main"\n')
     assert run_btq("build", "main.btq", cwd=tmp_path)[:2] == (0, "wrote main.xml\n")
     write("btq.toml", '[[factory]]\nname = "nav"\nload = ["*.xml"]\nmain = "Main"\n')
