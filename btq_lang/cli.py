@@ -1,4 +1,4 @@
-"""The command line: `btq check`, `format`, `build`, `import`, `trace`, `graph`, `explain`, `schema`, `init` and others.
+"""The command line: `btq check`, `format`, `build`, `import`, `trace`, `graph`, `nodes`, `explain`, and others.
 
 Exit codes of all commands: 0 clean, 1 findings, 2 usage or I/O. It parses arguments, calls pure functions and prints
 their results.  A command imports what it needs when it runs, because most runs are a `btq check`.

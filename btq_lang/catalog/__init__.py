@@ -2,7 +2,7 @@
 
 nodes       look-up of node kinds; `kinds` holds the records, `engine_nodes` and `words` the rows
 attributes  attributes that are not ports: pre- and post-conditions, and those of tools
-names       which names the engine refuses
+names       which names the engine refuses; `cpp_classes`, its base classes in C++
 literals    what the engine reads from a literal
 qualities   look-up of quality names; `quality_model` and `quality_words` hold the rows
 units       which words are units, and how values convert; used by the lexer

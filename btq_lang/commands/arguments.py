@@ -45,6 +45,7 @@ def build_parser() -> Parser:
     _add_preview(commands)
     _add_diff(commands)
     _add_explain(commands)
+    _add_nodes(commands)
     _add_schema(commands)
     _add_init(commands)
     _add_completion(commands)
@@ -351,6 +352,23 @@ def _add_explain(commands: _SubParsersAction[Parser]) -> None:
     )
     parser.add_argument("subject", nargs="*", metavar="RULE|NODE|QUALITY|WORD", help="default: list them all")
     _add_color(parser)
+
+
+def _add_nodes(commands: _SubParsersAction[Parser]) -> None:
+    parser = _command(
+        commands,
+        "nodes",
+        "write the nodes that C++ sources register, with their ports, as models or as a page",
+        epilog="exit codes: 0 written; 1 written, with remarks on the sources; 2 usage, I/O, no btq-lang[cpp]\n\n"
+        "examples:\n  btq nodes src -o nodes.btq                models to include in missions\n"
+        "  btq nodes src --format xml -o nodes.xml   a palette for Groot\n"
+        "  btq nodes src include -o nodes.html       a page for people\n",
+    )
+    parser.add_argument("paths", nargs="+", metavar="SRC", help="C++ files and folders")
+    parser.add_argument(
+        "--format", choices=("btq", "xml", "html"), help="default: by the suffix of the -o file, else btq"
+    )
+    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 
 def _add_schema(commands: _SubParsersAction[Parser]) -> None:

@@ -23,6 +23,7 @@ ROWS = (
     ("catalog",),
     ("diagnostics",),
     ("syntax",),
+    ("cpp",),
     ("lexer",),
     ("grammar",),
     ("parser",),
@@ -44,7 +45,13 @@ ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
 READS_THE_DISK = {"workspace/loader.py", "diagnostics/rules/__init__.py", "preview/__init__.py"}
 READS_LOGS = "evidence/readers/"
 # Which rooms know a package of others.
-ONLY_IN = {"lxml": {"btcpp"}, "pygls": {"lsp", "server"}, "lsprotocol": {"lsp", "server"}}
+ONLY_IN = {
+    "lxml": {"btcpp"},
+    "pygls": {"lsp", "server"},
+    "lsprotocol": {"lsp", "server"},
+    "tree_sitter": {"cpp"},
+    "tree_sitter_cpp": {"cpp"},
+}
 
 
 def module_name(path: Path) -> str:

@@ -145,6 +145,11 @@ def environment(tmp_path: Path) -> dict[str, str]:
 def test_a_shell_block_runs(block: str, clone: Path, environment: dict[str, str], tmp_path: Path) -> None:
     if "btq verify" in block:
         _write_logs(clone)
+    if "btq nodes" in block:
+        pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
+        for folder in ("src", "include"):
+            (clone / folder).mkdir()
+            (clone / folder / "skills.cpp").write_text('void f() { factory.registerSimpleAction("Dock", dock); }')
     if "btq import" in block:
         xml = '<root BTCPP_format="4"><BehaviorTree ID="Main"><Dock/></BehaviorTree></root>'
         (clone / "trees").mkdir()

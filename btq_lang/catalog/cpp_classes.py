@@ -1,0 +1,89 @@
+"""The base classes of BehaviorTree.CPP and of the libraries around it, with the category of what derives from them.
+
+One invariant: a class is here only if its category is the same in all versions.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import Category
+
+# The engine's own; `TAGS` has those that are nodes with ports.
+ENGINE: Final[dict[str, Category]] = {
+    **dict.fromkeys(
+        (
+            "ActionNodeBase",
+            "SyncActionNode",
+            "AsyncActionNode",
+            "ThreadedAction",
+            "StatefulActionNode",
+            "CoroActionNode",
+            "SimpleActionNode",
+            "ActionNode",
+        ),
+        "Action",
+    ),
+    **dict.fromkeys(("ConditionNode", "SimpleConditionNode"), "Condition"),
+    **dict.fromkeys(
+        (
+            "ControlNode",
+            "SequenceNode",
+            "SequenceWithMemory",
+            "SequenceStarNode",
+            "ReactiveSequence",
+            "FallbackNode",
+            "ReactiveFallback",
+            "IfThenElseNode",
+            "WhileDoElseNode",
+            "ParallelNode",
+            "ParallelAllNode",
+            "SwitchNode",
+            "ManualSelectorNode",
+        ),
+        "Control",
+    ),
+    **dict.fromkeys(
+        (
+            "DecoratorNode",
+            "SimpleDecoratorNode",
+            "InverterNode",
+            "ForceSuccessNode",
+            "ForceFailureNode",
+            "KeepRunningUntilFailureNode",
+            "RepeatNode",
+            "RetryNode",
+            "TimeoutNode",
+            "DelayNode",
+            "RunOnceNode",
+            "LoopNode",
+        ),
+        "Decorator",
+    ),
+}
+TAGS: Final = {
+    "ParallelNode": "Parallel",
+    "ParallelAllNode": "ParallelAll",
+    "RepeatNode": "Repeat",
+    "RetryNode": "RetryUntilSuccessful",
+    "TimeoutNode": "Timeout",
+    "DelayNode": "Delay",
+    "RunOnceNode": "RunOnce",
+    "LoopNode": "LoopString",
+}
+# Of behaviortree_ros2 and nav2_behavior_tree; they have ports, which differ from version to version.
+LIBRARIES: Final[dict[str, Category]] = {
+    **dict.fromkeys(
+        (
+            "RosActionNode",
+            "RosServiceNode",
+            "RosTopicPubNode",
+            "BtActionNode",
+            "BtCancelActionNode",
+            "BtServiceNode",
+        ),
+        "Action",
+    ),
+    "RosTopicSubNode": "Condition",
+}

@@ -1,0 +1,95 @@
+"""`btq nodes`: the nodes that C++ sources register, as models or as a page."""
+
+from __future__ import annotations
+
+import os
+import sys
+from argparse import Namespace
+from collections.abc import Iterator
+
+from btq_lang.commands.output import write_output
+from btq_lang.cpp.grammar import GrammarMissing
+from btq_lang.cpp.model import CppNodes
+from btq_lang.cpp.nodes import read_nodes
+from btq_lang.trace.wording import counted
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.loader import LoadProblem, absolute, collect, head, read, shown
+
+FORMATS = ("btq", "xml", "html")
+
+
+def run(options: Namespace) -> int:
+    """Write the nodes, and say on standard error what cannot be seen or is wrong."""
+    form = options.format or os.path.splitext(options.output or "")[1].lower().removeprefix(".") or FORMATS[0]
+    files, problems = _texts(options.paths)
+    if form not in FORMATS:
+        problems.append(f"btq nodes: cannot write {options.output}; choose one of {', '.join(FORMATS)} with --format")
+    elif form != "html" and options.output and not _is_ours(options.output):
+        problems.append(f"btq nodes: {options.output} exists, and btq nodes did not make it; choose another file name")
+    elif not files and not problems:
+        problems.append(f"btq nodes: no C++ file below {', '.join(options.paths)}")
+    for problem in problems:
+        print(problem, file=sys.stderr)
+    if problems:
+        return 2
+    try:
+        found = read_nodes(files)
+    except GrammarMissing:
+        print("btq nodes: C++ is read with tree-sitter; install it with pip install 'btq-lang[cpp]'", file=sys.stderr)
+        return 2
+    sources = " ".join(options.paths)
+    if code := write_output("nodes", options.output, _written(found, form, sources)):
+        return code
+    remarks = list(_remarks(found))
+    for remark in remarks:
+        print(remark, file=sys.stderr)
+    ports = sum(len(node.ports) for node in found.nodes)
+    counts = counted(len(found.nodes), "node"), counted(ports, "port"), counted(len(files), "file")
+    print("{} with {} in {}".format(*counts), file=sys.stderr)
+    return int(bool(remarks))
+
+
+def _texts(paths: list[str]) -> tuple[dict[str, str], list[str]]:
+    """The C++ files below some paths, as they are shown, and what cannot be read."""
+    found, unreachable = collect(paths, Project(), _SUFFIXES)
+    problems: list[LoadProblem] = list(unreachable)
+    texts = {}
+    for path in found:
+        text, problem = read(path)
+        if text is not None:  # bytes that are not UTF-8 are mostly in comments
+            texts[shown(path)] = text
+        elif problem is not None:
+            problems.append(problem)
+    return texts, [f"btq: {problem}" for problem in problems]
+
+
+def _is_ours(path: str) -> bool:
+    from btq_lang.commands.node_writers import MADE_BY
+
+    target = absolute(path)
+    return path == "-" or not os.path.lexists(target) or MADE_BY in head(target)
+
+
+def _written(found: CppNodes, form: str, sources: str) -> str:
+    if form == "html":
+        from btq_lang.commands.node_page import as_html
+
+        return as_html(found, sources)
+    from btq_lang.commands.node_writers import as_btq, as_xml
+
+    return (as_btq if form == "btq" else as_xml)(found.nodes, sources)
+
+
+def _remarks(found: CppNodes) -> Iterator[str]:
+    """What cannot be seen, and what the code does that its ports do not say, a line each."""
+    for each in found.unseen:
+        yield f"{each.place}: {each.message}"
+    for node in found.nodes:
+        for port in node.unread:
+            yield f"{port.place}: `{node.name}` provides the port `{port.name}`, but its code never names it"
+        for use in node.undeclared:
+            does = "writes" if use.writes else "reads"
+            yield f"{use.place}: `{node.name}` {does} the port `{use.port}`, which it does not provide"
+
+
+_SUFFIXES = (".cpp", ".hpp", ".h", ".cc", ".hh", ".cxx", ".hxx", ".ipp", ".tpp")

@@ -1,0 +1,140 @@
+"""The C++ grammar of tree-sitter, and small questions to the nodes of its trees.
+
+One invariant: no other module imports tree-sitter, and this one only when a text is parsed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from typing import TYPE_CHECKING, Any, Final
+
+from btq_lang.cpp.model import Place
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+
+class GrammarMissing(Exception):
+    """tree-sitter or its C++ grammar is not installed."""
+
+
+def parse(text: str) -> Node:
+    """The syntax tree of a C++ file; it exists for every text.
+
+    Raises:
+        GrammarMissing: the extra is not installed.
+    """
+    # A macro between `class` and its name, which exports it, is not C++ before the preprocessor has run.
+    plain = _EXPORTED.sub(lambda match: match[1] + " " * len(match[2]), text)
+    root: Node = _parser().parse(plain.encode("utf-8", "replace")).root_node
+    return root
+
+
+@cache
+def _parser() -> Any:
+    try:
+        from tree_sitter import Language, Parser
+        from tree_sitter_cpp import language
+    except ImportError as error:
+        raise GrammarMissing from error
+    return Parser(Language(language()))
+
+
+def place_of(path: str, node: Node) -> Place:
+    """Where a node begins."""
+    row, column = node.start_point
+    return Place(path, row + 1, column + 1)
+
+
+def text_of(node: Node | None) -> str:
+    """The source of a node, blanks and comments as they are."""
+    return "" if node is None or node.text is None else node.text.decode("utf-8", "replace")
+
+
+def walk(node: Node, outside: frozenset[str] = frozenset()) -> Iterator[Node]:
+    """A node and all below it, in order; what is inside of nodes of some types is left out."""
+    stack = [node]
+    while stack:
+        node = stack.pop()
+        yield node
+        if node.type not in outside:
+            stack.extend(reversed(node.named_children))
+
+
+def errors(node: Node) -> Iterator[Node]:
+    """What the grammar cannot read, and what it misses."""
+    if node.is_error or node.is_missing:
+        yield node
+    elif node.has_error:
+        for each in node.children:
+            yield from errors(each)
+
+
+def field(node: Node, name: str) -> Node | None:
+    """The child of a name."""
+    return node.child_by_field_name(name)
+
+
+def contents(node: Node | None) -> list[Node]:
+    """The children that mean something."""
+    return [] if node is None else [each for each in node.named_children if each.type != "comment"]
+
+
+def arguments(call: Node) -> list[Node]:
+    """What a call passes."""
+    return contents(field(call, "arguments"))
+
+
+def callee(call: Node) -> tuple[str, str, list[str]]:
+    """What a call names: the scope before the name, the name, and the arguments of a template."""
+    return named(field(call, "function"))
+
+
+def named(node: Node | None) -> tuple[str, str, list[str]]:
+    """The scope, the name and the template's arguments of an expression or a type that names something."""
+    scopes: list[str] = []
+    templates: list[str] = []
+    while node is not None:
+        if node.type == "qualified_identifier":
+            scopes.append(text_of(field(node, "scope")))
+            node = field(node, "name")
+        elif node.type == "dependent_name":
+            node = contents(node)[0]
+        elif node.type == "field_expression":
+            node = field(node, "field")
+        elif node.type in ("template_function", "template_method", "template_type"):
+            templates = [text_of(each) for each in contents(field(node, "arguments"))]
+            node = field(node, "name")
+        else:
+            return "::".join(scopes), text_of(node), templates
+    return "", "", []
+
+
+def literal(node: Node | None) -> str | None:
+    """The string that a literal, or several in a row, are; None for anything else."""
+    if node is None:
+        return None
+    if node.type == "concatenated_string":
+        parts = [literal(each) for each in contents(node)]
+        return None if None in parts else "".join(each or "" for each in parts)
+    if node.type == "user_defined_literal":
+        return literal(node.named_children[0])
+    if node.type == "raw_string_literal":
+        return "".join(text_of(each) for each in node.named_children if each.type == "raw_string_content")
+    if node.type != "string_literal":
+        return None
+    return "".join(_ESCAPED.get(text_of(each), text_of(each)) for each in node.named_children)
+
+
+def enclosing(node: Node, kinds: tuple[str, ...]) -> Node | None:
+    """The innermost node of some types around another."""
+    around = node.parent
+    while around is not None and around.type not in kinds:
+        around = around.parent
+    return around
+
+
+_EXPORTED: Final = re.compile(r"(\b(?:class|struct)\s+)([A-Z][A-Z0-9_]+)(?=\s+[A-Za-z_]\w*\s*(?:final\s*)?[:{])")
+_ESCAPED: Final = {"\\n": "\n", "\\t": "\t", '\\"': '"', "\\'": "'", "\\\\": "\\"}

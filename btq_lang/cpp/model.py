@@ -1,0 +1,101 @@
+"""What C++ sources say of nodes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from btq_lang.util.record import Record
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import Category, Direction
+
+
+class Place(Record):
+    """A place in a file; line and column count from 1."""
+
+    path: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        return f"{self.path}:{self.line}:{self.column}"
+
+
+class CppPort(Record):
+    """A port that a class provides.
+
+    Attributes:
+        type: as it is written; empty if it takes anything.
+        default: the value that the engine takes if none is given; None: none.  Empty if it is an expression.
+        written: the default as it is written.
+        text: its description.
+    """
+
+    name: str
+    direction: Direction
+    type: str
+    default: str | None
+    written: str
+    text: str
+    place: Place
+
+
+class Use(Record):
+    """A place where the code of a node reads or writes a port.
+
+    Attributes:
+        without: what happens if the port is not given: "fails", "goes on" with something else, "ignores" that (a
+            variable stays as it is), or empty if that cannot be seen.
+        falls_back: whether a function reads it that knows what to take instead, such as an entry of that name.
+    """
+
+    port: str
+    writes: bool
+    without: str
+    place: Place
+    falls_back: bool = False
+
+
+class CppNode(Record):
+    """A node that the sources register.
+
+    Attributes:
+        name: its ID.
+        class_name: empty for a function.
+        place: of the registration.
+        class_place: of the class, else of the registration.
+        ports: in order.
+        complete: whether these are all of its ports.
+        unread: ports that its code never names.
+        undeclared: reads and writes of ports that it does not provide.
+        without: what its code does without an input that has no default: see `Use.without`.
+    """
+
+    name: str
+    category: Category
+    class_name: str
+    place: Place
+    class_place: Place
+    ports: tuple[CppPort, ...]
+    complete: bool = True
+    unread: tuple[CppPort, ...] = ()
+    undeclared: tuple[Use, ...] = ()
+    without: tuple[tuple[str, str], ...] = ()
+
+    def goes_on_without(self, port: CppPort) -> bool:
+        """Whether the code is seen to go on if an input is not given."""
+        return dict(self.without).get(port.name) == "goes on"
+
+
+class Unseen(Record):
+    """What cannot be read from the sources."""
+
+    message: str
+    place: Place
+
+
+class CppNodes(Record):
+    """All nodes of some sources, sorted by name, and what is not seen in them."""
+
+    nodes: tuple[CppNode, ...]
+    unseen: tuple[Unseen, ...]

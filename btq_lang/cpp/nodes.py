@@ -1,0 +1,173 @@
+"""The nodes that C++ sources register.
+
+One invariant: a node whose ID or category cannot be seen is left out and reported.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.cpp.grammar import arguments, callee, enclosing, place_of, text_of, walk
+from btq_lang.cpp.model import CppNode, CppNodes, Place
+from btq_lang.cpp.ports import Body, PortsReader, Provided
+from btq_lang.cpp.source import Call
+from btq_lang.cpp.sources import Sources
+from btq_lang.cpp.uses import Uses
+from btq_lang.cpp.values import string
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+    from btq_lang.catalog.kinds import Category
+
+
+def read_nodes(files: Mapping[str, str]) -> CppNodes:
+    """The nodes that some files register; files: texts by path.
+
+    Raises:
+        GrammarMissing: tree-sitter is not installed.
+    """
+    reader = _Reader(Sources(files))
+    nodes: dict[str, CppNode] = {}
+    for source in reader.sources.files.values():
+        for call in source.calls:
+            node = reader.node(call)
+            if node is None:
+                continue
+            first = nodes.setdefault(node.name, node)
+            if (first.class_name, first.ports) != (node.class_name, node.ports):
+                reader.sources.report(f"`{node.name}` is also registered at {first.place}, as another node", node.place)
+    unseen = sorted(reader.sources.unseen, key=lambda each: (each.place.path, each.place.line, each.message))
+    return CppNodes(tuple(nodes[name] for name in sorted(nodes)), tuple(unseen))
+
+
+class _Reader:
+    def __init__(self, sources: Sources) -> None:
+        self.sources: Final = sources
+        self._ports: Final = PortsReader(sources)
+
+    def node(self, call: Call) -> CppNode | None:
+        """The node that a call registers; None if it registers none, or none that can be seen."""
+        given = arguments(call.node)
+        if _OTHERS(call.name) or not given or _is_of_template(call):
+            return None
+        body = self._ports.before(call.node, call.scope, call.path)
+        if call.name in _SIMPLE:
+            return self._simple(call, body, given)
+        if call.name == "registerBuilder" and not call.types:
+            return self._manifest(call, body, given[0])
+        if call.name == "CreateRosNodePlugin" and len(given) == 2:
+            return self._class(call, body, text_of(given[0]), given[1], None)
+        if not call.types:
+            return None
+        if call.name in _ENGINES:
+            ports = given[1] if call.name == "registerNodeType" and len(given) > 1 else None
+            return self._class(call, body, call.types[0], given[0], ports)
+        named = next((each for each in given if string(self.sources, each, body.frame) is not None), None)
+        return self._class(call, body, call.types[0], named, None) if named is not None else None
+
+    def _simple(self, call: Call, body: Body, given: list[Node]) -> CppNode | None:
+        """`registerSimpleAction("Name", function, ports)`"""
+        if (name := self._name(call, body, given[0])) is None:
+            return None
+        provided: Provided | None = Provided((), True)
+        if len(given) > 2 and (provided := self._ports.of_argument(given[2], body)) is None:
+            self._report(call, f"it cannot be seen which ports `{name}` has: `{text_of(given[2])}`")
+        place = place_of(call.path, call.node)
+        return _node(name, _SIMPLE[call.name], "", place, place, provided)
+
+    def _manifest(self, call: Call, body: Body, manifest: Node) -> CppNode | None:
+        """`registerBuilder(CreateManifest<T>("Name", ports), builder)`"""
+        if manifest.type == "call_expression":
+            _, name, types = callee(manifest)
+            given = arguments(manifest)
+            if name == "CreateManifest" and types and given:
+                return self._class(call, body, types[0], given[0], given[1] if len(given) > 1 else None)
+        self._report(call, f"it cannot be seen which node this registers: `{text_of(manifest)}`")
+        return None
+
+    def _class(self, call: Call, body: Body, type_: str, named: Node, ports: Node | None) -> CppNode | None:
+        """A class under a name; ports: the argument that may be its ports."""
+        if (name := self._name(call, body, named)) is None:
+            return None
+        place = place_of(call.path, call.node)
+        bound = self.sources.find(type_, call.scope, call.path, place)
+        if bound.class_ is None:
+            self._report(call, f"the class `{type_}` of the node `{name}` is not in the sources")
+            return None
+        category = self.sources.category(bound)
+        if category is None:
+            bases = ", ".join(f"`{each.name}`" for each in self.sources.ancestry(bound) if each.class_ is None)
+            bases = bases or "a base class"
+            self._report(call, f"the category of `{name}` cannot be seen: {bases} is not in the sources")
+            return None
+        provided = self._ports.of_argument(ports, body) if ports is not None and _may_be_ports(ports, body) else None
+        if provided is None:
+            provided = self._ports.of_class(bound, place)
+        class_place = place_of(bound.class_.path, bound.class_.node)
+        return _node(name, category, bound.class_.name, place, class_place, provided, Uses(self.sources, bound))
+
+    def _name(self, call: Call, body: Body, node: Node) -> str | None:
+        name = string(self.sources, node, body.frame)
+        if name is None:
+            self._report(call, f"the name of this node is an expression: `{text_of(node)}`")
+        return name
+
+    def _report(self, call: Call, message: str) -> None:
+        self.sources.report(message, place_of(call.path, call.node))
+
+
+def _node(
+    name: str,
+    category: Category,
+    class_name: str,
+    place: Place,
+    class_place: Place,
+    provided: Provided | None,
+    uses: Uses | None = None,
+) -> CppNode:
+    ports, complete = (provided.ports, provided.complete) if provided is not None else ((), False)
+    if uses is None:
+        return CppNode(name, category, class_name, place, class_place, ports, complete)
+    return CppNode(
+        name,
+        category,
+        class_name,
+        place,
+        class_place,
+        ports,
+        complete,
+        uses.unread(ports),
+        uses.undeclared(ports) if complete else (),
+        tuple((each.name, uses.without(each)) for each in ports if each.direction != "output" and each.default is None),
+    )
+
+
+def _may_be_ports(node: Node, body: Body) -> bool:
+    """Whether an argument may be a list of ports, and not one for the constructor."""
+    return node.type != "identifier" or text_of(node) in body.lists
+
+
+def _is_of_template(call: Call) -> bool:
+    """Whether a call is in a template that registers what it is given."""
+    around = enclosing(call.node, ("template_declaration",))
+    while around is not None:
+        names = {text_of(each) for each in walk(around) if each.type == "type_parameter_declaration"}
+        own = {each.split()[-1] for each in names if each}
+        if own.intersection(call.types) or (not call.types and own and call.name == "registerBuilder"):
+            return True
+        around = enclosing(around, ("template_declaration",))
+    return False
+
+
+_SIMPLE: Final[dict[str, Category]] = {
+    "registerSimpleAction": "Action",
+    "registerSimpleCondition": "Condition",
+    "registerSimpleDecorator": "Decorator",
+}
+_ENGINES: Final = ("registerNodeType", "registerBuilder")
+_OTHERS: Final = re.compile(
+    r"register(BehaviorTreeFrom\w+|From\w*Plugins?|ScriptingEnums?|PolymorphicCast)|RegisterJsonDefinition"
+).fullmatch

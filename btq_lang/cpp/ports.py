@@ -1,0 +1,351 @@
+"""What `providedPorts()` returns: lists in braces, helpers that add to a list, variables that are filled, base classes.
+
+One invariant: as in a `std::unordered_map`, the first of two entries with one name counts, unless `[]` or
+`insert_or_assign` sets it.  What is not understood is reported, and the ports then count as not complete.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+from btq_lang.catalog.cpp_classes import ENGINE, TAGS
+from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.cpp.grammar import arguments, callee, contents, enclosing, field, named, place_of, text_of, walk
+from btq_lang.cpp.model import CppPort, Place
+from btq_lang.cpp.source import REGISTERS
+from btq_lang.cpp.sources import Bound, Sources
+from btq_lang.cpp.type_names import substituted
+from btq_lang.cpp.values import Frame, default, string, type_of
+from btq_lang.util.record import Record
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+    from btq_lang.catalog.kinds import Direction
+
+    Ports: TypeAlias = dict[str, CppPort]
+
+
+class Provided(Record):
+    """The ports of a class, and whether these are all."""
+
+    ports: tuple[CppPort, ...]
+    complete: bool
+
+
+class PortsReader:
+    """Evaluates expressions that are lists of ports, as far as that needs no running program."""
+
+    def __init__(self, sources: Sources) -> None:
+        self.sources: Final = sources
+        self._complete = True
+
+    def of_class(self, bound: Bound, place: Place) -> Provided:
+        """The ports that a class provides; place: where it is used."""
+        self._complete = True
+        ports = self._of_class(bound, place)
+        return Provided(tuple(ports.values()), self._complete)
+
+    def before(self, node: Node, scope: tuple[str, ...], path: str) -> Body:
+        """The function around a node, with what its variables are there."""
+        body = Body(self, Frame(None, scope, path))
+        function = enclosing(node, ("function_definition",))
+        for statement in contents(field(function, "body")) if function is not None else ():
+            if statement.end_byte > node.start_byte:
+                break
+            if statement.type == "declaration" or (body.names_list(statement) and not _registers(statement)):
+                body.run(statement)
+        return body
+
+    def of_argument(self, node: Node, body: Body) -> Provided | None:
+        """The ports of an argument; None if it is anything else than a list of ports."""
+        self._complete = True
+        ports = body.evaluated(node)
+        return None if ports is None else Provided(tuple(ports.values()), self._complete)
+
+    def _of_class(self, bound: Bound, place: Place) -> Ports:
+        for each in self.sources.ancestry(bound):
+            if bodies := self.sources.methods(each, "providedPorts"):
+                node, path = bodies[0]
+                return Body(self, Frame(each, each.scope, path)).result(node)
+            if each.class_ is None:
+                if (ports := self._of_engine(each, place)) is not None:
+                    if ports:
+                        return ports
+                    continue
+                self.incomplete(f"`{each.name}` is not in the sources, and may provide ports", place)
+            elif "providedPorts" in each.class_.promised:
+                self.incomplete(f"the body of `{each.name}::providedPorts` is not in the sources", place)
+                return {}
+        return {}
+
+    def _of_engine(self, bound: Bound, place: Place) -> Ports | None:
+        """The ports that a class of the engine provides; None if it is not one."""
+        name = bound.name.rpartition("::")[2]
+        if name not in ENGINE:
+            return None
+        ports: Ports = {}
+        for port in BUILTINS[TAGS[name]].ports if name in TAGS else ():
+            of_item = name == "LoopNode" and port.name == "value"
+            type_ = bound.meanings.get("0", port.type) if of_item else port.type
+            ports[port.name] = CppPort(
+                port.name, port.direction, type_, port.default, port.default or "", port.doc, place
+            )
+        return ports
+
+    def incomplete(self, message: str, place: Place) -> None:
+        """Report what is not understood."""
+        self._complete = False
+        self.sources.report(message, place)
+
+    def helper(self, name: str, scope: str, frame: Frame, call: Node) -> tuple[Node, Frame] | None:
+        """The function that a call means, a method of the class or of a base or any, and the frame of its body."""
+        sources, place = self.sources, place_of(frame.path, call)
+        if scope:
+            owner: Bound | None = sources.find(substituted(scope, frame.meanings), frame.scope, frame.path, place)
+        else:
+            owner = frame.bound
+        for each in sources.ancestry(owner) if owner is not None else ():
+            for node, path in sources.methods(each, name)[:1]:
+                return node, Frame(each, each.scope, path, frame.depth + 1)
+        whole = f"{scope}::{name}" if scope else name
+        found = sources.function(whole, frame.scope, frame.path, place)
+        return None if found is None else (found.node, Frame(None, found.scope, found.path, frame.depth + 1))
+
+    def class_ports(self, scope: str, frame: Frame, call: Node) -> Ports:
+        """The ports of the class before `::providedPorts()`."""
+        place = place_of(frame.path, call)
+        found = self.sources.find(substituted(scope, frame.meanings), frame.scope, frame.path, place)
+        return self._of_class(found, place)
+
+
+class Body:
+    """The body of a function, with the variables that it fills."""
+
+    def __init__(self, reader: PortsReader, frame: Frame) -> None:
+        self.reader: Final = reader
+        self.frame: Final = frame
+        self.lists: Final[dict[str, Ports]] = {}
+
+    # ---- statements ----
+
+    def result(self, function: Node) -> Ports:
+        """What a function returns."""
+        body = field(function, "body")
+        for statement in contents(body):
+            if statement.type == "return_statement":
+                value = contents(statement)
+                ports = self.evaluated(value[0]) if value else None
+                if ports is None:
+                    self.incomplete(statement)
+                return ports or {}
+            self.run(statement)
+        self.incomplete(function)
+        return {}
+
+    def run(self, statement: Node) -> None:
+        """Run a statement that may make or fill a list of ports."""
+        if statement.type == "declaration":
+            self._declare(statement)
+        elif statement.type == "expression_statement":
+            self._fill(contents(statement)[0] if contents(statement) else statement)
+        elif statement.type == "for_range_loop":
+            self._loop(statement)
+        elif self.names_list(statement) or any(each.type == "return_statement" for each in walk(statement, _FUNCTIONS)):
+            self.incomplete(statement)
+
+    def _declare(self, node: Node) -> None:
+        is_list = named(field(node, "type"))[1] == "PortsList"
+        for each in node.children_by_field_name("declarator"):
+            name, value = each, field(each, "value")
+            while name.type in ("init_declarator", "pointer_declarator", "reference_declarator"):
+                name = field(name, "declarator") or name.named_children[-1]
+            if (said := string(self.reader.sources, value, self.frame)) is not None:
+                self.frame.strings[text_of(name)] = said
+                continue
+            if name.type == "function_declarator" and is_list:  # `PortsList ports(other);`
+                given = contents(field(name, "parameters"))
+                ports = self.lists.get(text_of(given[0])) if given else {}
+                name = field(name, "declarator") or name
+            else:
+                wanted = is_list or text_of(field(node, "type")) == "auto"
+                ports = (self.evaluated(value) if value is not None else {}) if wanted else None
+            if ports is not None and (is_list or ports):
+                self.lists[text_of(name)] = dict(ports)
+            elif is_list:
+                self.lists[text_of(name)] = {}
+                self.incomplete(each)
+
+    def _fill(self, node: Node) -> None:
+        """`ports.insert(…)`, `ports["name"] = …` and the like."""
+        if node.type == "assignment_expression":
+            left, right = field(node, "left"), field(node, "right")
+            if left is not None and left.type == "identifier" and text_of(left) in self.lists and right is not None:
+                ports = self.evaluated(right)
+                if ports is not None:
+                    self.lists[text_of(left)] = ports
+                    return
+        function = field(node, "function") if node.type == "call_expression" else None
+        name = text_of(field(function, "argument")) if function is not None else ""
+        if function is None or function.type != "field_expression" or name not in self.lists:
+            if self.names_list(node):
+                self.incomplete(node)
+            return
+        method, target, given = text_of(field(function, "field")), self.lists[name], arguments(node)
+        if method == "erase" and len(given) == 1 and (key := string(self.reader.sources, given[0], self.frame)):
+            target.pop(key, None)
+            return
+        ports = self._added(given) if method in ("insert", "emplace", "merge", "insert_or_assign") else None
+        if ports is None:
+            self.incomplete(node)
+        elif method == "insert_or_assign":
+            target.update(ports)
+        else:
+            self.lists[name] = _united(target, ports)
+
+    def _added(self, given: list[Node]) -> Ports | None:
+        """What `insert` and the like are given: a port, a list, or a range."""
+        if len(given) == 2 and all(each.type == "call_expression" for each in given):
+            whose = [text_of(field(field(each, "function") or each, "argument")) for each in given]
+            names = [callee(each)[1] for each in given]
+            if names in (["begin", "end"], ["cbegin", "cend"]) and whose[0] == whose[1]:
+                return self.lists.get(whose[0])
+        return self.evaluated(given[0]) if len(given) == 1 else None
+
+    def _loop(self, node: Node) -> None:
+        """`for (const auto& port : Base::providedPorts()) ports.insert(port);`"""
+        right, body = field(node, "right"), field(node, "body")
+        ports = self.evaluated(right) if right is not None else None
+        inside = contents(body) if body is not None and body.type == "compound_statement" else [body]
+        call = next((each for each in walk(node) if each.type == "call_expression" and each != right), None)
+        name = text_of(field(field(call, "function") or call, "argument")) if call is not None else ""
+        if ports is None or len(inside) != 1 or name not in self.lists:
+            if self.names_list(node):
+                self.incomplete(node)
+            return
+        self.lists[name] = _united(self.lists[name], ports)
+
+    def names_list(self, node: Node) -> bool:
+        """Whether a statement may change a list of ports."""
+        return any(each.type == "identifier" and text_of(each) in self.lists for each in walk(node, _FUNCTIONS))
+
+    # ---- expressions ----
+
+    def evaluated(self, node: Node) -> Ports | None:
+        """The ports that an expression is, one or many; None if it is anything else."""
+        if node.type in ("initializer_list", "argument_list"):
+            return self._listed(contents(node))
+        if node.type == "parenthesized_expression":
+            return self.evaluated(contents(node)[0])
+        if node.type == "identifier":
+            return self.lists.get(text_of(node))
+        if node.type == "compound_literal_expression":
+            value = field(node, "value")
+            is_list = named(field(node, "type"))[1] == "PortsList"
+            return self.evaluated(value) if is_list and value is not None else None
+        return self._called(node) if node.type == "call_expression" else None
+
+    def _listed(self, nodes: list[Node]) -> Ports | None:
+        found: Ports = {}
+        for node in nodes:
+            if node.type.startswith("preproc_"):
+                self.incomplete(node)
+                continue
+            ports = self.evaluated(node)
+            if ports is None:
+                if node.type not in ("call_expression", "initializer_list") or not self._may_be_port(node):
+                    return None
+                self.incomplete(node)
+                continue
+            found = _united(found, ports)
+        return found
+
+    def _may_be_port(self, node: Node) -> bool:
+        return any(each.type in ("string_literal", "identifier") for each in walk(node))
+
+    def _called(self, node: Node) -> Ports | None:
+        scope, name, types = callee(node)
+        given = arguments(node)
+        if name in _DIRECTIONS:
+            return self._port(node, _DIRECTIONS[name], types, given)
+        if name == "CreatePort" and given:
+            direction = _DIRECTIONS.get(text_of(given[0]).rpartition("::")[2])
+            return self._port(node, direction, types, given[1:]) if direction is not None else None
+        if name == "PortsList":
+            return self._listed(given)
+        if name in ("move", "forward") and len(given) == 1:
+            return self.evaluated(given[0])
+        if name == "providedPorts" and scope:
+            return self.reader.class_ports(scope, self.frame, node)
+        return self._helped(name, scope, given, node)
+
+    def _helped(self, name: str, scope: str, given: list[Node], node: Node) -> Ports | None:
+        """What a function of the sources makes of the lists that it is given."""
+        lists = [self.evaluated(each) for each in given]
+        helper = self.reader.helper(name, scope, self.frame, node)
+        if helper is None:
+            known = [each for each in lists if each is not None]
+            if not known and name not in ("providedPorts", "providedBasicPorts"):
+                return None
+            message = f"`{name}` is not in the sources, and may add ports"
+            self.reader.incomplete(message, place_of(self.frame.path, node))
+            return {key: port for each in known for key, port in each.items()}
+        function, frame = helper
+        if named(field(function, "type"))[1] != "PortsList":
+            return None
+        if self.frame.depth > _DEEPEST:
+            return None
+        body = Body(self.reader, frame)
+        declarator = next((each for each in walk(function) if each.type == "function_declarator"), None)
+        parameters = contents(field(declarator, "parameters")) if declarator is not None else []
+        for parameter, ports in zip(parameters, lists, strict=False):
+            names = [text_of(each) for each in walk(parameter) if each.type == "identifier"]
+            if ports is not None and names:
+                body.lists[names[-1]] = dict(ports)
+        return body.result(function)
+
+    def _port(self, node: Node, direction: Direction, types: list[str], given: list[Node]) -> Ports | None:
+        """`InputPort<T>(name)`, `(name, text)` or `(name, default, text)`."""
+        sources, place = self.reader.sources, place_of(self.frame.path, node)
+        name = string(sources, given[0], self.frame) if given else None
+        if name is None:
+            self.reader.incomplete(f"the name of this port is an expression: `{_short(node)}`", place)
+            return {}
+        said, written = None, " ".join(text_of(given[1]).split()) if len(given) > 2 else ""
+        if written and (said := default(sources, given[1], self.frame)) is None:
+            sources.report(f"the default of the port `{name}` is an expression: `{written}`", place)
+            said = ""
+        text = string(sources, given[-1], self.frame) if len(given) > 1 else ""
+        type_ = type_of(sources, types[0], self.frame) if types else ""
+        return {name: CppPort(name, direction, type_, said, written, text or "", place)}
+
+    def incomplete(self, node: Node) -> None:
+        """Report that a node is not understood."""
+        message = f"it cannot be seen which ports this provides: `{_short(node)}`"
+        self.reader.incomplete(message, place_of(self.frame.path, node))
+
+
+def _united(ports: Ports, others: Ports) -> Ports:
+    """Two lists; of a name in both, the first counts."""
+    return {**ports, **{name: port for name, port in others.items() if name not in ports}}
+
+
+def _registers(statement: Node) -> bool:
+    return any(each.type == "call_expression" and REGISTERS(callee(each)[1]) for each in walk(statement))
+
+
+def _short(node: Node) -> str:
+    text = " ".join(text_of(node).split())
+    return text if len(text) <= 60 else f"{text[:60]}…"
+
+
+_DIRECTIONS: Final[dict[str, Direction]] = {
+    "InputPort": "input",
+    "OutputPort": "output",
+    "BidirectionalPort": "inout",
+    "INPUT": "input",
+    "OUTPUT": "output",
+    "INOUT": "inout",
+}
+_FUNCTIONS: Final = frozenset(("lambda_expression",))
+_DEEPEST: Final = 20  # helpers that call themselves

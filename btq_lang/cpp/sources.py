@@ -1,0 +1,218 @@
+"""All files together: which class, function or constant a name means, and what classes derive from.
+
+One invariant: a name means what is nearest: in the scopes around it, in the same file, in a file that is included; of
+several that are equally near none is taken, and that is reported.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from btq_lang.catalog.cpp_classes import ENGINE, LIBRARIES
+from btq_lang.cpp.grammar import place_of
+from btq_lang.cpp.model import Place, Unseen
+from btq_lang.cpp.source import Class, Function, Source
+from btq_lang.cpp.type_names import parts, substituted
+from btq_lang.util.record import Record
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+    from btq_lang.catalog.kinds import Category
+
+T = TypeVar("T", Class, Function)
+
+
+class Bound(Record):
+    """A class and what the parameters of its template mean; class_: None for one that is not in the sources."""
+
+    class_: Class | None
+    name: str
+    meanings: dict[str, str]
+
+    @property
+    def scope(self) -> tuple[str, ...]:
+        """The scope inside of the class."""
+        return tuple(self.name.split("::"))
+
+
+class Sources:
+    """The files, by path."""
+
+    def __init__(self, files: Mapping[str, str]) -> None:
+        self.files: Final = {path: Source(path, text) for path, text in files.items()}
+        self.unseen: Final = [each for source in self.files.values() for each in source.unseen]
+        self._orders: Final[dict[str, list[Source]]] = {}  # by path, the nearest first
+        self._by_file_name: Final[dict[str, list[str]]] = {}
+        self._classes: Final[dict[str, list[Class]]] = {}  # by the last part of the name
+        self._methods: Final[dict[str, list[Function]]] = {}  # likewise, of a function
+        for path, source in self.files.items():
+            self._by_file_name.setdefault(path.rpartition("/")[2], []).append(path)
+            for class_ in source.classes:
+                self._classes.setdefault(_last(class_.name), []).append(class_)
+            for function in source.functions:
+                self._methods.setdefault(_last(function.name), []).append(function)
+
+    def report(self, message: str, place: Place) -> None:
+        """Report once what cannot be read."""
+        unseen = Unseen(message, place)
+        if unseen not in self.unseen:
+            self.unseen.append(unseen)
+
+    def find(self, type_: str, scope: tuple[str, ...], path: str, place: Place) -> Bound:
+        """The class that a type means at a place."""
+        name, given = parts(type_)
+        found = self._nearest(self._classes.get(_last(name), []), name, scope, path, place)
+        if found is None and (alias := self.alias(name, scope, path)) is not None and alias != type_:
+            return self.find(alias, scope, path, place)
+        if found is None:
+            return Bound(None, name, {str(at): each for at, each in enumerate(given)})
+        return Bound(found, found.name, dict(zip(found.parameters, given, strict=False)))
+
+    def function(self, name: str, scope: tuple[str, ...], path: str, place: Place) -> Function | None:
+        """The function outside of a class that a name means at a place."""
+        return self._nearest(self._methods.get(_last(name), []), name, scope, path, place)
+
+    def ancestry(self, bound: Bound) -> Iterator[Bound]:
+        """A class and all that it derives from, the nearest first; those that are not in the sources too."""
+        waiting, seen = [bound], {bound.name}
+        for each in waiting:
+            yield each
+            if each.class_ is None:
+                continue
+            for base in each.class_.bases:
+                type_ = substituted(base, each.meanings)
+                place = place_of(each.class_.path, each.class_.node)
+                found = self.find(type_, each.scope, each.class_.path, place)
+                if found.name not in seen:
+                    seen.add(found.name)
+                    waiting.append(found)
+
+    def category(self, bound: Bound) -> Category | None:
+        """The category that a class has from what it derives from; None if that is not in the sources."""
+        for each in self.ancestry(bound):
+            scope, _, name = each.name.rpartition("::")
+            if name in ENGINE and (scope == "BT" or (each.class_ is None and not scope)):
+                return ENGINE[name]
+            if each.class_ is None and name in LIBRARIES:
+                return LIBRARIES[name]
+        return next(filter(None, map(_mixed_in, self.ancestry(bound))), None)
+
+    def methods(self, bound: Bound, name: str) -> list[tuple[Node, str]]:
+        """The bodies of a class's own methods of a name, in the class or outside, each with its file."""
+        class_ = bound.class_
+        if class_ is None:
+            return []
+        inside = [(each, class_.path) for each in class_.methods.get(name, ())]
+        return inside + [(each.node, each.path) for each in self._outside(class_, name)]
+
+    def all_methods(self, class_: Class) -> list[tuple[str, Node, str]]:
+        """All bodies of a class's own methods, each with its name and file."""
+        found = [(name, each, class_.path) for name, bodies in class_.methods.items() for each in bodies]
+        for name in sorted(class_.promised):
+            found += [(name, each.node, each.path) for each in self._outside(class_, name)]
+        return found
+
+    def string(self, name: str, bound: Bound | None, scope: tuple[str, ...], path: str) -> str | None:
+        """The string that a constant means."""
+        scopes = [each.scope for each in self.ancestry(bound)] if bound is not None else []
+        for around in (scope, *scopes):
+            for whole in _in_scopes(name, around):
+                for source in self._near(path):
+                    if whole in source.strings:
+                        return source.strings[whole]
+        found = {
+            string
+            for source in self.files.values()
+            for whole, string in source.strings.items()
+            if whole.endswith(f"::{name}") or whole == name
+        }
+        return found.pop() if len(found) == 1 else None
+
+    def strings_of(self, names: set[str]) -> set[str]:
+        """The strings of all constants that have one of some names."""
+        return {
+            string
+            for source in self.files.values()
+            for whole, string in source.strings.items()
+            if _last(whole) in names
+        }
+
+    def alias(self, name: str, scope: tuple[str, ...], path: str) -> str | None:
+        """The type that an alias means."""
+        for whole in _in_scopes(name, scope):
+            for source in self._near(path):
+                if whole in source.aliases:
+                    return source.aliases[whole]
+        return None
+
+    def _outside(self, class_: Class, name: str) -> list[Function]:
+        """The methods of a class whose body is outside of it."""
+        found = []
+        for function in self._methods.get(name, ()):
+            owner = function.name.rpartition("::")[0]
+            if not owner or _last(owner) != _last(class_.name):
+                continue
+            place = place_of(function.path, function.node)
+            meant = self._nearest(self._classes[_last(owner)], owner, function.scope, function.path, place)
+            if meant is class_:
+                found.append(function)
+        return found
+
+    def _nearest(self, found: list[T], name: str, scope: tuple[str, ...], path: str, place: Place) -> T | None:
+        """Of what has a name's last part, the one that the name means at a place."""
+        if not found:
+            return None
+        usings: list[str] = self.files[path].usings
+        names = [*_in_scopes(name, scope), *(f"{using}::{name}" for using in usings)]
+        fitting = next((fit for whole in names if (fit := [each for each in found if _whole(each) == whole])), None)
+        if fitting is None:
+            fitting = [each for each in found if _whole(each).endswith(f"::{name}")]
+        if len(fitting) > 1:
+            near = [source.path for source in self._near(path)]
+            least = min(near.index(each.path) for each in fitting)
+            fitting = [each for each in fitting if near.index(each.path) == least]
+            if len(fitting) > 1 and isinstance(fitting[0], Class):
+                places = ", ".join(sorted(f"{each.path}:{each.node.start_point[0] + 1}" for each in fitting))
+                self.report(f"`{name}` may be any of several classes: {places}", place)
+                return None
+        return fitting[0] if fitting else None
+
+    def _near(self, path: str) -> list[Source]:
+        """All files, the nearest first: the file itself, what it includes, directly or not, and the others."""
+        if path not in self._orders:
+            order = {path: self.files[path]}
+            waiting = [self.files[path]]
+            for source in waiting:
+                included = {each for include in source.includes for each in self._included(include)} - order.keys()
+                waiting += [self.files[each] for each in sorted(included)]
+                order.update((each, self.files[each]) for each in sorted(included))
+            self._orders[path] = [*order.values(), *(each for at, each in self.files.items() if at not in order)]
+        return self._orders[path]
+
+    def _included(self, include: str) -> list[str]:
+        """The files that an `#include` may mean."""
+        name = include.rpartition("/")[2]
+        end = "/" + include.lstrip("./")
+        return [path for path in self._by_file_name.get(name, ()) if f"/{path}".endswith(end)]
+
+
+def _mixed_in(bound: Bound) -> Category | None:
+    """The category of a class of the engine that a template, which is not in the sources, is given to derive from."""
+    given = bound.meanings.values() if bound.class_ is None else ()
+    names = (each.removeprefix("BT::") for each in given if each.startswith("BT::"))
+    return next((ENGINE[name] for name in names if name in ENGINE), None)
+
+
+def _in_scopes(name: str, scope: tuple[str, ...]) -> list[str]:
+    """What a name may mean, from the innermost scope to the outermost."""
+    return ["::".join((*scope[:depth], name)) for depth in range(len(scope), -1, -1)]
+
+
+def _whole(found: Class | Function) -> str:
+    return found.name if isinstance(found, Class) else "::".join((*found.scope, found.name))
+
+
+def _last(name: str) -> str:
+    return name.rpartition("::")[2]

@@ -1,0 +1,179 @@
+"""Which ports the code of a class reads and writes, and what it does if one is not given.
+
+One invariant: a port is called unread only if all code of the class and of its bases is in the sources and its name is
+nowhere in it, and what the code does without a port is said only where the place of the read shows it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.catalog.cpp_classes import ENGINE
+from btq_lang.cpp.grammar import arguments, callee, enclosing, field, literal, place_of, text_of, walk
+from btq_lang.cpp.model import CppPort, Use
+from btq_lang.cpp.sources import Bound, Sources
+from btq_lang.cpp.values import Frame, string
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+
+class Uses:
+    """What the code of a class does with ports.
+
+    Attributes:
+        all: reads and writes whose port can be seen, in order.
+        complete: whether all code is in the sources.
+    """
+
+    def __init__(self, sources: Sources, bound: Bound) -> None:
+        self.all: Final[list[Use]] = []
+        self.complete = True
+        self._sources: Final = sources
+        self._strings: Final[set[str]] = set()
+        self._identifiers: Final[set[str]] = set()
+        for each in sources.ancestry(bound):
+            if each.class_ is None:
+                self.complete = self.complete and each.name.rpartition("::")[2] in ENGINE
+                continue
+            bodies = sources.all_methods(each.class_)
+            self.complete = self.complete and each.class_.promised <= {name for name, *_ in bodies}
+            for name, node, path in bodies:
+                if not _PROVIDES(name):
+                    self._read(node, Frame(each, each.scope, path))
+
+    def unread(self, ports: Iterable[CppPort]) -> tuple[CppPort, ...]:
+        """The ports that the code never names."""
+        if not self.complete:
+            return ()
+        named = self._strings | self._sources.strings_of(self._identifiers)
+        return tuple(port for port in ports if port.name not in named)
+
+    def undeclared(self, ports: Iterable[CppPort]) -> tuple[Use, ...]:
+        """Uses of ports that are not among some."""
+        names = {port.name for port in ports}
+        return tuple(use for use in self.all if use.port not in names and not use.falls_back)
+
+    def without(self, port: CppPort) -> str:
+        """What the code does without an input: see `Use.without`."""
+        found = {use.without for use in self.all if use.port == port.name and not use.writes}
+        if "fails" in found:
+            return "fails"
+        return next((each for each in ("", _IGNORES, "goes on") if each in found), "")
+
+    def _read(self, body: Node, frame: Frame) -> None:
+        for node in walk(body):
+            if node.type in ("string_literal", "raw_string_literal"):
+                self._strings.add(literal(node) or "")
+            elif node.type in ("identifier", "field_identifier"):
+                self._identifiers.add(text_of(node))
+            elif node.type == "call_expression":
+                self._call(node, frame)
+
+    def _call(self, call: Node, frame: Frame) -> None:
+        name, given = callee(call)[1], arguments(call)
+        if name in ("getInput", "setOutput", "getLockedPortContent", "getInputStamped"):
+            port = string(self._sources, given[0], frame) if given else None
+            if port is not None:
+                writes = name == "setOutput"
+                without = "" if writes else _without(call)
+                self.all.append(Use(port, writes, without, place_of(frame.path, call)))
+        elif _FALLS_BACK(name):
+            for port in filter(None, map(literal, given)):
+                self.all.append(Use(port, False, "goes on", place_of(frame.path, call), falls_back=True))
+
+
+def _without(read: Node) -> str:
+    """What happens if a read gets nothing, as the code around it shows."""
+    node, negated, within_and = read, False, False
+    while (around := node.parent) is not None:
+        if around.type == "expression_statement":
+            return _IGNORES
+        if around.type == "field_expression":
+            method = text_of(field(around, "field"))
+            if method == "value":
+                return "fails"
+            if method == "value_or":
+                return "goes on"
+            around = around.parent
+            if method != "has_value" or around is None:
+                return ""
+        elif around.type == "unary_expression" and text_of(around).startswith("!"):
+            negated = not negated
+        elif around.type == "binary_expression":
+            within_and = within_and or text_of(field(around, "operator")) == "&&"
+        elif around.type == "condition_clause":
+            return _in_condition(around, negated, within_and)
+        elif around.type in ("init_declarator", "assignment_expression", "declaration"):
+            return _kept(around)
+        elif around.type not in ("parenthesized_expression",):
+            return ""
+        node = around
+    return ""
+
+
+def _in_condition(condition: Node, negated: bool, within_and: bool) -> str:
+    """What a branch does that is taken if the read gets nothing."""
+    statement = condition.parent
+    if statement is None or statement.type != "if_statement":
+        return ""
+    taken, other = field(statement, "consequence"), field(statement, "alternative")
+    if not negated:
+        if other is None:
+            return "" if taken is None or _leaves(taken) else "goes on"
+        taken = other
+    if taken is None:
+        return ""
+    if _fails(taken):
+        return "" if within_and else "fails"
+    return "" if _leaves(taken) else "goes on"
+
+
+def _kept(declared: Node) -> str:
+    """What the code does with a result that it keeps in a variable."""
+    inner = field(declared, "declarator") or field(declared, "left")
+    name = text_of(inner)
+    if name == "std::ignore":
+        return _IGNORES
+    condition = enclosing(declared, ("condition_clause", "compound_statement"))
+    if condition is not None and condition.type == "condition_clause":  # `if (auto found = getInput(…); !found)`
+        value = field(condition, "value")
+        value = None if value == declared else value
+        return _in_condition(condition, value is not None and text_of(value).startswith("!"), False)
+    function = enclosing(declared, ("function_definition", "lambda_expression"))
+    found = []
+    for node in _after(function, declared):
+        if node.type == "identifier" and text_of(node) == name:
+            found.append(_without(node))
+    if not found:
+        return _IGNORES
+    known = [each for each in found if each in ("fails", "goes on")]
+    return known[0] if known else ""
+
+
+def _after(function: Node | None, node: Node) -> Iterator[Node]:
+    for each in walk(function) if function is not None else ():
+        if each.start_byte >= node.end_byte:
+            yield each
+
+
+def _fails(branch: Node) -> bool:
+    """Whether a branch throws, or returns FAILURE."""
+    for each in walk(branch, _FUNCTIONS):
+        if each.type == "throw_statement":
+            return True
+        if each.type == "return_statement" and text_of(each).rstrip("; ").endswith("NodeStatus::FAILURE"):
+            return True
+    return False
+
+
+def _leaves(branch: Node) -> bool:
+    return any(each.type in ("return_statement", "throw_statement") for each in walk(branch, _FUNCTIONS))
+
+
+_IGNORES: Final = "ignores"
+_PROVIDES: Final = re.compile(r"provided\w*Ports").fullmatch
+_FALLS_BACK: Final = re.compile(r"get\w*Or[A-Z]\w*").fullmatch
+_FUNCTIONS: Final = frozenset(("lambda_expression",))

@@ -1,0 +1,92 @@
+"""Strings, default values and types as C++ writes them."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.cpp.grammar import arguments, callee, contents, field, literal, named, text_of
+from btq_lang.cpp.sources import Bound, Sources
+from btq_lang.cpp.type_names import substituted
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+
+class Frame:
+    """Where an expression is: in which class, scope and file, and what names mean there.
+
+    Attributes:
+        bound: the class, if it is in one.
+        strings: variables that are strings.
+        depth: the number of functions around that called each other.
+    """
+
+    def __init__(self, bound: Bound | None, scope: tuple[str, ...], path: str, depth: int = 0) -> None:
+        self.bound: Final = bound
+        self.scope: Final = scope
+        self.path: Final = path
+        self.depth: Final = depth
+        self.strings: Final[dict[str, str]] = {}
+
+    @property
+    def meanings(self) -> dict[str, str]:
+        """What the parameters of templates mean."""
+        return self.bound.meanings if self.bound is not None else {}
+
+
+def string(sources: Sources, node: Node | None, frame: Frame) -> str | None:
+    """The string that an expression is: a literal, a constant, or either in `std::string(…)`."""
+    if node is None:
+        return None
+    if (found := literal(node)) is not None:
+        return found
+    if node.type in ("identifier", "qualified_identifier"):
+        name = text_of(node)
+        if name in frame.strings:
+            return frame.strings[name]
+        return sources.string(substituted(name, frame.meanings), frame.bound, frame.scope, frame.path)
+    if node.type == "call_expression":
+        _, name, _ = callee(node)
+        given = arguments(node)
+    elif node.type == "compound_literal_expression":
+        _, name, _ = named(field(node, "type"))
+        given = contents(field(node, "value"))
+    else:
+        return None
+    if name in _STRINGS:
+        return string(sources, given[0], frame) if given else ""
+    return None
+
+
+def default(sources: Sources, node: Node, frame: Frame) -> str | None:
+    """The text of a default value; None if it is an expression."""
+    if (found := string(sources, node, frame)) is not None:
+        return found
+    written = text_of(node)
+    if node.type in ("true", "false"):
+        return written
+    if (number := _NUMBER.fullmatch(written)) is not None:
+        return number[1].replace("'", "")
+    if (status := _STATUS.fullmatch(written)) is not None:
+        return status[1]
+    return "inf" if _INFINITY.fullmatch(written) else None
+
+
+def type_of(sources: Sources, written: str, frame: Frame) -> str:
+    """The type of a port: what an alias or a template's parameter means, else as it is written."""
+    type_ = substituted(written, frame.meanings)
+    for scope in (frame.scope, *(each.scope for each in _ancestry(sources, frame))):
+        if (meant := sources.alias(type_, scope, frame.path)) is not None:
+            return meant
+    return type_
+
+
+def _ancestry(sources: Sources, frame: Frame) -> list[Bound]:
+    return list(sources.ancestry(frame.bound)) if frame.bound is not None else []
+
+
+_STRINGS: Final = ("string", "string_view", "StringView")
+_NUMBER: Final = re.compile(r"([+-]?(?:\d[\d']*\.?[\d']*|\.\d+)(?:[eE][+-]?\d+)?)(?:[fFlLuU]+|ms)?")
+_STATUS: Final = re.compile(r"(?:BT::)?NodeStatus::([A-Z]+)")
+_INFINITY: Final = re.compile(r"std::numeric_limits<\s*(?:double|float)\s*>::infinity\(\)")

@@ -1,0 +1,464 @@
+"""Nodes that small C++ sources register, in every form that the reader knows, and in those that it must not guess."""
+
+from __future__ import annotations
+
+from textwrap import dedent
+
+import pytest
+
+from btq_lang.cpp.model import CppNode, CppNodes
+from btq_lang.cpp.nodes import read_nodes
+
+pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
+
+REGISTERED = """
+    BT_REGISTER_NODES(factory)
+    {
+      factory.registerNodeType<robot::Move>("Move");
+    }
+"""
+
+
+def read(*texts: str) -> CppNodes:
+    """The nodes of some files: a.cpp, b.cpp and so on."""
+    return read_nodes({f"{name}.cpp": dedent(text) for name, text in zip("abcdef", texts, strict=False)})
+
+
+def ports(node: CppNode) -> list[str]:
+    """The ports of a node, each as `input goal : Pose = default "text"`."""
+    return [
+        f"{port.direction} {port.name}"
+        + (f" : {port.type}" if port.type else "")
+        + (f" = {port.default!r}" if port.default is not None else "")
+        + (f" # {port.text}" if port.text else "")
+        for port in node.ports
+    ]
+
+
+def move(body: str, bases: str = "BT::SyncActionNode", more: str = "") -> str:
+    """A class `robot::Move` with a body, and its registration."""
+    inside = dedent(body)
+    return (
+        f"namespace robot {{\n{dedent(more)}\nclass Move : public {bases}\n{{\n{inside}\n}};\n}}\n{dedent(REGISTERED)}"
+    )
+
+
+def moved(body: str, bases: str = "BT::SyncActionNode", more: str = "") -> CppNode:
+    """The node of such a class, of which everything is seen."""
+    found = read(move(body, bases, more))
+    assert found.unseen == ()
+    (node,) = found.nodes
+    return node
+
+
+def provided(returned: str, more: str = "", bases: str = "BT::SyncActionNode") -> list[str]:
+    """The ports of a class whose `providedPorts` returns an expression."""
+    return ports(moved(f"public: static BT::PortsList providedPorts() {{ {returned} }}", bases, more))
+
+
+def unseen(found: CppNodes) -> list[str]:
+    return [f"{each.place}: {each.message}" for each in found.unseen]
+
+
+def test_ports_with_direction_type_default_and_description() -> None:
+    assert provided(
+        """return {
+             BT::InputPort<geometry_msgs::msg::PoseStamped>("goal", "where to go"),
+             BT::InputPort<double>("speed", 0.5, "metres"  // a comment
+               " a second"),
+             BT::OutputPort<std::vector< int >>("codes"),
+             BT::BidirectionalPort("item"),
+           };"""
+    ) == [
+        "input goal : geometry_msgs::msg::PoseStamped # where to go",
+        "input speed : double = '0.5' # metres a second",
+        "output codes : std::vector<int>",
+        "inout item",
+    ]
+
+
+def test_the_second_of_two_arguments_is_a_description_and_no_default() -> None:
+    assert provided('return { BT::InputPort<std::string>("controller_id", "FollowPath") };') == [
+        "input controller_id : std::string # FollowPath"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("written", "default"),
+    [
+        ('""', ""),
+        ('"a\\"b"', 'a"b'),
+        ('std::string("map")', "map"),
+        ("std::string()", ""),
+        ('std::string{"map"}', "map"),
+        ('"map"s', "map"),
+        ('R"(json:{"x":1})"', 'json:{"x":1}'),
+        ('"{=}"', "{=}"),
+        ("true", "true"),
+        ("-1", "-1"),
+        ("1.5f", "1.5"),
+        ("253u", "253"),
+        ("1'000", "1000"),
+        ("1000ms", "1000"),
+        ("std::numeric_limits<double>::infinity()", "inf"),
+        ("BT::NodeStatus::SUCCESS", "SUCCESS"),
+    ],
+)
+def test_a_default_is_read(written: str, default: str) -> None:
+    node = moved(f'static BT::PortsList providedPorts() {{ return {{ BT::InputPort<T>("p", {written}, "") }}; }}')
+    (port,) = node.ports
+    assert (port.default, port.written) == (default, written)
+
+
+def test_a_default_that_is_an_expression_is_reported() -> None:
+    text = move('static BT::PortsList providedPorts() { return { BT::InputPort<P>("p", P{1,  2}, "") }; }')
+    found = read(text)
+    assert [(port.default, port.written) for node in found.nodes for port in node.ports] == [("", "P{1, 2}")]
+    assert unseen(found) == ["a.cpp:5:49: the default of the port `p` is an expression: `P{1, 2}`"]
+
+
+@pytest.mark.parametrize(
+    "returned",
+    [
+        'return BT::PortsList({ BT::InputPort<int>("a"), BT::InputPort<int>("b") });',
+        'return BT::PortsList{ BT::InputPort<int>("a"), BT::InputPort<int>("b") };',
+        'BT::PortsList list = { BT::InputPort<int>("a"), BT::InputPort<int>("b") }; return list;',
+        'PortsList list; list.insert(BT::InputPort<int>("a")); list.emplace(BT::InputPort<int>("b")); return list;',
+        'PortsList list{ BT::InputPort<int>("a") }; list.insert({ BT::InputPort<int>("b") }); return list;',
+        'PortsList one = { BT::InputPort<int>("a") }; PortsList list = { BT::InputPort<int>("b") };'
+        " one.insert(list.begin(), list.end()); return one;",
+        'auto one = PortsList({ BT::InputPort<int>("a") }); PortsList list = { BT::InputPort<int>("b") };'
+        " one.merge(std::move(list)); return one;",
+        'PortsList one = { BT::InputPort<int>("a") }; const PortsList list = { BT::InputPort<int>("b") };'
+        " for (const auto& port : list) { one.insert(port); } return one;",
+        'PortsList list = { BT::InputPort<int>("a"), BT::InputPort<int>("b"), BT::InputPort<int>("c") };'
+        ' list.erase("c"); return list;',
+        'const char* name = "a";'
+        ' return { BT::InputPort<int>(name), BT::CreatePort<int>(BT::PortDirection::INPUT, "b") };',
+    ],
+)
+def test_ports_are_read_from_every_way_to_make_a_list(returned: str) -> None:
+    assert provided(returned) == ["input a : int", "input b : int"]
+
+
+def test_the_name_of_a_port_may_be_a_constant() -> None:
+    more = """
+        #define NAME_A "a"
+        constexpr auto kB = "b";
+        struct Names { static constexpr const char* C = "c"; };
+        static const std::string D{"d"};
+    """
+    returned = (
+        "return { BT::InputPort<int>(NAME_A), BT::InputPort<int>(kB), BT::InputPort<int>(Names::C),"
+        " BT::InputPort<int>(D) };"
+    )
+    assert provided(returned, more) == [f"input {name} : int" for name in "abcd"]
+
+
+BASE = """
+    template <class ActionT>
+    class BtActionNode : public BT::ActionNodeBase
+    {
+    public:
+      static BT::PortsList providedBasicPorts(BT::PortsList addition)
+      {
+        BT::PortsList basic = {
+          BT::InputPort<std::string>("server_name", "Action server name"),
+          BT::OutputPort<ActionT>("result")
+        };
+        basic.insert(addition.begin(), addition.end());
+        return basic;
+      }
+      static BT::PortsList providedPorts() { return providedBasicPorts({}); }
+    };
+"""
+
+
+def test_a_helper_of_a_base_class_adds_ports_and_its_entry_wins_a_clash_of_names() -> None:
+    returned = (
+        "BT::RegisterJsonDefinition<Pose>();"
+        ' return providedBasicPorts({ BT::InputPort<int>("server_name", 3, "clash"), BT::InputPort<int>("order") });'
+    )
+    assert provided(returned, BASE, "BtActionNode<msgs::Fibonacci>") == [
+        "input server_name : std::string # Action server name",
+        "output result : msgs::Fibonacci",
+        "input order : int",
+    ]
+
+
+def test_a_class_without_ports_of_its_own_has_those_of_its_base() -> None:
+    node = moved("", "BtActionNode<std::vector<int>>", BASE)
+    assert ports(node) == ["input server_name : std::string # Action server name", "output result : std::vector<int>"]
+
+
+def test_ports_of_a_base_are_named_by_its_function() -> None:
+    more = 'struct Base : BT::ConditionNode { static PortsList providedPorts() { return { InputPort<int>("a") }; } };'
+    returned = 'PortsList list = Base::providedPorts(); list.insert(BT::OutputPort<int>("b")); return list;'
+    node = moved(f"static PortsList providedPorts() {{ {returned} }}", "Base", more)
+    assert (node.category, ports(node)) == ("Condition", ["input a : int", "output b : int"])
+
+
+def test_an_alias_stands_for_its_type() -> None:
+    body = """
+        typedef std::vector<Pose> Goals;
+        static BT::PortsList providedPorts() { return { BT::InputPort<Goals>("goals") }; }
+    """
+    assert ports(moved(body)) == ["input goals : std::vector<Pose>"]
+
+
+@pytest.mark.parametrize(
+    ("base", "category"),
+    [
+        ("BT::SyncActionNode", "Action"),
+        ("BT::StatefulActionNode", "Action"),
+        ("BT::ConditionNode", "Condition"),
+        ("BT::ControlNode", "Control"),
+        ("BT::ReactiveSequence", "Control"),
+        ("BT::DecoratorNode", "Decorator"),
+        ("ns::Mixed<BT::ThreadedAction>", "Action"),
+    ],
+)
+def test_the_category_is_that_of_the_base_class(base: str, category: str) -> None:
+    body = "static BT::PortsList providedPorts() { return {}; }"
+    assert moved(body, base).category == category
+
+
+def test_a_base_class_of_a_library_gives_the_category_and_its_ports_are_unseen() -> None:
+    body = 'static PortsList providedPorts() { return providedBasicPorts({ InputPort<int>("a") }); }'
+    found = read(move(body, "BT::RosTopicSubNode<M>"))
+    (node,) = found.nodes
+    assert (node.category, ports(node), node.complete) == ("Condition", ["input a : int"], False)
+    assert unseen(found) == ["a.cpp:5:43: `providedBasicPorts` is not in the sources, and may add ports"]
+
+
+def test_all_ways_to_register_a_node() -> None:
+    found = read(
+        """
+        class A : public BT::SyncActionNode { static PortsList providedPorts() { return {}; } };
+        class BT_EXPORT B final : public BT::ConditionNode { static PortsList providedPorts(); };
+        BT::PortsList B::providedPorts() { return { BT::InputPort<int>("b") }; }
+        void RegisterAll(BT::BehaviorTreeFactory& factory)
+        {
+          BT::NodeBuilder builder = [](const std::string& name, const BT::NodeConfig& config) {
+            return std::make_unique<A>(name, "server", config);
+          };
+          factory.registerNodeType<A>("PlainA", 42);
+          factory.registerBuilder<A>("BuiltA", builder);
+          const BT::PortsList ports = { BT::OutputPort<std::string>("text") };
+          factory.registerNodeType<A>("GivenPorts", ports);
+          factory.registerBuilder(BT::CreateManifest<B>("Manifest", ports), BT::CreateBuilder<B>());
+          factory.registerSimpleAction("Open", [&](BT::TreeNode&) { return gripper.open(); });
+          factory.registerSimpleCondition("IsOpen", std::bind(isOpen), { BT::InputPort<int>("door") });
+          factory.registerSimpleDecorator("Twice", twice, ports);
+          moveit::registerBehavior<B>(factory, "OfLibrary", resources);
+          factory.registerFromPlugin("x.so");
+          factory.registerScriptingEnum("RED", 1);
+          factory.registerPolymorphicCast<A, B>();
+        }
+        CreateRosNodePlugin(B, "OfMacro");
+        """
+    )
+    assert unseen(found) == []
+    assert [f"{node.category} {node.name} {' '.join(ports(node))}".rstrip() for node in found.nodes] == [
+        "Action BuiltA",
+        "Action GivenPorts output text : std::string",
+        "Condition IsOpen input door : int",
+        "Condition Manifest output text : std::string",
+        "Condition OfLibrary input b : int",
+        "Condition OfMacro input b : int",
+        "Action Open",
+        "Action PlainA",
+        "Decorator Twice output text : std::string",
+    ]
+
+
+def test_nodes_are_registered_across_files_with_their_places() -> None:
+    header = """
+        namespace nav { class Spin : public BT::ActionNodeBase {
+          static BT::PortsList providedPorts();
+        }; }
+    """
+    source = """
+        #include "a.cpp"
+        namespace nav {
+        BT::PortsList Spin::providedPorts()
+        {
+          return { BT::InputPort<double>("dist") };
+        }
+        }
+        BT_REGISTER_NODES(factory) { factory.registerNodeType<nav::Spin>("Spin"); }
+    """
+    (node,) = read(header, source).nodes
+    assert (str(node.place), str(node.class_place)) == ("b.cpp:9:30", "a.cpp:2:17")
+    assert [(port.name, str(port.place)) for port in node.ports] == [("dist", "b.cpp:6:12")]
+
+
+def test_a_name_means_the_class_that_is_nearest() -> None:
+    of = (
+        "struct Go : BT::SyncActionNode"
+        ' {{ static PortsList providedPorts() {{ return {{ InputPort<int>("{}") }}; }} }};'
+    )
+    register = 'void f() { factory.registerNodeType<Go>("Go"); }'
+    included = f'#include "b.cpp"\n{register}'
+    for texts, port in [
+        ((f"namespace x {{ {of.format('x')} }}", f"{of.format('own')} {register}"), "own"),
+        ((of.format("a"), of.format("b"), included), "b"),
+        ((f"namespace x {{ {of.format('x')} }} namespace y {{ {of.format('y')} {register} }}",), "y"),
+        (
+            (
+                f"namespace x {{ {of.format('x')} }} using namespace x; {register}",
+                f"namespace y {{ {of.format('y')} }}",
+            ),
+            "x",
+        ),
+    ]:
+        found = read(*texts)
+        assert unseen(found) == []
+        assert [ports(node) for node in found.nodes] == [[f"input {port} : int"]]
+
+
+def test_a_name_that_may_mean_several_classes_means_none() -> None:
+    one = (
+        "namespace {} {{ struct Go : BT::SyncActionNode {{ static PortsList providedPorts() {{ return {{}}; }} }}; }}\n"
+    )
+    found = read(f'{one.format("x")}{one.format("y")}void f() {{ factory.registerNodeType<Go>("Go"); }}')
+    assert found.nodes == ()
+    assert unseen(found) == [
+        "a.cpp:3:12: `Go` may be any of several classes: a.cpp:1, a.cpp:2",
+        "a.cpp:3:12: the class `Go` of the node `Go` is not in the sources",
+    ]
+
+
+def test_one_name_for_two_nodes_is_reported() -> None:
+    of = "struct {} : BT::SyncActionNode {{ static PortsList providedPorts() {{ return {{}}; }} }};\n"
+    register = 'void f() { factory.registerNodeType<A>("Go"); factory.registerNodeType<B>("Go"); }'
+    found = read(of.format("A") + of.format("B") + register)
+    assert [(node.name, node.class_name) for node in found.nodes] == [("Go", "A")]
+    assert unseen(found) == ["a.cpp:3:47: `Go` is also registered at a.cpp:3:12, as another node"]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "struct A : Unknown { static PortsList providedPorts() { return {}; } };\n"
+            'void f() { factory.registerNodeType<A>("Go"); }',
+            "a.cpp:2:12: the category of `Go` cannot be seen: `Unknown` is not in the sources",
+        ),
+        (
+            'void f() { factory.registerNodeType<Elsewhere>("Go"); }',
+            "a.cpp:1:12: the class `Elsewhere` of the node `Go` is not in the sources",
+        ),
+        (
+            "struct A : BT::SyncActionNode {};\nvoid f(std::string id) { factory.registerNodeType<A>(id); }",
+            "a.cpp:2:26: the name of this node is an expression: `id`",
+        ),
+        (
+            "void f() { factory.registerBuilder(manifest, builder); }",
+            "a.cpp:1:12: it cannot be seen which node this registers: `manifest`",
+        ),
+    ],
+)
+def test_a_node_that_cannot_be_seen_is_left_out_and_reported(text: str, message: str) -> None:
+    found = read(text)
+    assert (found.nodes, unseen(found)) == ((), [message])
+
+
+@pytest.mark.parametrize(
+    ("returned", "message"),
+    [
+        (
+            'PortsList list = { InputPort<int>("a") }; for (auto t : all()) { list.insert(InputPort<int>(t)); }'
+            " return list;",
+            "it cannot be seen which ports this provides: `for (auto t : all()) { list.insert(InputPort<int>(t)); }`",
+        ),
+        ("return { InputPort<int>(name()) };", "the name of this port is an expression: `InputPort<int>(name())`"),
+        (
+            'PortsList list = { InputPort<int>("a") }; if (debug) { list.erase("a"); } return list;',
+            'it cannot be seen which ports this provides: `if (debug) { list.erase("a"); }`',
+        ),
+        ("return readPorts();", "it cannot be seen which ports this provides: `return readPorts();`"),
+    ],
+)
+def test_ports_that_cannot_be_seen_are_reported_and_make_the_node_incomplete(returned: str, message: str) -> None:
+    found = read(move(f"static PortsList providedPorts() {{ {returned} }}"))
+    assert [node.complete for node in found.nodes] == [False]
+    assert [each.message for each in found.unseen] == [message]
+
+
+def test_a_template_that_registers_what_it_is_given_registers_nothing_itself() -> None:
+    found = read(
+        """
+        struct A : BT::SyncActionNode { static PortsList providedPorts() { return {}; } };
+        template <class NodeT> void registerOne(BT::BehaviorTreeFactory& factory, const std::string& id)
+        {
+          BT::TreeNodeManifest manifest;
+          factory.registerBuilder(manifest, builder);
+          factory.registerNodeType<NodeT>(id);
+        }
+        void f() { registerOne<A>(factory, "A"); }
+        """
+    )
+    assert ([node.name for node in found.nodes], unseen(found)) == (["A"], [])
+
+
+def test_the_code_cannot_be_read_where_the_grammar_fails() -> None:
+    found = read('BT_REGISTER_NODES(factory) { factory.registerNodeType<A>"A"); ) }')
+    assert found.nodes == ()
+    assert unseen(found) == ["a.cpp:1:60: the C++ grammar cannot read this"]
+
+
+WITHOUT = {
+    'if (!getInput("p", p)) { throw 1; }': "fails",
+    'if (!getInput("p", p)) return BT::NodeStatus::FAILURE;': "fails",
+    'auto r = getInput<int>("p"); if (!r) { throw 1; }': "fails",
+    'auto r = getInput<int>("p"); if (!r.has_value()) { return NodeStatus::FAILURE; }': "fails",
+    'if (auto r = getInput<int>("p"); !r) throw 1;': "fails",
+    'use(getInput<int>("p").value());': "fails",
+    'auto r = getInput<int>("p"); use(r.value());': "fails",
+    'if (!getInput("p", p)) { p = 3; }': "goes on",
+    'if (getInput("p", p)) { use(p); }': "goes on",
+    'if (getInput("p", p)) { use(p); } else { throw 1; }': "fails",
+    'use(getInput<int>("p").value_or(3));': "goes on",
+    'BT::getInputOrBlackboard("p", p);': "goes on",
+    'getInput("p", p);': "ignores",
+    '[[maybe_unused]] auto r = getInput("p", p);': "ignores",
+    'if (flag && !getInput("p", p)) { throw 1; }': "",
+    'if (!getInput("p", p)) { return; }': "",
+    'check(getInput<int>("p"));': "",
+    'if (!getInput("p", p)) { p = 3; } getInput("p", p);': "ignores",
+    'if (!getInput("p", p)) { throw 1; } getInput("p", p);': "fails",
+}
+
+
+@pytest.mark.parametrize("code", WITHOUT)
+def test_what_the_code_does_without_an_input(code: str) -> None:
+    body = f'static PortsList providedPorts() {{ return {{ InputPort<int>("p") }}; }} NodeStatus tick() {{ {code} }}'
+    assert moved(body).without == (("p", WITHOUT[code]),)
+
+
+def test_ports_that_the_code_never_names_and_names_that_are_no_ports() -> None:
+    body = """
+        static PortsList providedPorts() {
+          return { InputPort<int>("used"), InputPort<int>(kName), InputPort<int>("unused"), OutputPort<int>("never") };
+        }
+        NodeStatus tick() { getInput("used", x); getInput(kName, x); getInput("usde", x); setOutput("out", x); }
+    """
+    node = moved(body, more='constexpr auto kName = "by_constant";')
+    assert [port.name for port in node.unread] == ["unused", "never"]
+    assert [(use.port, use.writes, str(use.place)) for use in node.undeclared] == [
+        ("usde", False, "a.cpp:9:62"),
+        ("out", True, "a.cpp:9:83"),
+    ]
+
+
+def test_a_port_is_not_called_unread_where_code_is_missing() -> None:
+    body = 'static PortsList providedPorts() { return { InputPort<int>("p") }; } NodeStatus tick() override;'
+    assert moved(body).unread == ()
+    assert moved(body.replace(" override;", " { }")).unread != ()
+    assert (
+        moved(
+            f"{body.removesuffix('NodeStatus tick() override;')}", "Base", "struct Base : BT::RosActionNode<M> {};"
+        ).unread
+        == ()
+    )
