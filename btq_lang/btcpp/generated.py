@@ -10,7 +10,7 @@ from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Eleme
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_generated_mark, own_description
 from btq_lang.btcpp.version3 import Change
 from btq_lang.btcpp.wrappers import MARK, MOVED, holding_nodes, unwrapped
-from btq_lang.util.text import Span
+from btq_lang.util.text import Span, counted
 
 
 def may_be_generated(text: str) -> bool:
@@ -34,14 +34,11 @@ def without_generated(document: Document, changes: list[Change]) -> int:
                 described += _cut(element, index)
                 break
     if enforcing or described:
-        parts = [
-            *(
-                (_counted(len(enforcing), "node that enforces requirements", "nodes that enforce requirements"),)
-                if enforcing
-                else ()
-            ),
-            *((_counted(len(described), "description", "descriptions"),) if described else ()),
-        ]
+        parts: list[str] = []
+        if enforcing:
+            parts.append(counted(len(enforcing), "node that enforces requirements", "nodes that enforce requirements"))
+        if described:
+            parts.append(counted(len(described), "description"))
         first = min((*enforcing, *described))
         changes.append(Change(first, f"removed what `btq build` added: {', '.join(parts)}"))
     return len(described)
@@ -50,10 +47,6 @@ def without_generated(document: Document, changes: list[Change]) -> int:
 def _is_mark(content: Content) -> bool:
     """Whether it is the comment that names the file to edit; its removal is not reported."""
     return isinstance(content, Comment) and is_generated_mark(content.text)
-
-
-def _counted(number: int, one: str, many: str) -> str:
-    return f"{number} {one if number == 1 else many}"
 
 
 def _take_out(parent: Element, holding: set[Element], found: list[Span]) -> None:

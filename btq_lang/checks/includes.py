@@ -10,7 +10,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.syntax.tree import Entry, Include, quote
-from btq_lang.util.text import Span
+from btq_lang.util.text import Span, counted
 from btq_lang.workspace.file import is_btq
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def include_with_errors(view: View, entry: Entry, errors_in: ErrorsIn) -> Iterat
         yield Diagnostic(
             "include-with-errors",
             include.path.span,
-            f"{which} has {len(errors)} error{'s' if len(errors) > 1 else ''}: {message}",
+            f"{which} has {counted(len(errors), 'error')}: {message}",
             related=(Related(place, "first error" if len(errors) > 1 else "here"),),
             notes=notes,
         )

@@ -21,7 +21,7 @@ from btq_lang.diagnostics.model import Place
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.util.record import Record, replace
-from btq_lang.util.text import Span
+from btq_lang.util.text import Span, counted
 from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_whole
 
 
@@ -291,7 +291,7 @@ def _write(targets: list[Target], options: Namespace) -> int:
         print(f"{'wrote' if target.text is not None else 'removed'} {shown(target.path)}")
     same = len(targets) - len(changed)
     if same:
-        print(f"{same} file{'' if same == 1 else 's'} unchanged", file=sys.stderr)
+        print(f"{counted(same, 'file')} unchanged", file=sys.stderr)
     return 0
 
 

@@ -14,6 +14,7 @@ from btq_lang.commands.reporting import FOR_PEOPLE, form_of, is_coloured, report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.render import Finding, Report, Trouble
 from btq_lang.util.record import replace
+from btq_lang.util.text import counted
 from btq_lang.workspace.config import Project, unknown_rule
 from btq_lang.workspace.factories import merged
 from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
@@ -114,7 +115,7 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
 
         count, trouble = add_ignores(groups, findings, options.add_ignore)
         _tell(trouble)
-        print(f"Added {count} comment{'' if count == 1 else 's'}", file=sys.stderr)
+        print(f"Added {counted(count, 'comment')}", file=sys.stderr)
         again = copy(options)
         again.add_ignore = None
         code, watched = _check(again, files)
@@ -168,7 +169,7 @@ def _show_fixes(groups: tuple[Group, ...], options: CheckOptions, has_problems: 
     after, mended = fix(groups, lambda diagnostic: _is_wanted(diagnostic, options))
     is_changed = show_fixes(groups, after, is_coloured(options, sys.stdout))
     if mended:
-        print(f"Would fix {mended} problem{'s' if mended > 1 else ''}", file=sys.stderr)
+        print(f"Would fix {counted(mended, 'problem')}", file=sys.stderr)
     return 2 if has_problems else int(is_changed and not options.exit_zero)
 
 

@@ -9,7 +9,7 @@ from argparse import Namespace
 from btq_lang.commands.files import Files, usage_problem, write_stdout
 from btq_lang.formatter import format_text
 from btq_lang.render.colour import painter, wants_colour
-from btq_lang.util.text import LineIndex
+from btq_lang.util.text import LineIndex, counted
 from btq_lang.workspace.loader import LoadProblem, shown, write_whole
 
 
@@ -76,13 +76,10 @@ def _show_diff(path: str, old: str, new: str, options: Namespace) -> None:
 
 
 def _sum_up(count: int, changed: int, refused: int, is_dry_run: bool) -> None:
-    def files(number: int) -> str:
-        return f"{number} file{'' if number == 1 else 's'}"
-
     verb = "would be formatted" if is_dry_run else "formatted"
-    parts = [f"{files(changed)} {verb}"] if changed else []
+    parts = [f"{counted(changed, 'file')} {verb}"] if changed else []
     if refused:
-        parts.append(f"{files(refused)} not formatted")
+        parts.append(f"{counted(refused, 'file')} not formatted")
     if count - changed - refused or not parts:
-        parts.append(f"{files(count - changed - refused)} unchanged")
+        parts.append(f"{counted(count - changed - refused, 'file')} unchanged")
     print(", ".join(parts), file=sys.stderr)

@@ -15,7 +15,7 @@ from btq_lang.btcpp.version3 import Change
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.util.record import Record, replace
-from btq_lang.util.text import LineIndex
+from btq_lang.util.text import LineIndex, counted
 from btq_lang.workspace.config import include_candidates
 from btq_lang.workspace.loader import LoadProblem, absolute, decoded, find_project, read, shown, write_whole
 
@@ -145,7 +145,7 @@ def _without_side_file(job: _Job, advice: str) -> _Job:
     number = job.done.described
     if not number:
         return job
-    nodes = "1 node" if number == 1 else f"{number} nodes"
+    nodes = counted(number, "node")
     return replace(job, losses=(f"the requirements or qualities of {nodes} are lost: {advice}",))
 
 
@@ -223,15 +223,12 @@ def _show_changes(job: _Job) -> None:
 
 
 def _sum_up(written: list[_Job], refused: int) -> None:
-    def files(number: int) -> str:
-        return f"{number} file{'' if number == 1 else 's'}"
-
     changes = sum(len(job.done.changes) for job in written)
-    with_changes = f" with {changes} change{'' if changes == 1 else 's'}" if changes else ""
+    with_changes = f" with {counted(changes, 'change')}" if changes else ""
     others = sum(len(job.others) for job in written)
-    parts = [f"{files(len(written) + others)} imported{with_changes}"]
+    parts = [f"{counted(len(written) + others, 'file')} imported{with_changes}"]
     if refused:
-        parts.append(f"{files(refused)} not imported")
+        parts.append(f"{counted(refused, 'file')} not imported")
     print(", ".join(parts), file=sys.stderr)
     for command in dict.fromkeys(command for job in written for command in _missing(job)):
         print(f"To import an included file: {command}", file=sys.stderr)

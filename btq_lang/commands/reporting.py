@@ -12,6 +12,7 @@ from btq_lang.commands.files import STDIN
 from btq_lang.commands.output import mission_problem, terminal_width, write_output
 from btq_lang.render import Report, render, with_paths
 from btq_lang.render.colour import wants_colour
+from btq_lang.util.text import counted
 from btq_lang.workspace.loader import absolute, shown
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ def write_report(report: Report, options: CheckOptions, mended: int) -> bool:
     stream = sys.stderr if options.fix and STDIN in options.paths else sys.stdout
     width = terminal_width() if stream.isatty() and not options.output_file else 120
     pieces = _pieces(_named(report, form), form, options.statistics, is_coloured(options, stream), width)
-    last = f"Fixed {mended} problem{'s' if mended > 1 else ''}\n" if mended and form in FOR_PEOPLE else ""
+    last = f"Fixed {counted(mended, 'problem')}\n" if mended and form in FOR_PEOPLE else ""
     if options.output_file:
         return write_output("check", options.output_file, "".join((*pieces, last))) == 0
     for piece in chain(pieces, (last,)):

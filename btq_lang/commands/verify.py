@@ -28,6 +28,7 @@ from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
 from btq_lang.evidence.verifying import judged
 from btq_lang.render.colour import wants_colour
+from btq_lang.util.text import counted
 from btq_lang.workspace.loader import IS_SPECIAL, collect, find_project, is_special, shown
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def run(options: Namespace) -> int:
                 of_files,
                 options.mission,
                 with_timelines=form == "html",
-                progress=lambda files, runs: progress.reached(files, f", {runs} run{'' if runs == 1 else 's'} judged"),
+                progress=lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"),
             )
         report = found.report
         problems += found.problems

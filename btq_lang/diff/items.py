@@ -10,6 +10,7 @@ from typing import Final
 
 from btq_lang.diff.changes import Change, Detail, details
 from btq_lang.diff.contents import MAIN, MISSION, Item, Part, Value
+from btq_lang.util.text import counted
 
 # The things that can be renamed: others refer to them by name.
 _RENAMED: Final = ("requirement", "signal", "context", "quality", "node model")
@@ -121,4 +122,4 @@ def _attached(nodes: Iterable[Part]) -> dict[str, int]:
 
 
 def _nodes(number: int) -> str:
-    return "no node" if number == 0 else f"{number} node{'' if number == 1 else 's'}"
+    return counted(number, "node") if number else "no node"

@@ -10,6 +10,7 @@ from typing import Final
 
 from btq_lang.diff.changes import Change, Detail
 from btq_lang.util.record import Record
+from btq_lang.util.text import counted
 
 SIGNS: Final = {"added": "+", "removed": "-", "moved": ">", "changed": "~", "renamed": "~"}
 TITLES: Final = {
@@ -43,7 +44,7 @@ def headline(change: Change) -> tuple[str, str, str]:
         return change.thing, change.earlier or "", f"renamed to {change.name}"
     words: list[str] = [change.what]
     if change.below:
-        words.append(f"with {change.below} node{'' if change.below == 1 else 's'} below")
+        words.append(f"with {counted(change.below, 'node')} below")
     if change.around:
         words.append(f"{'around' if change.what == 'added' else 'from around'} {_row(change.around)}")
     if change.what == "moved" and change.earlier != change.name:

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.over_run import target_of
 from btq_lang.evidence.verdicts import Link
-from btq_lang.evidence.wording import counted, duration
+from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import Span, Total
+from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.history import Nearby

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import WORST_FIRST
-from btq_lang.evidence.wording import counted
 from btq_lang.render.gfm import code, escaped, table
+from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import MissionVerdicts, Report

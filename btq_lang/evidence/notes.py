@@ -12,6 +12,7 @@ from btq_lang.evidence.readers import SUFFIXES
 from btq_lang.evidence.wording import period
 from btq_lang.syntax.tree import Signal
 from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.util.text import counted
 from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
@@ -87,8 +88,7 @@ def no_logs(requested: Iterable[str]) -> str:
 def foreign_runs(report: Report) -> Iterator[str]:
     """Reports runs that belong to other missions."""
     for each in report.foreign:
-        runs = f"{each.runs} run{'' if each.runs == 1 else 's'}"
-        yield f"{each.file}: {runs} {each.of}, not judged"
+        yield f"{each.file}: {counted(each.runs, 'run')} {each.of}, not judged"
 
 
 _NEAR: Final = 60_000_000  # µs: a robot may log a minute before its tree starts, or after it has ended

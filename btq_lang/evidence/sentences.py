@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.tally import USUAL_CONFIDENCE
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
-from btq_lang.evidence.wording import counted, duration, moment, share
+from btq_lang.evidence.wording import duration, moment, share
+from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import ClauseVerdict, Violation

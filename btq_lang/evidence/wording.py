@@ -79,10 +79,5 @@ def timestamp(time: int) -> str:
     return found.isoformat(timespec="microseconds").replace("+00:00", "Z") if found is not None else f"{time} us"
 
 
-def counted(number: int, one: str) -> str:
-    """`1 run`, `2 runs`."""
-    return f"{number} {one}{'' if number == 1 else 's'}"
-
-
 _MILLISECOND, _SECOND, _MINUTE, _HOUR = map(_unit, ("ms", "s", "min", "h"))
 _EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)

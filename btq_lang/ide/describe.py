@@ -24,7 +24,7 @@ from btq_lang.ide.outline import clauses_detail
 from btq_lang.ide.ports import NodePort, ports_of_kind, ports_of_tree
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import Apply, Context, Model, Node, QualityDecl, Requirement, Signal, Tree, Word, walk
-from btq_lang.util.text import Span
+from btq_lang.util.text import Span, counted
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.references import What
 from btq_lang.workspace.workspace import Workspace
@@ -78,7 +78,7 @@ def tree(workspace: Workspace, path: str, name: str) -> str:
     attached = clauses_detail(item.clauses) if isinstance(item, Tree) else ""
     ports = _ports(ports_of_tree(workspace, found.path, name))
     count = sum(1 for _ in item.walk()) if isinstance(item, Tree) else 0
-    size = f"{count} node{'s' if count != 1 else ''} · {workspace.project.shown(found.path)}"
+    size = f"{counted(count, 'node')} · {workspace.project.shown(found.path)}"
     wanted = Subject(What.TREE, name, home_of(found))
     return "\n\n".join(filter(None, (shown, attached, size, ports, used(workspace, wanted, "Run by"))))
 

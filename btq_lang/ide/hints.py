@@ -11,7 +11,7 @@ from btq_lang.ide.ports import ports_of
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Claim, Entry, Requirement, Root
 from btq_lang.util.record import Record
-from btq_lang.util.text import Span
+from btq_lang.util.text import Span, counted
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.inputs import everything
 from btq_lang.workspace.queries import Store
@@ -86,12 +86,12 @@ def code_lenses(workspace: Workspace, path: str) -> tuple[Lens, ...]:
             is_main_tree = is_top or any(_is_root(one.entry) for one in mentions)
             titles = ["main tree"] if is_main_tree else []
             if others or not is_main_tree:
-                titles.append(_counted(len(others), "call"))
+                titles.append(counted(len(others), "call"))
             found.append(Lens(place.span, ", ".join(titles), others))
             continue
         is_in_place = not isinstance(place.entry.item, Requirement)
         uses = (own, *others) if is_in_place and others else others
-        titles = [_counted(len(uses), "use")]
+        titles = [counted(len(uses), "use")]
         nodes: tuple[tuple[str, Span], ...] = ()
         if _names_its_subject(place):
             missions = missions_of(workspace, path)
@@ -99,15 +99,11 @@ def code_lenses(workspace: Workspace, path: str) -> tuple[Lens, ...]:
                 dict.fromkeys(at for one in missions[:_MOST_MISSIONS] for at in _subjects(workspace, one, place))
             )
             more = " or more" if len(missions) > _MOST_MISSIONS else ""
-            holds = [f"holds for {_counted(len(nodes), 'node')}{more}"] if nodes else []
+            holds = [f"holds for {counted(len(nodes), 'node')}{more}"] if nodes else []
             titles = [*(titles if uses or not nodes else ()), *holds]
         if uses or nodes or not is_in_place:
             found.append(Lens(place.span, ", ".join(titles), tuple(dict.fromkeys((*uses, *nodes)))))
     return tuple(found)
-
-
-def _counted(number: int, word: str) -> str:
-    return f"{number} {word}{'s' if number != 1 else ''}"
 
 
 def _is_root(entry: Entry | None) -> bool:

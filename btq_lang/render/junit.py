@@ -13,7 +13,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.render.cells import printable
 from btq_lang.render.location import location
 from btq_lang.render.report import Finding, Report, Trouble
-from btq_lang.render.summary import counted
+from btq_lang.render.summary import counted_by_severity
 
 _FAILURES = (Severity.ERROR, Severity.WARNING)
 
@@ -51,7 +51,7 @@ def _case(report: Report, path: str, findings: list[Finding], troubles: list[Tro
         yield "\n".join(escaped(str(trouble)) for trouble in troubles) + "</error>\n"
     if failures:
         worst = next(severity for severity in _FAILURES if _has(failures, severity))
-        yield f'      <failure type="{worst.value}" message="{counted(failures)}">'
+        yield f'      <failure type="{worst.value}" message="{counted_by_severity(failures)}">'
         yield "\n".join(_lines(report, failures)) + "</failure>\n"
     if others:
         yield "      <system-out>" + "\n".join(_lines(report, others)) + "</system-out>\n"

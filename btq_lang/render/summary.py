@@ -6,15 +6,16 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.render.report import Finding, Report
 
 _WORDS = {
-    Severity.ERROR: ("error", "errors"),
-    Severity.WARNING: ("warning", "warnings"),
-    Severity.INFO: ("info message", "info messages"),
-    Severity.HINT: ("hint", "hints"),
+    Severity.ERROR: "error",
+    Severity.WARNING: "warning",
+    Severity.INFO: "info message",
+    Severity.HINT: "hint",
 }
 
 
@@ -27,15 +28,19 @@ def summary(report: Report) -> str:
     known = f", and {report.known} in the baseline" if report.known else ""
     if not report.findings:
         new = "new " if known else ""
-        return f"No {new}problems found in {_number(len(report.checked), 'file', 'files')}{known}"
+        return f"No {new}problems found in {counted(len(report.checked), 'file')}{known}"
     fixable = sum(map(is_fixable, report.findings))
-    return f"Found {counted(report.findings)}" + (f" ({fixable} fixable with --fix)" if fixable else "") + known
+    return (
+        f"Found {counted_by_severity(report.findings)}"
+        + (f" ({fixable} fixable with --fix)" if fixable else "")
+        + known
+    )
 
 
-def counted(findings: Iterable[Finding]) -> str:
+def counted_by_severity(findings: Iterable[Finding]) -> str:
     """`3 errors, 1 warning`, worst first; empty for no findings."""
     counts = count(findings)
-    return ", ".join(_number(counts[severity], *words) for severity, words in _WORDS.items() if counts[severity])
+    return ", ".join(counted(counts[severity], word) for severity, word in _WORDS.items() if counts[severity])
 
 
 def count(findings: Iterable[Finding]) -> dict[Severity, int]:
@@ -49,7 +54,3 @@ def count(findings: Iterable[Finding]) -> dict[Severity, int]:
 def is_fixable(finding: Finding) -> bool:
     """Whether `btq check --fix` fixes it."""
     return any(fix.safe for fix in finding.diagnostic.fixes)
-
-
-def _number(number: int, one: str, many: str) -> str:
-    return f"{number} {one if number == 1 else many}"

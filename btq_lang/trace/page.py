@@ -17,7 +17,8 @@ from btq_lang.graph.svg import STYLE, colours, part
 from btq_lang.trace.overview import At, NodeRow, Overview, RequirementRow, TreeRow
 from btq_lang.trace.page_parts import PAGE_STYLE, SCRIPT
 from btq_lang.trace.verdicts import VERDICT_STYLE, verdicts
-from btq_lang.trace.wording import GAPS, counted, remarks, shown_quality, summary
+from btq_lang.trace.wording import GAPS, remarks, shown_quality, summary
+from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import MissionVerdicts

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import VIOLATED, WORST_FIRST
-from btq_lang.evidence.wording import counted, duration, quantity, timestamp
+from btq_lang.evidence.wording import duration, quantity, timestamp
+from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import (

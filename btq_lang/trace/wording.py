@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from btq_lang.trace.overview import Overview, QualityRow, RequirementRow, Use
+from btq_lang.util.text import counted
 
 
 def summary(overview: Overview) -> str:
@@ -23,11 +24,6 @@ def summary(overview: Overview) -> str:
     of = f"{sentence}; of {counted(sum(skills.values()), 'custom leaf node')}, {skills['own']}"
     of += " carries" if skills["own"] == 1 else " carry"
     return f"{of} a quality or a requirement, {skills['above']} only through a node above, {skills['none']} not at all."
-
-
-def counted(number: int, one: str, several: str = "") -> str:
-    """`1 node`, `2 nodes`."""
-    return f"{number} {one if number == 1 else several or one + 's'}"
 
 
 def shown_quality(quality: QualityRow) -> str:

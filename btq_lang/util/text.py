@@ -213,6 +213,11 @@ def _line_starts(text: str) -> Iterator[int]:
     return accumulate([len(line) + 1 for line in lines])
 
 
+def counted(number: int, one: str, several: str = "") -> str:
+    """`1 node`, `2 nodes`; `several` for a plural that does not end in `s`."""
+    return f"{number} {one if number == 1 else several or one + 's'}"
+
+
 def width_of(text: str, encoding: Encoding) -> int:
     """How many columns a text takes: code points, or code units in UTF-8 or UTF-16."""
     if encoding == "code-points" or text.isascii():

@@ -11,8 +11,8 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import compared
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
-from btq_lang.evidence.wording import counted
 from btq_lang.requirements.model import Value
+from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.limits import Measure

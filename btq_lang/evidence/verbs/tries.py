@@ -12,8 +12,8 @@ from btq_lang.evidence.limits import compared
 from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
-from btq_lang.evidence.wording import counted
 from btq_lang.requirements.model import Target
+from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
