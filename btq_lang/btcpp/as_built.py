@@ -17,9 +17,9 @@ from btq_lang.btcpp.side_file import side_path
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import Include
 from btq_lang.util.record import Record
-from btq_lang.workspace.config import Project, include_candidates
-from btq_lang.workspace.file import File
-from btq_lang.workspace.loader import absolute, shown
+from btq_lang.workspace.config import include_candidates
+from btq_lang.workspace.file import File, is_of_package
+from btq_lang.workspace.loader import absolute, find_project, shown
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
 
         def text(self, path: str) -> str | None:
             """The text of a file; None if it cannot be read."""
-
-        def project(self, path: str) -> Project:
-            """The project of a file."""
 
         def workspace(self, path: str, known: dict[str, str]) -> Workspace | None:
             """A file with all that it includes; the known texts replace those of the source."""
@@ -140,7 +137,7 @@ def _missing(made: _Made, xml: str, place: str, source: Source) -> Iterator[tupl
     includes = tuple(_includes(made.text)) if place.endswith(".btq") else ()
     if len(includes) != len(made.includes):
         return
-    project = source.project(place)
+    project = find_project(place).project
     for said, named in zip(includes, made.includes, strict=True):
         if said is None or named is None:
             continue
@@ -154,5 +151,5 @@ def _includes(text: str) -> Iterator[str | None]:
     """The paths that a mission includes; None for a file of a package."""
     for entry in parse(text).entries:
         if isinstance(entry.item, Include):
-            is_packaged = any(pair.key.text == "ros_pkg" for pair in entry.item.attributes)
-            yield None if is_packaged or entry.item.path is None else entry.item.path.text
+            path = entry.item.path
+            yield None if path is None or is_of_package(entry.item) else path.text

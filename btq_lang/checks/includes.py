@@ -11,7 +11,7 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.syntax.tree import Entry, Include, quote
 from btq_lang.util.text import Span, counted
-from btq_lang.workspace.file import is_btq
+from btq_lang.workspace.file import is_btq, is_of_package
 
 if TYPE_CHECKING:
     from btq_lang.workspace.queries import Store
@@ -25,7 +25,7 @@ NOWHERE = "; neither this file nor its includes define it"
 def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """An included file that cannot be found."""
     include = entry.item
-    if not isinstance(include, Include) or include.path is None or _from_ros_package(include):
+    if not isinstance(include, Include) or include.path is None or is_of_package(include):
         return
     path = include.path.text
     if view.look_up(lookups.included, view.facts) is not None:
@@ -119,10 +119,6 @@ def include_line(head: tuple[int, str], path: str, other: str) -> tuple[int, str
     """
     at, margin = head
     return at, f"{margin}include {quote(posixpath.relpath(other, posixpath.dirname(path) or '.'))}\n"
-
-
-def _from_ros_package(include: Include) -> bool:
-    return any(pair.key.text == "ros_pkg" for pair in include.attributes)
 
 
 def _meant(view: View, path: str) -> tuple[str, ...]:

@@ -19,8 +19,8 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES
-from btq_lang.syntax.tree import Entry, Include, Model, Word, is_name, quote
-from btq_lang.util.spelling import did_you_mean, distance
+from btq_lang.syntax.tree import Entry, Include, Model, Word, quote, written
+from btq_lang.util.spelling import did_you_mean, distance, without_digits
 from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Symbol, interface
 
@@ -231,11 +231,6 @@ def include_place(entry: Entry) -> Span:
     return item.path.span if isinstance(item, Include) and item.path else Span(item.start, item.end)
 
 
-def written(name: str) -> str:
-    """A name as it is written in a file: in quotes if needed."""
-    return name if is_name(name) else quote(name)
-
-
 def way_in(view: View) -> tuple[str, ...]:
     """How to turn XML for version 3 into a file for version 4."""
     origin = view.look_up(lookups.origin)
@@ -324,15 +319,11 @@ def _is_slip(word: str, meant: str) -> bool:
     Switch6."""
     is_builtin = lookup(meant) is not None
     word, meant = word.casefold(), meant.casefold()
-    if _without_digits(word) == _without_digits(meant):
+    if without_digits(word) == without_digits(meant):
         return word == meant
     short_and_replaced = len(word) == len(meant) < 6 and sorted(word) != sorted(meant)
     most = 2 if len(word) >= 12 and is_builtin else 1
     return distance(word, meant) <= most and not short_and_replaced
-
-
-def _without_digits(word: str) -> str:
-    return "".join(letter for letter in word if not letter.isdigit())
 
 
 def _tree_as_node(view: View, seen: ResolvedNode, name: Word) -> Diagnostic:

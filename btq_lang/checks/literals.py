@@ -12,13 +12,12 @@ from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, PortKind, port_type
 from btq_lang.catalog.units import a_dimension, convert, parse_unit
-from btq_lang.checks.kinds import written
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import BRACED, QUANTITY
-from btq_lang.syntax.tree import Entry, Model, Models, Pair, Port, Tree, Word, quote
+from btq_lang.syntax.tree import Entry, Model, Models, Pair, Port, Tree, Word, quote, written
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:

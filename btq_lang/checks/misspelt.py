@@ -15,7 +15,7 @@ from btq_lang.checks.entries import Mention, blackboards
 from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.syntax.tree import Entry, Tree, Verbatim
-from btq_lang.util.spelling import distance
+from btq_lang.util.spelling import distance, without_digits
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
@@ -157,7 +157,7 @@ def _is_slip(word: str, meant: str) -> bool:
     folded, other = _folded(word), _folded(meant)
     if folded == other or _is_skeleton(folded, other):
         return len(folded) > 2
-    if _without_digits(folded) == _without_digits(other):
+    if without_digits(folded) == without_digits(other):
         return False
     short, long = sorted((folded, other), key=len)
     if len(long) < 4 or long in (f"{short}s", f"{short}es") or distance(folded, other) > 1:
@@ -190,7 +190,3 @@ def _folded(name: str) -> str:
 
 def _without_vowels(name: str) -> str:
     return "".join(letter for letter in name if letter not in "aeiou")
-
-
-def _without_digits(name: str) -> str:
-    return "".join(letter for letter in name if not letter.isdigit())

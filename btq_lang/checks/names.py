@@ -9,10 +9,10 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import instance_name_problem, legal_name, model_name_problem, port_name_problem
 from btq_lang.catalog.versions import UNIQUE_SUBTREES
 from btq_lang.checks import lookups
-from btq_lang.checks.kinds import likely_category, written
+from btq_lang.checks.kinds import likely_category
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Model, Models, Tree, Word, is_name
+from btq_lang.syntax.tree import Entry, Model, Models, Tree, Word, is_name, written
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 

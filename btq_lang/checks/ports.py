@@ -13,11 +13,11 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.checks import lookups
-from btq_lang.checks.kinds import is_torn, model_related, way_in, written
+from btq_lang.checks.kinds import is_torn, model_related, way_in
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word
+from btq_lang.syntax.tree import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word, written
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span

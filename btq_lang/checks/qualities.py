@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
-from btq_lang.checks.kinds import written
 from btq_lang.diagnostics.model import Diagnostic, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Qualities, Requirement
+from btq_lang.syntax.tree import Entry, Qualities, Requirement, written
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Use

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks.includes import NOWHERE, include_fix
-from btq_lang.checks.kinds import include_place, written
+from btq_lang.checks.kinds import include_place
 from btq_lang.checks.view import COUNTS, View
 from btq_lang.diagnostics.model import Diagnostic, Related, Tag, replace_fix
-from btq_lang.syntax.tree import Claim, Entry, OnViolation, Requirement
+from btq_lang.syntax.tree import Claim, Entry, OnViolation, Requirement, written
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.workspace.symbols import Symbol, same_requirement
 

@@ -10,11 +10,11 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
-from btq_lang.checks.kinds import include_place, is_torn, written
+from btq_lang.checks.kinds import include_place, is_torn
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.blocks import OF_ITS_OWN
-from btq_lang.syntax.tree import Entry, Model, Node, Tree
+from btq_lang.syntax.tree import Entry, Model, Node, Tree, written
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Use

@@ -16,10 +16,10 @@ from btq_lang.btcpp.side_file import is_side_file, side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.commands.building import errors, for_target
 from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
+from btq_lang.commands.output import is_coloured
 from btq_lang.commands.stale_outputs import stale_outputs
 from btq_lang.diagnostics.model import Place
 from btq_lang.render import Finding, Report, render, with_paths
-from btq_lang.render.colour import wants_colour
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Span, counted
 from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_whole
@@ -163,7 +163,7 @@ def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
         return False
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     report = with_paths(Report(tuple(findings), texts, tuple(path for group in groups for path in group.given)), shown)
-    colour = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
+    colour = is_coloured(options, sys.stdout.isatty())
     for piece in render(options.report, report, colour=colour, width=120):
         sys.stdout.write(piece)
     print("nothing was written", file=sys.stderr)

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from btq_lang.checks import check, check_each
 from btq_lang.checks.includes import is_reported_beside
 from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
-from btq_lang.commands.reporting import FOR_PEOPLE, form_of, is_coloured, report_problem, write_report
+from btq_lang.commands.output import is_coloured
+from btq_lang.commands.reporting import FOR_PEOPLE, form_of, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.render import Finding, Report, Trouble
 from btq_lang.util.record import replace
@@ -167,7 +168,7 @@ def _show_fixes(groups: tuple[Group, ...], options: CheckOptions, has_problems: 
     from btq_lang.commands.fixing import fix, show_fixes
 
     after, mended = fix(groups, lambda diagnostic: _is_wanted(diagnostic, options))
-    is_changed = show_fixes(groups, after, is_coloured(options, sys.stdout))
+    is_changed = show_fixes(groups, after, is_coloured(options, sys.stdout.isatty()))
     if mended:
         print(f"Would fix {counted(mended, 'problem')}", file=sys.stderr)
     return 2 if has_problems else int(is_changed and not options.exit_zero)

@@ -15,12 +15,13 @@ from btq_lang.btcpp.recognition import is_mission
 from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import STDIN, Files, Group
 from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
+from btq_lang.commands.output import is_coloured
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.diff import Place, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, Comparison, ManualEdit, Side, compared, without_made_models
-from btq_lang.render.colour import painter, wants_colour
+from btq_lang.render.colour import painter
 from btq_lang.util.record import replace
-from btq_lang.workspace.file import SUFFIXES, File
+from btq_lang.workspace.file import SUFFIXES, File, is_of_package
 from btq_lang.workspace.loader import LoadProblem, absolute, collect, find_project, read, shown
 
 
@@ -50,7 +51,7 @@ def _rendered(comparisons: tuple[Comparison, ...], options: Namespace) -> Iterat
         return as_json.render(comparisons)
     if options.format == "markdown":
         return as_markdown.render(comparisons)
-    colour = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
+    colour = is_coloured(options, sys.stdout.isatty())
     return as_text.render(comparisons, painter(colour))
 
 
@@ -59,8 +60,9 @@ def _warn(side: Side) -> None:
     for path in side.paths:
         file = side.workspace.files[path]
         for include in file.includes:
-            is_packaged = any(pair.key.text == "ros_pkg" for pair in include.attributes)
-            if include.path is not None and not is_packaged and side.workspace.included_by(path, include) is None:
+            if include.path is None or is_of_package(include):
+                continue
+            if side.workspace.included_by(path, include) is None:
                 message = f"includes `{include.path.text}`, which does not exist: its content is not compared"
                 print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
         if file.origin is not None and DESCRIPTION_MARK in file.source:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import os
 
 from btq_lang.commands.files import Files
-from btq_lang.workspace.config import Project
-from btq_lang.workspace.loader import find_project, read
+from btq_lang.workspace.loader import read
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -18,9 +17,6 @@ class Disk:
 
     def text(self, path: str) -> str | None:
         return read(path)[0]
-
-    def project(self, path: str) -> Project:
-        return find_project(path).project
 
     def workspace(self, path: str, known: dict[str, str]) -> Workspace | None:
         files = Files()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from argparse import Namespace
 from collections.abc import Iterator
@@ -14,9 +13,9 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spel
 from btq_lang.catalog.qualities import Quality, find, parts, qualities, siblings
 from btq_lang.catalog.units import Unit, dimension_name, nearest_units, parse_unit, symbols
 from btq_lang.catalog.verdicts import VERDICTS, Verdict
+from btq_lang.commands.output import is_coloured
 from btq_lang.diagnostics.rules import RULES, page
 from btq_lang.ide.describe import in_si, si_symbol
-from btq_lang.render.colour import wants_colour
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import is_name, quote
 from btq_lang.util.spelling import near
@@ -37,7 +36,7 @@ def run(options: Namespace) -> int:
         likely = _likely(name)
         meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` lists all names"
         print(f"btq explain: unknown name `{name}`{meant}", file=sys.stderr)
-    bold = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
+    bold = is_coloured(options, sys.stdout.isatty())
     for number, text in enumerate(pages):
         print("\n" * (number > 0) + (_with_bold_headings(text) if bold else text))
     return 2 if unknown else 0

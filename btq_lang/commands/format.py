@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from argparse import Namespace
 
 from btq_lang.commands.files import Files, usage_problem, write_stdout
+from btq_lang.commands.output import is_coloured
 from btq_lang.formatter import format_text
-from btq_lang.render.colour import painter, wants_colour
+from btq_lang.render.colour import painter
 from btq_lang.util.text import LineIndex, counted
 from btq_lang.workspace.loader import LoadProblem, shown, write_whole
 
@@ -69,7 +69,7 @@ def run(options: Namespace) -> int:
 def _show_diff(path: str, old: str, new: str, options: Namespace) -> None:
     from difflib import unified_diff
 
-    colour = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
+    colour = is_coloured(options, sys.stdout.isatty())
     paint = painter(colour)
     for line in unified_diff(old.splitlines(), new.splitlines(), path, f"{path} (formatted)", lineterm=""):
         print(paint(line[:1], line) if line[:1] in "+-" else line)

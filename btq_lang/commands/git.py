@@ -14,7 +14,7 @@ from btq_lang.btcpp.marks import is_built_of
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.recognition import is_mission
 from btq_lang.btcpp.side_file import SIDE_SUFFIX, xml_path
-from btq_lang.workspace.config import Project, include_candidates
+from btq_lang.workspace.config import include_candidates
 from btq_lang.workspace.file import SUFFIXES, File
 from btq_lang.workspace.loader import absolute, find_project, read
 from btq_lang.workspace.workspace import Workspace
@@ -155,9 +155,6 @@ class Commit:
 
     def text(self, path: str) -> str | None:
         return self._known.text(self._commit, path)
-
-    def project(self, path: str) -> Project:
-        return find_project(path).project
 
     def workspace(self, path: str, known: dict[str, str]) -> Workspace | None:
         return self._known.workspace(self._commit, path, known)

@@ -12,8 +12,8 @@ from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.btcpp.version3 import Change
+from btq_lang.commands.output import is_coloured
 from btq_lang.render import Finding, Report, render, with_paths
-from btq_lang.render.colour import wants_colour
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import LineIndex, counted
 from btq_lang.workspace.config import include_candidates
@@ -207,7 +207,7 @@ def _show_findings(jobs: Iterable[_Job], options: Namespace) -> None:
     if not findings:
         return
     report = with_paths(Report(tuple(findings), {job.path: job.xml for job in jobs}, ()), shown)
-    colour = options.color == "always" or (options.color == "auto" and wants_colour(sys.stderr.isatty(), os.environ))
+    colour = is_coloured(options, sys.stderr.isatty())
     for piece in render("full", report, colour=colour, width=120):
         sys.stderr.write(piece)
 

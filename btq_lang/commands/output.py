@@ -8,11 +8,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from btq_lang.commands.files import write_stdout
+from btq_lang.render.colour import wants_colour
 from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, absolute, write_whole
 
 if TYPE_CHECKING:
     from argparse import Namespace
+
+    from btq_lang.commands.options import CheckOptions
 
 
 def form_of(options: Namespace, forms: Sequence[str]) -> str:
@@ -58,6 +61,11 @@ def write_output(command: str, path: str | None, text: str) -> int:
         print(f"btq {command}: {LoadProblem(target, f'cannot be written: {error.strerror}')}", file=sys.stderr)
         return 2
     return 0
+
+
+def is_coloured(options: Namespace | CheckOptions, is_terminal: bool) -> bool:
+    """Whether to use colours; `is_terminal`: the text goes to a terminal."""
+    return options.color == "always" or (options.color == "auto" and wants_colour(is_terminal, os.environ))
 
 
 def terminal_width() -> int:

@@ -6,12 +6,11 @@ import os
 import sys
 from collections.abc import Mapping
 from itertools import chain
-from typing import TYPE_CHECKING, Final, TextIO
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.commands.files import STDIN
-from btq_lang.commands.output import mission_problem, terminal_width, write_output
+from btq_lang.commands.output import is_coloured, mission_problem, terminal_width, write_output
 from btq_lang.render import Report, render, with_paths
-from btq_lang.render.colour import wants_colour
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import absolute, shown
 
@@ -62,19 +61,14 @@ def write_report(report: Report, options: CheckOptions, mended: int) -> bool:
     # With --fix, standard output has the new text of standard input, so the report goes to standard error.
     stream = sys.stderr if options.fix and STDIN in options.paths else sys.stdout
     width = terminal_width() if stream.isatty() and not options.output_file else 120
-    pieces = _pieces(_named(report, form), form, options.statistics, is_coloured(options, stream), width)
+    colour = options.color == "always" if options.output_file else is_coloured(options, stream.isatty())
+    pieces = _pieces(_named(report, form), form, options.statistics, colour, width)
     last = f"Fixed {counted(mended, 'problem')}\n" if mended and form in FOR_PEOPLE else ""
     if options.output_file:
         return write_output("check", options.output_file, "".join((*pieces, last))) == 0
     for piece in chain(pieces, (last,)):
         stream.write(piece)
     return True
-
-
-def is_coloured(options: CheckOptions, stream: TextIO) -> bool:
-    """Whether to use colours on a stream."""
-    wanted = not options.output_file and wants_colour(stream.isatty(), os.environ)
-    return options.color == "always" or (options.color == "auto" and wanted)
 
 
 def _pieces(report: Report, form: str, is_counted: bool, colour: bool, width: int) -> Iterator[str]:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from argparse import Namespace
 
 from btq_lang.commands.files import Files, no_mission_below, usage_problem
-from btq_lang.commands.output import form_of, form_problem, terminal_width, write_output
-from btq_lang.render.colour import wants_colour
+from btq_lang.commands.output import form_of, form_problem, is_coloured, terminal_width, write_output
 from btq_lang.trace import FORMATS
 from btq_lang.trace.missions import trace_tables
 
@@ -27,7 +25,7 @@ def run(options: Namespace) -> int:
         return 2
     table = trace_tables([(group.workspace, group.given) for group in groups], options.bundle)
     to_terminal = options.output is None and sys.stdout.isatty()
-    colour = options.color == "always" or (options.color == "auto" and wants_colour(to_terminal, os.environ))
+    colour = is_coloured(options, to_terminal)
     text = table.write(form_of(options, FORMATS), colour=colour, width=terminal_width() if to_terminal else 120)
     if code := write_output("trace", options.output, text):
         return code

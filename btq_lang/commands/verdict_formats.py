@@ -31,11 +31,11 @@ def write(
     """
     if form != "html":
         return evidence.write(report, form, colour=colour, verbose=verbose, width=width)
+    from btq_lang.trace import page
     from btq_lang.trace.missions import trace_tables
-    from btq_lang.trace.page import page
     from btq_lang.trace.verdicts import outcomes
 
     found = report.missions
     files = {mission.file for mission in found}
     parts = [(each.workspace, [each.path]) for each in missions if each.path in files]
-    return page(trace_tables(parts, details_of=outcomes(found)).overview, found)
+    return page.render(trace_tables(parts, details_of=outcomes(found)).overview, found)

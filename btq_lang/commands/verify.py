@@ -14,7 +14,7 @@ from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import side_path, xml_path
 from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import Files, usage_problem
-from btq_lang.commands.output import form_of, form_problem, terminal_width, write_output
+from btq_lang.commands.output import form_of, form_problem, is_coloured, terminal_width, write_output
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.verdict_formats import FORMATS, write
 from btq_lang.evidence.identity import Candidate
@@ -27,7 +27,6 @@ from btq_lang.evidence.readers.side import SideFile, side_file_at, side_files_be
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
 from btq_lang.evidence.verifying import judged
-from btq_lang.render.colour import wants_colour
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import IS_SPECIAL, collect, find_project, is_special, shown
 
@@ -62,7 +61,7 @@ def run(options: Namespace) -> int:
         for note in (*remarks, *foreign_runs(report)):
             print(f"btq verify: {note}", file=sys.stderr)
         to_terminal = options.output is None and sys.stdout.isatty()
-        colour = options.color == "always" or (options.color == "auto" and wants_colour(to_terminal, os.environ))
+        colour = is_coloured(options, to_terminal)
         width = terminal_width() if to_terminal else None
         text = write(report, missions, form, colour=colour, verbose=options.verbose, width=width)
         if code := write_output("verify", options.output, text):

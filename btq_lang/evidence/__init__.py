@@ -27,6 +27,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.project_evidence import SignalSource
 
 FORMATS: Final = ("table", "json", "csv", "junit", "markdown")
+_MODULES: Final = {"json": "json_document", "csv": "csv_rows"}  # named otherwise
 
 
 def verify(
@@ -111,24 +113,8 @@ def write(report: Report, form: str, *, colour: bool = False, verbose: bool = Fa
     Raises:
         ValueError: there is no such format.
     """
-    if form == "table":
-        from btq_lang.evidence.table import table
-
-        return table(report, colour, verbose, width)
-    if form == "json":
-        from btq_lang.evidence.json_document import json_text
-
-        return json_text(report)
-    if form == "csv":
-        from btq_lang.evidence.csv_rows import csv_text
-
-        return csv_text(report)
-    if form == "junit":
-        from btq_lang.evidence.junit import junit
-
-        return junit(report)
-    if form == "markdown":
-        from btq_lang.evidence.markdown import markdown
-
-        return markdown(report)
-    raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")
+    if form not in FORMATS:
+        raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")
+    options = {"colour": colour, "verbose": verbose, "width": width} if form == "table" else {}
+    text: str = import_module(f"{__name__}.{_MODULES.get(form, form)}").render(report, **options)
+    return text

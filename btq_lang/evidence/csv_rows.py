@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import Report
 
 
-def csv_text(report: Report) -> str:
+def render(report: Report) -> str:
     """The verdicts, with a heading."""
     out = io.StringIO()
     writer = csv.DictWriter(out, _COLUMNS)

@@ -30,7 +30,7 @@ _OF_NODES: Final = (
 )
 
 
-def json_text(report: Report) -> str:
+def render(report: Report) -> str:
     """Write the report as JSON."""
     sources = [_source(source, mission) for mission in report.missions for source in mission.sources]
     sources += [{"file": each.file, "mission": None, "runs": each.runs, "remarks": []} for each in report.foreign]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict
 
 
-def junit(report: Report) -> str:
+def render(report: Report) -> str:
     """The document: a violated requirement is a failure, one neither violated nor satisfied is skipped."""
     return "".join(f"{line}\n" for line in _lines(report))
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import MissionVerdicts, Report
 
 
-def markdown(report: Report) -> str:
+def render(report: Report) -> str:
     """The verdicts of each mission, and what to look at."""
     return "\n\n".join("\n".join(_lines(mission)) for mission in report.missions) + "\n"
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from btq_lang.render.colour import Paint
 
 
-def table(report: Report, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:
+def render(report: Report, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:
     """The verdicts of all missions, the worst first.
 
     Args:

@@ -58,12 +58,12 @@ def code_actions(
     diagnostics = tuple(check(workspace, path) if found is None else found)
     actions: list[Action] = []
     if wanted(QUICK_FIX):
-        here = [one for one in diagnostics if _touches(one.span, span)]
+        here = [one for one in diagnostics if one.span.touches(span)]
         for diagnostic in here:
             actions += _fixes(workspace, path, diagnostic)
             actions += () if is_foreign else _removal(workspace, path, diagnostic)
         for include in () if is_foreign else needless_includes(workspace, path):
-            if _touches(include.span, span):
+            if include.span.touches(span):
                 title = f"Remove the {include.why} include `{include.name}`"
                 actions.append(Action(title, QUICK_FIX, {path: without(workspace.files[path], [include])}))
         actions += _silencing(workspace, path, here)
@@ -77,10 +77,6 @@ def code_actions(
         title = f"Remove {len(needless)} duplicate or unused include{'s' if len(needless) > 1 else ''}"
         actions.append(Action(title, ORGANIZE, {path: without(workspace.files[path], needless)}))
     return tuple(actions)
-
-
-def _touches(one: Span, other: Span) -> bool:
-    return one.start <= other.end and other.start <= one.end
 
 
 def _fixes(workspace: Workspace, path: str, diagnostic: Diagnostic) -> Iterator[Action]:

@@ -49,7 +49,7 @@ def node_at(file: File, entry: Entry, offset: int) -> Standing | None:
     waiting: list[tuple[Node, Node | None]] = [(child, None) for child in tree.children if isinstance(child, Node)]
     while waiting:
         node, parent = waiting.pop()
-        start = _line_start(file.text, entry.start + node.start) - entry.start
+        start = line_start(file.text, entry.start + node.start) - entry.start
         if start <= inside <= max(node.end, _line_end(file.text, entry.start + node.end) - entry.start):
             return Standing(node, parent, tree, entry)
         waiting += [(child, node) for child in node.nodes]
@@ -61,7 +61,7 @@ def block_of(file: File, entry: Entry, node: Node) -> Block:
     start = entry.start + node.start
     blanks = blanks_before(file.text, start)
     span = Span(start, _line_end(file.text, entry.start + node.block_end))
-    return Block(span, blanks, start == _line_start(file.text, start) + len(blanks))
+    return Block(span, blanks, start == line_start(file.text, start) + len(blanks))
 
 
 def moved(file: File, block: Block, blanks: str) -> str:
@@ -90,7 +90,7 @@ def shifts(file: File, block: Block, blanks: str) -> Iterator[Edit]:
 
 def blanks_before(text: str, start: int) -> str:
     """The indentation of the line with an offset."""
-    line = text[_line_start(text, start) : start]
+    line = text[line_start(text, start) : start]
     return line[: len(line) - len(line.lstrip(" \t"))]
 
 
@@ -111,7 +111,8 @@ def _line_starts(file: File, span: Span) -> list[int]:
     return [start for start in starts if not any(token.start < start < token.end for token in texts)]
 
 
-def _line_start(text: str, offset: int) -> int:
+def line_start(text: str, offset: int) -> int:
+    """Where the line of an offset begins."""
     return max(text.rfind("\n", 0, offset), text.rfind("\r", 0, offset)) + 1
 
 

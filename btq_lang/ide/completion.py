@@ -16,6 +16,7 @@ from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.ide import proposals as offer
+from btq_lang.ide.block import line_start
 from btq_lang.ide.clause_words import Expected, expected, is_count, is_window
 from btq_lang.ide.completion_list import listed
 from btq_lang.ide.meaning import entry_at
@@ -140,7 +141,7 @@ def _in_comment(place: Place, offset: int) -> Completion | None:
 
 def _in_braces(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
     """`{` and what may follow: entries of the blackboard; after `{@` those of the root's."""
-    line = text[_line_start(text, offset) : offset]
+    line = text[line_start(text, offset) : offset]
     begun = re.search(r"\{(@?)([^{}\"'\s]*)$", line)
     if begun is None or place.inside == "comment":
         return None
@@ -178,7 +179,7 @@ def _in_string(workspace: Workspace, path: str, place: Place, text: str, offset:
 def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
     """Units after a number; those that fit the port, signal or verb come first.  After a count none; after the number
     of a window, what it may count comes first."""
-    line = text[_line_start(text, offset) : offset]
+    line = text[line_start(text, offset) : offset]
     begun = re.search(rf"(?:^|[^\w.])\d+(?:\.\d+)?(?:[eE][+-]?\d+)?([ \t]*)({_BEGUN_UNIT}|)$", line)
     if begun is not None:
         place = _before_unit(place_at(workspace, path, offset - len(begun[2])))  # `/` in a unit is not a division
@@ -225,10 +226,6 @@ def _before_unit(place: Place) -> Place:
 
 
 _BEGUN_UNIT = r"(?:[^\W\d_]+|%|1(?=/))(?:[*/^][^\W_]*)*"
-
-
-def _line_start(text: str, offset: int) -> int:
-    return max(text.rfind("\n", 0, offset), text.rfind("\r", 0, offset)) + 1
 
 
 # ---- in code ----

@@ -127,15 +127,11 @@ def _clause(workspace: Workspace, found: Definition, span: Span) -> str:
     """A clause on one line, and a comment with its quantities in SI units if they are written in others."""
     file = workspace.files[found.path]
     text = " ".join(file.text[slice(*span.shifted(found.entry.start))].split())
-    typed = [one.name for one in file.mentions_of(found.entry) if one.what is What.QUANTITY and _is_in(one.span, span)]
+    typed = [one.name for one in file.mentions_of(found.entry) if one.what is What.QUANTITY and span.contains(one.span)]
     converted = [
         f"{one} = {said}" for one in dict.fromkeys(typed) if (said := in_si(one)) and said.split() != one.split()
     ]
     return f"{text}  # {', '.join(converted)}" if converted else text
-
-
-def _is_in(inner: Span, outer: Span) -> bool:
-    return outer.start <= inner.start and inner.end <= outer.end
 
 
 def used(workspace: Workspace, wanted: Subject, heading: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btq_lang.ide.block import node_at
 from btq_lang.ide.meaning import entry_at
-from btq_lang.syntax.tree import Node, Tree, is_name, quote
+from btq_lang.syntax.tree import Node, Tree, is_name, written
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -21,4 +21,4 @@ def node_path(workspace: Workspace, path: str, offset: int) -> str | None:
         line.append(parent)
     words = [entry.item.name, *(node.name or node.id for node in reversed(line))]
     names = [word.text for word in words if word is not None and (word.quoted or is_name(word.text))]
-    return "/".join(name if is_name(name) else quote(name) for name in names)
+    return "/".join(map(written, names))

@@ -25,7 +25,19 @@ from btq_lang.ide.place import LineNode, Place, word_text
 from btq_lang.ide.ports import NodePort, declared_ports, ports_of_kind, ports_of_tree
 from btq_lang.requirements.nodes import nodes as nodes_in_scope
 from btq_lang.syntax.tokens import CATEGORIES
-from btq_lang.syntax.tree import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape
+from btq_lang.syntax.tree import (
+    Context,
+    Entry,
+    Model,
+    QualityDecl,
+    Requirement,
+    Signal,
+    Tree,
+    is_name,
+    quote,
+    shape,
+    written,
+)
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.references import Mention, What
@@ -74,11 +86,6 @@ def keyword(label: str, snippet: str | None = None) -> Proposal:
 def quoted(text: str) -> str:
     """A word in quotes, unless it has them already."""
     return text if text.startswith(('"', "'")) else quote(text)
-
-
-def written(name: str) -> str:
-    """A name as it is written in a file."""
-    return name if is_name(name) else quote(name)
 
 
 def escaped(text: str) -> str:

@@ -31,6 +31,7 @@ from btq_lang.syntax.tree import (
     Tree,
     is_name,
     quote,
+    written,
 )
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, Position, Span
@@ -80,11 +81,11 @@ def _extract(workspace: Workspace, path: str, standing: Standing) -> Iterator[Re
     block = block_of(file, entry, node)
     above = file.text[: entry.start + standing.tree.start]
     margin = above[len(above.rstrip(" \t")) :]
-    lines = [f"{margin}BehaviorTree {_written(name)}"]
-    lines += [f"{margin}{STEP}{ways} {_written(key)}" for key, ways in keys.items()]
+    lines = [f"{margin}BehaviorTree {written(name)}"]
+    lines += [f"{margin}{STEP}{ways} {written(key)}" for key, ways in keys.items()]
     lines += [f"{margin}{STEP}{moved(file, block, margin + STEP)}"]
-    arguments = " ".join(f"{_written(key)} = {{=}}" for key in keys)
-    call = f"SubTree {_written(name)}{f' ({arguments})' if arguments else ''}"
+    arguments = " ".join(f"{written(key)} = {{=}}" for key in keys)
+    call = f"SubTree {written(name)}{f' ({arguments})' if arguments else ''}"
     end = _item_end(file, entry)
     made = (Edit(block.span, call), Edit(Span(end, end), "\n\n" + "\n".join(lines)))
     yield Refactoring(f"Extract into the tree `{name}`", "refactor.extract", {path: made})
@@ -282,7 +283,7 @@ def _lift(workspace: Workspace, path: str, entry: Entry, offset: int) -> Iterato
                 continue
             if quality is not None and workspace.scope(path).is_repeated(Kind.REQUIREMENT, requirement.name.text):
                 continue  # the item names its quality, which the other places leave to what encloses them
-            name = _written(requirement.name.text)
+            name = written(requirement.name.text)
             start = entry.start + tree.start
             margin = blanks_before(file.text, start)  # in a Root block, items are indented
             item = _item(file, entry, requirement, quality.path if quality else None, margin)
@@ -312,13 +313,13 @@ def _item(file: File, entry: Entry, requirement: Requirement, quality: QualityPa
     """The requirement as an item.  margin: its indentation."""
     assert requirement.name is not None, "what has no name cannot be referred to"
     path = requirement.quality or quality
-    shown = f" : {'.'.join(_written(name.text) for name in path.names)}" if path is not None else ""
+    shown = f" : {'.'.join(written(name.text) for name in path.names)}" if path is not None else ""
     parameters = ""
     if requirement.parameters:
         first, last = requirement.parameters[0].name.start, file.text.find(")", entry.start + requirement.name.end)
         parameters = f"({file.text[entry.start + first : last]})"
     text = f" {quote(' '.join(requirement.text.text.split()))}" if requirement.text is not None else ""
-    lines = [f"QualityReq {_written(requirement.name.text)}{parameters}{shown}{text}"]
+    lines = [f"QualityReq {written(requirement.name.text)}{parameters}{shown}{text}"]
     blanks = deeper(file.text, margin)
     lines += [f"{blanks}{_clause(file, entry, clause)}" for clause in requirement.clauses]
     return "\n".join(lines)
@@ -326,7 +327,3 @@ def _item(file: File, entry: Entry, requirement: Requirement, quality: QualityPa
 
 def _clause(file: File, entry: Entry, clause: Clause) -> str:
     return " ".join(file.text[entry.start + clause.start : entry.start + clause.end].split())
-
-
-def _written(name: str) -> str:
-    return name if is_name(name) else quote(name)

@@ -146,12 +146,8 @@ def _changes_nothing(workspace: Workspace, path: str, removed: Sequence[Include]
     after = workspace.with_file(path, apply_edits(file.text, _without(file, spans)))
     if len(requirements(workspace, path).applied) != len(requirements(after, path).applied):
         return False
-    before = [each for each in check(workspace, path) if not any(_is_in(each.span, span) for span in spans)]
+    before = [each for each in check(workspace, path) if not any(span.contains(each.span) for span in spans)]
     return Counter(map(_said, before)) == Counter(map(_said, check(after, path)))
-
-
-def _is_in(span: Span, whole: Span) -> bool:
-    return whole.start <= span.start and span.end <= whole.end
 
 
 def _said(found: Diagnostic) -> tuple[str, str]:

@@ -8,6 +8,7 @@ in code points.  Unknown here: which findings to show, where the output goes and
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from importlib import import_module
 
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 from btq_lang.render.report import Finding as Finding
@@ -16,6 +17,7 @@ from btq_lang.render.report import Trouble as Trouble
 from btq_lang.util.record import replace
 
 FORMATS = ("full", "concise", "json", "sarif", "github", "gitlab", "junit")
+_MODULES = {"json": "json_format"}  # named otherwise
 
 
 def render(form: str, report: Report, *, colour: bool = False, width: int = 120) -> Iterator[str]:
@@ -33,35 +35,13 @@ def render(form: str, report: Report, *, colour: bool = False, width: int = 120)
         from btq_lang.render.summary import summary
 
         return iter((summary(report) + "\n",))
-    if form == "full":
-        from btq_lang.render import full
-
-        return full.render(report, colour=colour, width=width)
-    if form == "concise":
-        from btq_lang.render import concise
-
-        return concise.render(report, colour=colour)
-    if form == "json":
-        from btq_lang.render import json_format
-
-        return json_format.render(report)
-    if form == "sarif":
-        from btq_lang.render import sarif
-
-        return sarif.render(report)
-    if form == "github":
-        from btq_lang.render import github
-
-        return github.render(report)
-    if form == "gitlab":
-        from btq_lang.render import gitlab
-
-        return gitlab.render(report)
-    if form == "junit":
-        from btq_lang.render import junit
-
-        return junit.render(report)
-    raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")
+    if form not in FORMATS:
+        raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")
+    options: dict[str, dict[str, object]] = {"full": {"colour": colour, "width": width}, "concise": {"colour": colour}}
+    pieces: Iterator[str] = import_module(f"{__name__}.{_MODULES.get(form, form)}").render(
+        report, **options.get(form, {})
+    )
+    return pieces
 
 
 def with_paths(report: Report, shown: Callable[[str], str]) -> Report:

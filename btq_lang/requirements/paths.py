@@ -12,7 +12,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.requirements import nodes
 from btq_lang.requirements.model import Target
-from btq_lang.syntax.tree import Path, Word, is_name, quote
+from btq_lang.syntax.tree import Path, Word, written
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.workspace import inputs
@@ -142,7 +142,7 @@ class PathReader:
         elif self.knows_all_nodes:
             likely = self._meant(path)
             fixes = tuple(
-                replace_fix(f"Replace `{word.text}` with `{name}`", word.span, _written(name)) for word, name in likely
+                replace_fix(f"Replace `{word.text}` with `{name}`", word.span, written(name)) for word, name in likely
             )
             message = f"{self._missing(names, shown)}{did_you_mean(name for _, name in likely)}"
             notes = (_ONE_DEMAND,) if path.names[0].raw == "and" else ()
@@ -165,7 +165,7 @@ class PathReader:
 
     def _no_match(self, word: Word, message: str, kind: str, notes: tuple[str, ...] = ()) -> None:
         likely = self.near(word.text, kind)
-        fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, _written(name)) for name in likely)
+        fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, written(name)) for name in likely)
         self.complain("unmatched-path", word.span, f"{message}{did_you_mean(likely)}", notes=notes, fixes=fixes)
 
     def ambiguous(self, span: Span, shown: str, found: tuple[Target, ...]) -> None:
@@ -212,7 +212,7 @@ class PathReader:
         for names in choices:
             found = self.find(tuple(names))
             if len(found) == 1 and found[0].node is node:
-                return "/".join(map(_written, names))
+                return "/".join(map(written, names))
         return None
 
 
@@ -222,10 +222,6 @@ def _is_crowded(store: Store[Workspace], viewpoint: str) -> bool:
     known = {*inputs.names(store, viewpoint, Kind.SIGNAL), *inputs.names(store, viewpoint, Kind.CONTEXT)}
     known |= {*store.ask(nodes.node_names, viewpoint), *store.ask(nodes.tags, viewpoint)}
     return len(inputs.asked_for(store, viewpoint) - known) * len(known) > _MOST_COMPARED
-
-
-def _written(name: str) -> str:
-    return name if is_name(name) else quote(name)
 
 
 _DECLARED: Final = {"signals": Kind.SIGNAL, "contexts": Kind.CONTEXT}

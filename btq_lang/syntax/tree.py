@@ -278,6 +278,11 @@ def quote(text: str) -> str:
     return f'"{text}"'
 
 
+def written(name: str) -> str:
+    """A name as it is written in a file: in quotes if needed."""
+    return name if is_name(name) else quote(name)
+
+
 def shape(part: object, of_quantity: Callable[[Word], object] | None = None) -> object:
     """A part of the tree without its offsets: parts with equal shapes have the same meaning.
 

@@ -13,13 +13,19 @@ One invariant: every fact is in exactly one row with a key, and the same mission
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from btq_lang.trace.overview import Overview
 
-# The command line needs them for every command, so nothing else is imported here.
+# The command line needs them for every command, so no writer is imported here.
 FORMATS: Final = ("table", "csv", "json", "markdown", "html")
+_MODULES: Final = {
+    "csv": "csv_rows",
+    "json": "json_document",
+    "html": "page",
+}  # named otherwise
 
 
 def write(overview: Overview, form: str, *, colour: bool = False, width: int = 120) -> str:
@@ -32,24 +38,8 @@ def write(overview: Overview, form: str, *, colour: bool = False, width: int = 1
     Raises:
         ValueError: there is no such format.
     """
-    if form == "table":
-        from btq_lang.trace.table import table
-
-        return table(overview, colour, width)
-    if form == "csv":
-        from btq_lang.trace.csv_rows import csv_text
-
-        return csv_text(overview)
-    if form == "json":
-        from btq_lang.trace.json_document import json_text
-
-        return json_text(overview)
-    if form == "markdown":
-        from btq_lang.trace.markdown import markdown
-
-        return markdown(overview)
-    if form == "html":
-        from btq_lang.trace.page import page
-
-        return page(overview)
-    raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")
+    if form not in FORMATS:
+        raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")
+    options = {"colour": colour, "width": width} if form == "table" else {}
+    text: str = import_module(f"{__name__}.{_MODULES.get(form, form)}").render(overview, **options)
+    return text

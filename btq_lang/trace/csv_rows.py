@@ -28,7 +28,7 @@ from btq_lang.render.spreadsheet import plain
 from btq_lang.trace.overview import At, Clause, Overview, RequirementRow
 
 
-def csv_text(overview: Overview) -> str:
+def render(overview: Overview) -> str:
     """The overview as CSV, with a heading."""
     out = io.StringIO()
     writer = csv.DictWriter(out, COLUMNS, restval="")

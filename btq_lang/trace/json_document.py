@@ -39,7 +39,7 @@ from btq_lang.util.version import __version__
 Json: TypeAlias = "bool | int | str | list[Json] | dict[str, Json] | None"
 
 
-def json_text(overview: Overview) -> str:
+def render(overview: Overview) -> str:
     """The document, indented."""
     document: dict[str, Json] = {
         "format": 1,

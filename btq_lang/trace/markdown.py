@@ -9,7 +9,7 @@ from btq_lang.trace.overview import Overview, RequirementRow
 from btq_lang.trace.wording import GAPS, remarks, shown_quality, summary
 
 
-def markdown(overview: Overview) -> str:
+def render(overview: Overview) -> str:
     """The overview as Markdown: requirements, concerns, gaps, totals."""
     return "\n".join(_lines(overview)).rstrip("\n") + "\n"
 

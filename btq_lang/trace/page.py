@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import MissionVerdicts
 
 
-def page(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
+def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
     """The whole page.
 
     Args:

@@ -16,7 +16,7 @@ from btq_lang.trace.overview import At, Overview, RequirementRow
 from btq_lang.trace.wording import GAPS, remarks, shown_quality, summary
 
 
-def table(overview: Overview, colour: bool = False, width: int = 120) -> str:
+def render(overview: Overview, colour: bool = False, width: int = 120) -> str:
     """The overview for people at a terminal: requirements, concerns, gaps, totals, and a summary."""
     return "\n".join(_lines(overview, painter(colour), max(width, _LEAST))) + "\n"
 

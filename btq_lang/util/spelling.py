@@ -37,6 +37,11 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
     return tuple(name for edits, _, name in found if edits <= found[0][0] + 1)[:limit]
 
 
+def without_digits(word: str) -> str:
+    """The rest of a numbered name: names that differ in it alone are a series, not a misspelling."""
+    return "".join(letter for letter in word if not letter.isdigit())
+
+
 def did_you_mean(names: Iterable[str]) -> str:
     """`; did you mean …?` for the end of a message; empty without names."""
     shown = [f"`{name}`" for name in names]

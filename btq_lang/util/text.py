@@ -30,6 +30,13 @@ class Span(NamedTuple):
         start, end = self
         return Span(start + by, end + by)
 
+    def contains(self, other: Span) -> bool:
+        return self.start <= other.start and other.end <= self.end
+
+    def touches(self, other: Span) -> bool:
+        """Whether they overlap or one ends where the other begins."""
+        return self.start <= other.end and other.start <= self.end
+
 
 class Position(NamedTuple):
     """A line and a column, both counted from 0."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from btq_lang.diagnostics.model import Diagnostic, Fix
-from btq_lang.util.text import Edit, Span, apply_edits
+from btq_lang.util.text import Edit, apply_edits
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -33,10 +33,6 @@ def fixed(workspace: Workspace, found: Mapping[str, Sequence[Diagnostic]]) -> tu
 def _fits(fix: Fix, path: str, edits: Mapping[str, list[Edit]]) -> bool:
     for change in fix.changes:
         others = edits.get(change.place.path or path)
-        if others is None or any(_touches(change.place.span, edit.span) for edit in others):
+        if others is None or any(edit.span.touches(change.place.span) for edit in others):
             return False
     return True
-
-
-def _touches(first: Span, second: Span) -> bool:
-    return first.start <= second.end and second.start <= first.end

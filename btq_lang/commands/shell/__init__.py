@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from importlib import import_module
 
 from btq_lang.commands.shell.command_line import Command, Option
 
@@ -26,24 +27,10 @@ def completion_script(
     Raises:
         ValueError: the shell is not in SHELLS.
     """
-    commands = tuple(_commands(parser, parser.prog, choices or {}))
-    if shell == "bash":
-        from btq_lang.commands.shell import bash
-
-        return bash.script(commands)
-    if shell == "zsh":
-        from btq_lang.commands.shell import zsh
-
-        return zsh.script(commands)
-    if shell == "fish":
-        from btq_lang.commands.shell import fish
-
-        return fish.script(commands)
-    if shell == "powershell":
-        from btq_lang.commands.shell import powershell
-
-        return powershell.script(commands)
-    raise ValueError(f"no completion for {shell!r}; expected one of {', '.join(SHELLS)}")
+    if shell not in SHELLS:
+        raise ValueError(f"no completion for {shell!r}; expected one of {', '.join(SHELLS)}")
+    script: str = import_module(f"{__name__}.{shell}").script(tuple(_commands(parser, parser.prog, choices or {})))
+    return script
 
 
 def _commands(parser: argparse.ArgumentParser, line: str, choices: Mapping[str, Iterable[str]]) -> Iterator[Command]:
