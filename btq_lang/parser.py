@@ -9,15 +9,15 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left, bisect_right
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix, shifted
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS, item_word_meant, read_as
 from btq_lang.grammar.items import ItemParser
-from btq_lang.lexer import Lexer, tokens
-from btq_lang.syntax.scan import line_end, path_end
+from btq_lang.lexer import Lexer, State, tokens
+from btq_lang.syntax.scan import Maps, line_end, path_end
 from btq_lang.syntax.tokens import (
     CATEGORIES,
     DIRECTIONS,
@@ -42,10 +42,6 @@ from btq_lang.syntax.tree import (
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span, changed
-
-if TYPE_CHECKING:
-    from btq_lang.lexer import State
-    from btq_lang.syntax.scan import Maps
 
 # The state at the start of an item: that of the lexer, the levels of the open Roots, and whether there was a Root.
 Start: TypeAlias = "tuple[State, tuple[int, ...], bool]"

@@ -10,7 +10,7 @@ from collections.abc import Container, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.undeclared import undeclared
-from btq_lang.catalog.kinds import CHILDREN
+from btq_lang.catalog.kinds import CHILDREN, NodeKind, PortKind
 from btq_lang.catalog.literals import values_of
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, is_xml_name
@@ -19,7 +19,6 @@ from btq_lang.syntax.tree import Model, Port
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import NodeKind, PortKind
     from btq_lang.workspace.workspace import Workspace
 
 

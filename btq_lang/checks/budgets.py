@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, highest, seconds, summed
 from btq_lang.diagnostics.model import Diagnostic, Related
-from btq_lang.requirements.composition import port_seconds
-from btq_lang.requirements.durations import Term, together
+from btq_lang.requirements.composition import Budget, port_seconds
+from btq_lang.requirements.durations import Range, Term, together
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.composition import Budget
-    from btq_lang.requirements.durations import Range
     from btq_lang.requirements.model import Claim
 
 

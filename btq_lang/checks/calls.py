@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, TypeAlias
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
-from btq_lang.workspace.queries import hub
+from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.symbols import Use
 
 if TYPE_CHECKING:
-    from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
 
 # The trees that a tree runs, and those that it probably means to run, if `SubTree` is missing.

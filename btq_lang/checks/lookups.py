@@ -13,14 +13,13 @@ from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.syntax.tree import Apply, Include, Model, Models, Qualities, Root, Tree
+from btq_lang.syntax.tree import Apply, Include, Model, Models, Port, Qualities, Root, Tree
 from btq_lang.util.record import Record
 from btq_lang.workspace.inputs import of_name, of_viewpoint
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.port_types import is_text, meetings
 
 if TYPE_CHECKING:
-    from btq_lang.syntax.tree import Port
     from btq_lang.workspace.custom_nodes import LikelyPort
     from btq_lang.workspace.file import Definition, Origin
     from btq_lang.workspace.symbols import Symbol

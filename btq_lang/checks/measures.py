@@ -11,11 +11,10 @@ from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Entry, Requirement
-from btq_lang.workspace.queries import hub
+from btq_lang.workspace.queries import Store, hub
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Claim
-    from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
 
 

@@ -18,12 +18,11 @@ from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.placeholders import is_placeholder
-from btq_lang.workspace.queries import hub
+from btq_lang.workspace.queries import Store, hub
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
     from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.queries import Store
     from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 

@@ -19,13 +19,12 @@ from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements import nodes
 from btq_lang.requirements.reading import signals_in
 from btq_lang.workspace import inputs
-from btq_lang.workspace.resolved import tree_nodes, trees_called
+from btq_lang.workspace.resolved import ResolvedNode, tree_nodes, trees_called
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Claim, Requirement, Signal
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 # While a child of these runs no other one does, and earlier ones have ended, unless they are reactive.

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.workspace.resolved import tree_nodes
+from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Flow
     from btq_lang.syntax.tree import Node
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 

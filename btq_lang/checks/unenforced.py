@@ -12,11 +12,10 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.attach import claimed_of_no_tree, uses_of_nodes
-from btq_lang.requirements.model import Target
+from btq_lang.requirements.model import Applied, Claim, Target
 from btq_lang.workspace import inputs
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.model import Applied, Claim
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace

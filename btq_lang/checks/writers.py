@@ -17,13 +17,12 @@ from btq_lang.requirements import nodes
 from btq_lang.syntax.tree import Pair, Port, Verbatim
 from btq_lang.util.record import Record
 from btq_lang.workspace import inputs
-from btq_lang.workspace.resolved import tree_nodes
+from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import PortKind
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 

@@ -17,7 +17,7 @@ from btq_lang.render import Finding, Report, Trouble
 from btq_lang.util.record import replace
 from btq_lang.util.text import counted
 from btq_lang.workspace.config import Project, unknown_rule
-from btq_lang.workspace.factories import merged
+from btq_lang.workspace.factories import Factory, merged
 from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
 from btq_lang.workspace.loader import LoadProblem
 from btq_lang.workspace.workspace import Workspace
@@ -25,7 +25,6 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
     from btq_lang.commands.options import CheckOptions
     from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.workspace.factories import Factory
 
 _ORDER = tuple(Severity)
 _FAILS = (Severity.ERROR, Severity.WARNING)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.util.record import Record, replace
-from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
+from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES, File
 from btq_lang.workspace.loader import (
     Found,
     LoadProblem,
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from btq_lang.commands.xml_below import XmlBelow
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.factories import Factory
-    from btq_lang.workspace.file import File
 
 STDIN = "-"
 

@@ -10,28 +10,23 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.btcpp.around import LIMITING, WATCHING
 from btq_lang.catalog.verbs import VERBS, words
-from btq_lang.evidence.history import Nearby, near
-from btq_lang.evidence.model import CLOCK_SET_BACK, ROOT
+from btq_lang.evidence.history import History, Nearby, near
+from btq_lang.evidence.model import CLOCK_SET_BACK, ROOT, Activation, LoggedTree
 from btq_lang.evidence.observed import Observed, parts_in
 from btq_lang.evidence.over_run import OverRun, target_of
 from btq_lang.evidence.recent import Recent
 from btq_lang.evidence.scopes import in_scope, within
-from btq_lang.evidence.signals import Unknown
-from btq_lang.evidence.tally import Tally
+from btq_lang.evidence.signals import Signals, Unknown
+from btq_lang.evidence.tally import Run, Tally
 from btq_lang.evidence.verbs import Judgement, judges_of
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict
+from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Link
 from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import Mission, Running, Span, Target, Total, Value
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.guards import Guard, Refusal
-    from btq_lang.evidence.history import History
     from btq_lang.evidence.identity import Joined
-    from btq_lang.evidence.model import Activation, LoggedTree
-    from btq_lang.evidence.signals import Signals
-    from btq_lang.evidence.tally import Run
-    from btq_lang.evidence.verdicts import Link
     from btq_lang.requirements.model import Applied, Claim, Event, Requirement, Subject
 
 

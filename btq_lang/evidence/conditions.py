@@ -10,7 +10,7 @@ import operator
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.catalog.units import parse_unit
+from btq_lang.catalog.units import Unit, parse_unit
 from btq_lang.evidence.signals import Unknown
 from btq_lang.requirements.model import (
     Aggregate,
@@ -33,7 +33,6 @@ from btq_lang.requirements.model import (
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.units import Unit
     from btq_lang.evidence.model import Moment, SampleValue
     from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Bounded, Condition, Number

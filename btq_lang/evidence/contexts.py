@@ -6,19 +6,15 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.conditions import truth
-from btq_lang.evidence.history import Nearby
-from btq_lang.evidence.model import ROOT
+from btq_lang.evidence.history import History, Nearby
+from btq_lang.evidence.model import ROOT, Activation
 from btq_lang.evidence.observed import Observed, parts_in
-from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.signals import Signals, Unknown
 from btq_lang.evidence.verdicts import ContextSummary
-from btq_lang.requirements.model import InContext, Running
+from btq_lang.requirements.model import Condition, InContext, Running
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.history import History
     from btq_lang.evidence.identity import Joined
-    from btq_lang.evidence.model import Activation
-    from btq_lang.evidence.signals import Signals
-    from btq_lang.requirements.model import Condition
 
 
 class Contexts:

@@ -18,14 +18,11 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.evidence.sentences import headline, result
-from btq_lang.evidence.verdicts import VIOLATED
+from btq_lang.evidence.verdicts import VIOLATED, Report
 from btq_lang.render.spreadsheet import plain
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import Report
 
 
 def render(report: Report) -> str:

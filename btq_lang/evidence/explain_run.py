@@ -10,18 +10,16 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.over_run import target_of
+from btq_lang.evidence.over_run import OverRun, target_of
 from btq_lang.evidence.verdicts import Link
 from btq_lang.evidence.wording import duration
-from btq_lang.requirements.model import Span, Total
+from btq_lang.requirements.model import Claim, Condition, Event, Span, Total
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.history import Nearby
     from btq_lang.evidence.model import Activation, LoggedTree
-    from btq_lang.evidence.over_run import OverRun
     from btq_lang.evidence.verbs import Judgement
-    from btq_lang.requirements.model import Claim, Condition, Event
 
 
 class RunExplainer:

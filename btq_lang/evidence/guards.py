@@ -7,15 +7,12 @@ halted itself.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.btcpp.around import EVALUATING
 from btq_lang.catalog.verbs import words
-from btq_lang.evidence.model import ROOT
+from btq_lang.evidence.model import ROOT, Activation, LoggedTree
 from btq_lang.util.record import Record
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.model import Activation, LoggedTree
 
 
 class Guard(Record):

@@ -8,15 +8,11 @@ read one property with several IDs, separated by commas.  StrictDoc refuses a re
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 from btq_lang.evidence.sentences import explained, headline, result
-from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
+from btq_lang.evidence.verdicts import SATISFIED, VIOLATED, ClauseVerdict, MissionVerdicts, Report, RequirementVerdict
 from btq_lang.evidence.wording import timestamp
 from btq_lang.render.junit import escaped
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict
 
 
 def render(report: Report) -> str:

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.conditions import bound_at
+from btq_lang.evidence.conditions import Bound, bound_at
 from btq_lang.evidence.signals import Unknown
-from btq_lang.requirements.model import Value
+from btq_lang.requirements.model import Limit, Value
 
 if TYPE_CHECKING:
     from btq_lang.catalog.units import Unit
-    from btq_lang.evidence.conditions import Bound
     from btq_lang.evidence.model import Moment
     from btq_lang.evidence.observed import Observed
-    from btq_lang.requirements.model import Limit
 
 
 class Measure:

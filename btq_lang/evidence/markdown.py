@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.evidence.sentences import headline, result
-from btq_lang.evidence.verdicts import WORST_FIRST
+from btq_lang.evidence.verdicts import WORST_FIRST, MissionVerdicts, Report
 from btq_lang.render.gfm import code, escaped, table
 from btq_lang.util.text import counted
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import MissionVerdicts, Report
 
 
 def render(report: Report) -> str:

@@ -10,7 +10,7 @@ from math import fsum, sqrt
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import UNKNOWN_END
-from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.signals import Signals, Unknown
 from btq_lang.requirements.model import (
     Aggregate,
     All,
@@ -30,7 +30,6 @@ from btq_lang.requirements.model import (
 if TYPE_CHECKING:
     from btq_lang.evidence.history import Nearby
     from btq_lang.evidence.model import Activation, Moment, SampleValue
-    from btq_lang.evidence.signals import Signals
     from btq_lang.requirements.model import Signal, Target
 
 

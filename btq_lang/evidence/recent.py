@@ -8,10 +8,9 @@ from __future__ import annotations
 from bisect import insort
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.evidence.tally import Tally
+from btq_lang.evidence.tally import Run, Tally
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.tally import Run
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.evidence.verdicts import Link
     from btq_lang.requirements.model import Odds, Window

@@ -12,12 +12,11 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
-from btq_lang.requirements.model import Any, Not
+from btq_lang.requirements.model import Any, Claim, Not, Scope
 from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.observed import Observed
-    from btq_lang.requirements.model import Claim, Scope
 
 
 def within(claim: Claim, scopes: Sequence[Scope]) -> Claim:

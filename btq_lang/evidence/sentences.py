@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.evidence.tally import USUAL_CONFIDENCE
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
+from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Violation
 from btq_lang.evidence.wording import duration, moment, share
 from btq_lang.util.text import counted
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import ClauseVerdict, Violation
 
 
 def result(clause: ClauseVerdict) -> str:

@@ -9,15 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.catalog.units import to_si
+from btq_lang.catalog.units import Unit, to_si
 from btq_lang.evidence.model import Series
-from btq_lang.requirements.model import Value
+from btq_lang.requirements.model import Signal, Value
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.units import Unit
     from btq_lang.evidence.model import SampleValue
-    from btq_lang.requirements.model import Signal
 
 
 class Unknown(Record):

@@ -12,13 +12,12 @@ from btq_lang.evidence.signals import NO_SAMPLES
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
 from btq_lang.evidence.wording import duration, period
 from btq_lang.render.cells import printable
-from btq_lang.render.colour import painter
+from btq_lang.render.colour import Paint, painter
 from btq_lang.render.columns import broken, cells_of, narrowed
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Verdict
-    from btq_lang.render.colour import Paint
 
 
 def render(report: Report, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:

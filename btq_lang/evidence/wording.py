@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 from datetime import datetime, timedelta, timezone
-from typing import TYPE_CHECKING
 
-from btq_lang.catalog.units import from_si, parse_unit
-
-if TYPE_CHECKING:
-    from btq_lang.catalog.units import Unit
+from btq_lang.catalog.units import Unit, from_si, parse_unit
 
 
 def quantity(si: float, unit: Unit | None, bound: float | None = None) -> str:

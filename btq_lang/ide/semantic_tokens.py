@@ -10,10 +10,9 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.ide.meaning import edition
 from btq_lang.ide.stretches import Known, Stretch, encoded
 from btq_lang.parser import Parsed
-from btq_lang.util.text import Span
+from btq_lang.util.text import Encoding, Span
 
 if TYPE_CHECKING:
-    from btq_lang.util.text import Encoding
     from btq_lang.workspace.workspace import Workspace
 
 

@@ -28,16 +28,12 @@ from btq_lang.ide.appearance import (
 from btq_lang.ide.meaning import match_of
 from btq_lang.lexer import pieces
 from btq_lang.syntax.tokens import COMMENT, OPERATOR, SYMBOL
-from btq_lang.syntax.tree import Entry, Requirement
+from btq_lang.syntax.tree import Entry, Node, Pair, Requirement, Word
 from btq_lang.util.record import Record
-from btq_lang.util.text import LINE_END, Span, width_of
-from btq_lang.workspace.references import Listener, What, report
+from btq_lang.util.text import LINE_END, Encoding, Span, width_of
+from btq_lang.workspace.references import Listener, Mention, Owner, What, report
 
 if TYPE_CHECKING:
-    from btq_lang.syntax.tree import Node, Pair, Word
-    from btq_lang.util.text import Encoding
-    from btq_lang.workspace.references import Mention, Owner
-
     Token: TypeAlias = tuple[int, int, str]  # start, end and appearance
     World: TypeAlias = tuple[str, tuple[str, ...], tuple[str, ...]]
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.requirements import nodes
-from btq_lang.requirements.model import Target
+from btq_lang.requirements.model import Parameter, Target
 from btq_lang.syntax.tree import Path, Word, written
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
@@ -22,7 +22,6 @@ from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics.rules import Severity
-    from btq_lang.requirements.model import Parameter
     from btq_lang.util.text import Span
     from btq_lang.workspace.item_index import Facts
 

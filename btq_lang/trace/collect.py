@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.catalog.qualities import get, qualities
+from btq_lang.catalog.qualities import Edition, get, qualities
 from btq_lang.diagnostics.model import Place
 from btq_lang.graph.figure import Box, Note
 from btq_lang.graph.missions import arguments, by_tree, clauses_in_words, concerns, figure
@@ -38,7 +38,6 @@ from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.qualities import Edition
     from btq_lang.trace.overview import Carries
     from btq_lang.trace.ways import Ways
 

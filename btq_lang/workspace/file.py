@@ -16,13 +16,12 @@ from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.syntax.tree import Entry, Include, Item
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Span, changed
-from btq_lang.workspace.item_index import Facts, Names, Tally
+from btq_lang.workspace.item_index import Facts, Name, Names, Tally
 
 if TYPE_CHECKING:
     from btq_lang.catalog.name_kinds import Kind
     from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.util.source_map import Places
-    from btq_lang.workspace.item_index import Name
     from btq_lang.workspace.references import Mention
     from btq_lang.workspace.symbols import Summary, Symbol
 

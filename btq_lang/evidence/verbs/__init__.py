@@ -13,7 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.requirements.model import Span, Total
+from btq_lang.requirements.model import Claim, Span, Subject, Total
 
 if TYPE_CHECKING:
     from btq_lang.evidence.conditions import Reading
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.observed import Observed
     from btq_lang.evidence.over_run import OverRun
-    from btq_lang.requirements.model import Claim, Subject
 
     Judge: TypeAlias = Callable[[Claim, Activation, Observed], "Judgement | None"]
     RunJudge: TypeAlias = Callable[[Claim, OverRun], Iterator["Judgement | None"]]

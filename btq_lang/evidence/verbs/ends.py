@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.model import UNKNOWN_END
-from btq_lang.evidence.over_run import Happening
+from btq_lang.evidence.over_run import Happening, OverRun
 from btq_lang.evidence.verbs import Judgement
 from btq_lang.evidence.verbs.starts import judged
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.over_run import OverRun
     from btq_lang.requirements.model import Claim
 
 

@@ -6,16 +6,14 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import Reading
-from btq_lang.evidence.observed import parts_in
+from btq_lang.evidence.observed import Observed, parts_in
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
 from btq_lang.evidence.verbs.leaves import judged, result_at
-from btq_lang.requirements.model import Aggregate
+from btq_lang.requirements.model import Aggregate, Claim, Condition
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation, Moment
-    from btq_lang.evidence.observed import Observed
-    from btq_lang.requirements.model import Claim, Condition
 
 
 def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:

@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.verbs.keeps import judged_all_along
-from btq_lang.requirements.model import Not
+from btq_lang.requirements.model import Claim, Not
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.observed import Observed
     from btq_lang.evidence.verbs import Judgement
-    from btq_lang.requirements.model import Claim
 
 
 def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:

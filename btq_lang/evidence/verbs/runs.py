@@ -8,17 +8,15 @@ from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.evidence.limits import compared
+from btq_lang.evidence.limits import Measure, compared
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
-from btq_lang.requirements.model import Value
+from btq_lang.requirements.model import Claim, Value
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.limits import Measure
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.over_run import OverRun, Stretch
-    from btq_lang.requirements.model import Claim
 
 
 def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:

@@ -11,12 +11,11 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import compared
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
-from btq_lang.requirements.model import Span
+from btq_lang.requirements.model import Claim, Span
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Moment
     from btq_lang.evidence.over_run import Happening, OverRun
-    from btq_lang.requirements.model import Claim
 
 
 def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import compared
-from btq_lang.evidence.over_run import Happening
+from btq_lang.evidence.over_run import Happening, OverRun
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.over_run import OverRun
     from btq_lang.requirements.model import Claim
 
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.evidence.model import UNKNOWN_END
+from btq_lang.evidence.model import UNKNOWN_END, Activation
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
 from btq_lang.evidence.verbs.takes import duration
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.model import Activation
     from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Claim
 

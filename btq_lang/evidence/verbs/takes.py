@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import Measure, compared
-from btq_lang.evidence.model import CLOCK_SET_BACK, UNKNOWN_END
+from btq_lang.evidence.model import CLOCK_SET_BACK, UNKNOWN_END, Activation
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.model import Activation
     from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Claim, Limit
 

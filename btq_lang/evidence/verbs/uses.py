@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import compared
-from btq_lang.evidence.model import CLOCK_SET_BACK
+from btq_lang.evidence.model import CLOCK_SET_BACK, Activation
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs.takes import judged
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.model import Activation
     from btq_lang.evidence.observed import Observed
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.requirements.model import Claim, Signal
