@@ -106,7 +106,7 @@ def signal_script(signal: Signal) -> str:
     Raises:
         NoScript: a script cannot name it.
     """
-    key = (signal.key or "").removeprefix("@")
+    key = signal.entry
     if signal.key is None:
         raise NoScript(f"`{signal.name}` has no blackboard entry")
     if not (key.isascii() and key.isidentifier()):

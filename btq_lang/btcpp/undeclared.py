@@ -12,7 +12,7 @@ from typing import Final
 from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.syntax.tree import Model, Models
+from btq_lang.syntax.tree import Model, models_in
 from btq_lang.workspace.custom_nodes import CustomNode, custom_nodes, custom_nodes_of
 from btq_lang.workspace.file import File
 from btq_lang.workspace.workspace import Workspace
@@ -48,9 +48,8 @@ def made_models(workspace: Workspace, path: str) -> frozenset[str]:
 
 def _models(file: File) -> Iterator[tuple[str, Model]]:
     for entry in file.parsed.entries:
-        item = entry.item
-        for model in item.models if isinstance(item, Models) else (item,):
-            if isinstance(model, Model) and model.name is not None:
+        for model in models_in(entry.item):
+            if model.name is not None:
                 yield model.name.text, model
 
 

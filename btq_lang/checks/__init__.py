@@ -92,6 +92,19 @@ _OF_MODELS: tuple[Check, ...] = (
     names.forbidden_name,
     empty.empty_text,
 )
+_OF_CLAUSES: tuple[Check, ...] = (
+    requirements.requirement_without_text,
+    clauses.duplicate_clause,
+    clauses.clause_without_odds,
+    clauses.unused_parameter,
+    bounds.impossible_bound,
+    bounds.uses_of_gauge,
+)
+_OF_QUALITIES: tuple[Check, ...] = (
+    qualities.unknown_quality,
+    qualities.old_quality_name,
+    qualities.ambiguous_quality,
+)
 # The checks of each type of item: most items are small, and most checks do not concern most of them.
 CHECKS: dict[type, tuple[Check, ...]] = {
     Include: (
@@ -142,17 +155,10 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         misspelt.misspelt_entry,
         requirements.unknown_requirement,
         requirements.conflicting_requirement,
-        requirements.requirement_without_text,
-        clauses.duplicate_clause,
-        clauses.clause_without_odds,
-        clauses.unused_parameter,
-        bounds.impossible_bound,
-        bounds.uses_of_gauge,
+        *_OF_CLAUSES,
         repeated.named_twice,
         empty.empty_text,
-        qualities.unknown_quality,
-        qualities.old_quality_name,
-        qualities.ambiguous_quality,
+        *_OF_QUALITIES,
         conditions.subtraction_without_blanks,
         prose.prose_constraint,
         reactive.reactive_multiple_async,
@@ -177,16 +183,9 @@ CHECKS: dict[type, tuple[Check, ...]] = {
     Requirement: (
         requirements.conflicting_requirement,
         requirements.unused_requirement,
-        requirements.requirement_without_text,
-        clauses.duplicate_clause,
-        clauses.clause_without_odds,
-        clauses.unused_parameter,
-        bounds.impossible_bound,
-        bounds.uses_of_gauge,
+        *_OF_CLAUSES,
         empty.empty_text,
-        qualities.unknown_quality,
-        qualities.old_quality_name,
-        qualities.ambiguous_quality,
+        *_OF_QUALITIES,
         conditions.subtraction_without_blanks,
         prose.prose_constraint,
         measures.unresolved,
@@ -195,13 +194,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
     ),
     Apply: (requirements.unknown_requirement, repeated.named_twice, measures.unresolved, demands.demands),
     Qualities: (qualities.unknown_quality,),
-    QualityDecl: (
-        kinds.duplicate_definition,
-        empty.empty_text,
-        qualities.unknown_quality,
-        qualities.old_quality_name,
-        qualities.ambiguous_quality,
-    ),
+    QualityDecl: (kinds.duplicate_definition, empty.empty_text, *_OF_QUALITIES),
 }
 
 

@@ -106,12 +106,13 @@ def _count(
     requirement: Requirement, claim: Claim, amount: Amount, number: float, is_lower: bool
 ) -> Iterator[Diagnostic]:
     what = "attempts" if VERBS[claim.verb.raw].operand == "count" else "starts"
+    has_scope = any(isinstance(clause, Scope) for clause in requirement.clauses)
     notes: tuple[str, ...] = ()
     if number < 0 or number != int(number):
         message = f"expected a whole number of {what}, found `{_shown(amount)}`"
         if isinstance(claim.per, Word) and number > 0:
             notes = ("write a whole number and a longer time: `runs at least 1 per 2 s`",)
-    elif what == "attempts" and not is_lower and number < 1 and not _has_scope(requirement):
+    elif what == "attempts" and not is_lower and number < 1 and not has_scope:
         message = "a node that starts makes at least one attempt, so only a node that never starts keeps this bound"
         notes = ("the first start counts as well: write `tries at most 1` to allow no second one",)
     else:
@@ -139,10 +140,6 @@ def _is_enforceable(view: View, written: Requirement) -> bool:
 
     found, _ = view.ask(requirement, written.name.text) if written.name is not None else (None, ())
     return found is not None and found.is_enforceable
-
-
-def _has_scope(requirement: Requirement) -> bool:
-    return any(isinstance(clause, Scope) for clause in requirement.clauses)
 
 
 @cache

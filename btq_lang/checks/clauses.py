@@ -47,7 +47,7 @@ def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
             if type(clause) in _ONCE and (counts := first.setdefault(type(clause), clause)) is not clause:
                 # If one of several equal definitions lacked it, it would contradict the others.
                 is_alone = not view.is_repeated(symbol.kind, symbol.name)
-                yield _duplicate(view, entry, counts, clause, is_alone)
+                yield _duplicate(view, counts, clause, is_alone)
 
 
 def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -86,7 +86,7 @@ def unused_parameter(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 yield Diagnostic("unused-parameter", parameter.name.span, message, tags=(Tag.UNNECESSARY,))
 
 
-def _duplicate(view: View, entry: Entry, counts: Clause, clause: Clause, is_alone: bool) -> Diagnostic:
+def _duplicate(view: View, counts: Clause, clause: Clause, is_alone: bool) -> Diagnostic:
     text = view.text
     said, again = (" ".join(text[each.start : each.end].split()) for each in (counts, clause))
     removals = [(again, clause)] if said == again else [(again, clause), (said, counts)]

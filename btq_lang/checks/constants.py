@@ -11,7 +11,7 @@ from btq_lang.checks import lookups
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tokens import QUANTITY
-from btq_lang.syntax.tree import Entry, Model, Models, Port, Tree, Word
+from btq_lang.syntax.tree import Entry, Port, Tree, Word, models_in
 from btq_lang.workspace.port_types import is_number
 
 if TYPE_CHECKING:
@@ -66,6 +66,6 @@ def _ports_of_trees(entry: Entry) -> Iterator[tuple[Word, Port]]:
     item = entry.item
     if isinstance(item, Tree) and item.name is not None:
         yield from ((item.name, port) for port in item.ports)
-    for model in item.models if isinstance(item, Models) else (item,):
-        if isinstance(model, Model) and model.category.raw == "SubTree" and model.name is not None:
+    for model in models_in(item):
+        if model.category.raw == "SubTree" and model.name is not None:
             yield from ((model.name, port) for port in model.ports)

@@ -40,10 +40,9 @@ def _names(item: syntax.Item) -> _Found:
     elif isinstance(item, syntax.Requirement):
         yield from _of_requirement(item)
     elif isinstance(item, syntax.Model | syntax.Models):
-        for model in (item,) if isinstance(item, syntax.Model) else item.models:
-            if isinstance(model, syntax.Model):
-                yield "the node's ID", model.name
-                yield from (("the port's type", port.type) for port in model.ports)
+        for model in syntax.models_in(item):
+            yield "the node's ID", model.name
+            yield from (("the port's type", port.type) for port in model.ports)
     elif isinstance(item, syntax.Signal):
         yield "the blackboard entry", item.source
     elif isinstance(item, syntax.Root):

@@ -15,7 +15,7 @@ from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.scripts import is_script
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
-from btq_lang.syntax.tree import Pair, Port, Signal, Tree
+from btq_lang.syntax.tree import Pair, Signal, Tree, port_named
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
@@ -226,12 +226,9 @@ def _use(view: View, seen: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
         builtin = seen.kind.port(key)
         direction = builtin.direction if builtin is not None else None
     elif seen.is_defined:
-        direction = next((port.direction.raw for port in view.model_ports(seen) if _is_called(port, key)), None)
+        declared = port_named(view.model_ports(seen), key)
+        direction = declared.direction.raw if declared is not None else None
     return direction != "output", direction != "input", True
-
-
-def _is_called(port: Port, name: str) -> bool:
-    return port.name is not None and port.name.text == name
 
 
 def _inside(pair: Pair, name: str) -> Span:

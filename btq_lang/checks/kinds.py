@@ -39,7 +39,7 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         name = seen.id
         word = seen.node.category
         if word is not None and (name is None or name.text == ""):
-            if not is_torn(view, entry, seen):
+            if not view.is_torn(seen.node.start, seen.node.end):
                 message = f"missing ID of this {word.raw}: write `{word.raw} <ID>`"
                 yield Diagnostic("unknown-node", word.span, message, severity=Severity.ERROR)
         elif name is None:
@@ -220,11 +220,6 @@ def likely_category(seen: ResolvedNode) -> str:
     return ("Action", "Decorator", "Control")[min(len(seen.node.children), 2)]
 
 
-def is_torn(view: View, entry: Entry, seen: ResolvedNode) -> bool:
-    """Whether something in a node's own lines could not be read."""
-    return view.is_torn(seen.node.start, seen.node.end)
-
-
 def include_place(entry: Entry) -> Span:
     """Where a diagnostic about an included file points."""
     item = entry.item
@@ -261,7 +256,7 @@ def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:
 
 
 def _unknown(view: View, entry: Entry, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]:
-    has_palette = view.has_palette and view.is_complete
+    has_palette = view.look_up(lookups.has_palette) and view.is_complete
     likely = view.near(name.text, Kind.MODEL)
     if not has_palette:
         if seen.node.category is not None:

@@ -17,7 +17,7 @@ from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import BRACED, QUANTITY
-from btq_lang.syntax.tree import Entry, Model, Models, Pair, Port, Tree, Word, quote, written
+from btq_lang.syntax.tree import Entry, Pair, Port, Tree, Word, models_in, port_named, quote, written
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
@@ -149,10 +149,9 @@ def _values(view: View, entry: Entry, kind: int | None = None) -> Iterator[tuple
 
 def _declared_ports(entry: Entry) -> Sequence[Port]:
     item = entry.item
-    if isinstance(item, Tree | Model):
+    if isinstance(item, Tree):
         return item.ports
-    models = item.models if isinstance(item, Models) else ()
-    return [port for model in models if isinstance(model, Model) for port in model.ports]
+    return [port for model in models_in(item) for port in model.ports]
 
 
 def _target(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> _Target | None:
@@ -162,7 +161,7 @@ def _target(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> _Target 
         port = builtin.port(key)
         return _of_builtin(port, view.project.target) if port is not None else None
     ports = subtree_ports(view, seen) if seen.is_subtree else view.model_ports(seen)
-    declared = next((port for port in ports if port.name is not None and port.name.text == key), None)
+    declared = port_named(ports, key)
     if declared is not None:
         is_output = declared.direction.raw == "output"
         return _declared(declared, not seen.is_subtree, is_output)

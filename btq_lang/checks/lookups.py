@@ -13,7 +13,7 @@ from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.syntax.tree import Apply, Include, Model, Models, Port, Qualities, Root, Tree
+from btq_lang.syntax.tree import Apply, Include, Model, Models, Port, Qualities, Root, Tree, models_in
 from btq_lang.util.record import Record
 from btq_lang.workspace.inputs import of_name, of_viewpoint
 from btq_lang.workspace.item_index import Facts
@@ -106,7 +106,7 @@ def is_torn(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool
     target, item = found.symbol.target, found.entry.item
     if not isinstance(target, Tree | Model):
         return False
-    starts = [each.start for each in item.models if isinstance(each, Model)] if isinstance(item, Models) else []
+    starts = [each.start for each in models_in(item)]
     end = min([start for start in starts if start > target.start], default=inf)
     return any(each.rule in UNREADABLE and target.start <= each.span.start < end for each in found.entry.diagnostics)
 
@@ -131,7 +131,7 @@ def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 
 @of_viewpoint
 def has_palette(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the models in scope are meant to be complete."""
+    """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file."""
     scope = workspace.scope(viewpoint)
     for each in (*scope.paths, *scope.node_paths):
         for entry in workspace.files[each].parsed.entries:

@@ -12,7 +12,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Model, Models, Tree, Word, is_name, written
+from btq_lang.syntax.tree import Entry, Tree, Word, is_name, models_in, written
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 
@@ -31,21 +31,19 @@ def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if item.name is None:
             yield from _nameless(view, entry, item)
         elif reason := model_name_problem(item.name.text, version):
-            yield _tree_name(view, item.name, reason, _renamed(view, entry, item.name))
+            yield _tree_name(view, item.name, reason, _renamed(view, item.name))
         nodes = view.seen
         for seen in nodes.all:
             if seen.id is not None and (reason := model_name_problem(seen.id.text, version)):
                 yield from _of_id(view, seen, seen.id, reason)
         for seen in nodes.named:
             if seen.name is not None:
-                yield from _of_instance(view, entry, seen, seen.name, version)
-    elif isinstance(item, Model | Models):
-        for model in (item,) if isinstance(item, Model) else item.models:
-            if not isinstance(model, Model) or model.category.raw != "SubTree":
-                continue
-            for port in model.ports:
-                if port.name is not None and (reason := port_name_problem(port.name.text, version)):
-                    yield _refused("port name", port.name, reason)
+                yield from _of_instance(view, seen, seen.name, version)
+        return
+    for model in models_in(item):
+        for port in model.ports if model.category.raw == "SubTree" else ():
+            if port.name is not None and (reason := port_name_problem(port.name.text, version)):
+                yield _refused("port name", port.name, reason)
 
 
 def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -92,7 +90,7 @@ def _is_prefixed(name: str) -> bool:
     return is_name(prefix) and is_name(rest)
 
 
-def _of_instance(view: View, entry: Entry, seen: ResolvedNode, label: Word, version: str) -> Iterator[Diagnostic]:
+def _of_instance(view: View, seen: ResolvedNode, label: Word, version: str) -> Iterator[Diagnostic]:
     if reason := instance_name_problem(label.text, version):
         notes = view.pin_note(lambda version: instance_name_problem(label.text, version) is None)
         yield replace(_refused("instance name", label, reason), notes=notes)
@@ -139,7 +137,7 @@ def _refused(what: str, name: Word, reason: str, fixes: tuple[Fix, ...] = ()) ->
     return Diagnostic("forbidden-name", name.span, message, fixes=fixes)
 
 
-def _renamed(view: View, entry: Entry, name: Word) -> tuple[Fix, ...]:
+def _renamed(view: View, name: Word) -> tuple[Fix, ...]:
     """The fix that gives a tree a legal name, wherever it is named."""
     declaration = view.declaration(Kind.TREE, name.text)
     if declaration is None or declaration.owner is not view.facts:

@@ -28,14 +28,14 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
     Some programs take such a value for the name of an entry, so if a file does so as a rule, that is reported once, as
     a hint.
     """
-    for seen, pair, type_ in outputs(view, entry):
+    for seen, pair, type_ in outputs(view):
         value = pair.value
         if value is None or not _is_literal(value):
             continue
         problem = check_literal(type_, value.text, view.project.target)
         is_refused = problem is not None and problem.kind == "refused"
         is_custom = not is_refused and view.ask(_is_custom)
-        if is_custom and not _is_first_value(view, entry, pair):
+        if is_custom and not _is_first_value(view, pair):
             continue
         name = value.text if is_name(value.text) else pair.key.text
         fixes = (replace_fix(f"Write the entry `{{{name}}}`", value.span, f"{{{name}}}"),) if is_name(name) else ()
@@ -56,7 +56,7 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def outputs(view: View, entry: Entry) -> Iterator[tuple[ResolvedNode, Pair, str]]:
+def outputs(view: View) -> Iterator[tuple[ResolvedNode, Pair, str]]:
     """The values for the outputs of a tree's nodes, and the outputs' types; empty for a tree's, which keep whatever
     they are given."""
     return _outputs_in(view, view.seen.given)
@@ -80,9 +80,9 @@ def _is_custom(store: Store[Workspace], viewpoint: str) -> bool:
     return values > 2 and (values > given / 2 or values > 9)
 
 
-def _is_first_value(view: View, entry: Entry, pair: Pair) -> bool:
+def _is_first_value(view: View, pair: Pair) -> bool:
     """Whether no output of the file before this one has a value."""
-    values = (each for _, each, _ in outputs(view, entry) if each.value is not None and _is_literal(each.value))
+    values = (each for _, each, _ in outputs(view) if each.value is not None and _is_literal(each.value))
     return view.ask(_first_with_value) is view.facts and next(values, None) is pair
 
 

@@ -13,11 +13,11 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.checks import lookups
-from btq_lang.checks.kinds import is_torn, model_related, way_in
+from btq_lang.checks.kinds import model_related, way_in
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word, written
+from btq_lang.syntax.tree import Entry, Include, Meta, Pair, Port, Root, Tree, Word, models_in, written
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
@@ -71,7 +71,7 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if seen.is_subtree:  # the engine passes to a tree only what it takes for ports
             given = set(filter(is_port_name, given))
         missing = _needed(view, seen, [port for port in ports.required if port.name not in given])
-        if not missing or (seen.is_subtree and _remaps_all(seen)) or is_torn(view, entry, seen):
+        if not missing or (seen.is_subtree and _remaps_all(seen)) or view.is_torn(seen.node.start, seen.node.end):
             continue  # a value may be on a line that could not be read
         if _may_have_more(view, seen):
             continue  # and so may a default
@@ -94,7 +94,7 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
                     if port.name[:1] == "_"
                 ),
             ),
-            fixes=_passing_on(view, entry, seen, missing),
+            fixes=_passing_on(view, seen, missing),
             # Only the robot's program knows whether it requires an input.
             severity=None if seen.kind or seen.is_subtree else Severity.WARNING,
         )
@@ -149,8 +149,8 @@ def duplicate_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def duplicate_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """Two ports of one name in a model or a tree: the engine takes the last one, and tools the first."""
     item = entry.item
-    for owner in item.models if isinstance(item, Models) else (item,):
-        if not isinstance(owner, Tree | Model) or len(owner.ports) < 2:
+    for owner in (item,) if isinstance(item, Tree) else models_in(item):
+        if len(owner.ports) < 2:
             continue
         first: dict[str, Word] = {}
         for port in owner.ports:
@@ -170,8 +170,8 @@ def duplicate_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def misspelt_type(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`strng`: not a type of C++ and probably not one of the robot's program; its values then are not checked."""
     item = entry.item
-    for owner in item.models if isinstance(item, Models) else (item,):
-        for port in owner.ports if isinstance(owner, Tree | Model) else ():
+    for owner in (item,) if isinstance(item, Tree) else models_in(item):
+        for port in owner.ports:
             name = port.type.text if port.type is not None else ""
             if not name.islower() or len(name) < 4 or is_known_type(plain_type(name)):
                 continue
@@ -339,7 +339,7 @@ def _declared(view: View, seen: ResolvedNode) -> tuple[Related, ...]:
     return model_related(view, seen, _DECLARED)
 
 
-def _passing_on(view: View, entry: Entry, seen: ResolvedNode, missing: list[KnownPort]) -> tuple[Fix, ...]:
+def _passing_on(view: View, seen: ResolvedNode, missing: list[KnownPort]) -> tuple[Fix, ...]:
     """The fix that passes to a custom node or a SubTree the blackboard entries named as its ports."""
     if seen.kind is not None:
         return ()
@@ -370,16 +370,14 @@ def _attribute_lists(view: View, entry: Entry) -> Iterator[tuple[tuple[Pair, ...
         yield item.attributes, {"path": item.path}
     elif isinstance(item, Root):
         yield item.attributes, {"main_tree_to_execute": item.name}
-    elif isinstance(item, Model | Models):
-        for model in (item,) if isinstance(item, Model) else item.models:
-            if isinstance(model, Model):
-                if model.attributes:
-                    yield model.attributes, {"ID": model.name}
-                for part in model.body:
-                    if isinstance(part, Port) and part.attributes:
-                        yield part.attributes, _said(part)
-                    elif isinstance(part, Meta):
-                        yield part.attributes, {}
+    for model in models_in(item):
+        if model.attributes:
+            yield model.attributes, {"ID": model.name}
+        for part in model.body:
+            if isinstance(part, Port) and part.attributes:
+                yield part.attributes, _said(part)
+            elif isinstance(part, Meta):
+                yield part.attributes, {}
 
 
 def _said(port: Port) -> dict[str, Word | None]:

@@ -26,7 +26,7 @@ def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
         requirement = symbol.target
         if not isinstance(requirement, Requirement) or requirement.text is None or requirement.clauses:
             continue
-        found = _not_checked(view, entry, requirement, symbol.name)
+        found = _not_checked(view, requirement, symbol.name)
         first = view.declaration(Kind.REQUIREMENT, symbol.name)
         if not found or (first is not None and first.symbol is not symbol):
             continue
@@ -43,7 +43,7 @@ def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def _not_checked(view: View, entry: Entry, requirement: Requirement, name: str) -> list[Constraint]:
+def _not_checked(view: View, requirement: Requirement, name: str) -> list[Constraint]:
     """The constraints that are neither a script nor meaningful clauses."""
     found = view.constraints(requirement)
     is_checked = any(checkable for _, checkable in found) and view.ask(is_measured)

@@ -26,7 +26,7 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
             message = f"unknown quality model `{edition.text}`"
             fixes = tuple(replace_fix(f"Replace it with `{name}`", edition.span, name) for name in EDITIONS)
             yield Diagnostic("unknown-quality", edition.span, message, fixes=fixes)
-    for use, match in _matches(view, entry):
+    for use, match in _matches(view):
         if match.kind != "unknown":
             continue
         if (meaning := view.find(Kind.REQUIREMENT, use.name)) is not None:
@@ -44,15 +44,13 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
             use.span,
             f"unknown quality `{use.name}`{did_you_mean(meant)}",
             notes=() if meant else (f"declare your own quality with a line `quality {written(_last(use))}`",),
-            fixes=tuple(
-                replace_fix(f"Replace `{use.name}` with `{name}`", _whole(view, entry, use), name) for name in meant
-            ),
+            fixes=tuple(replace_fix(f"Replace `{use.name}` with `{name}`", _whole(view, use), name) for name in meant),
         )
 
 
 def old_quality_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """An alias, or a name of another edition."""
-    for use, match in _matches(view, entry):
+    for use, match in _matches(view):
         if match.kind not in ("alias", "other-edition"):
             continue
         is_alias = match.kind == "alias"
@@ -71,9 +69,7 @@ def old_quality_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
             message,
             notes=notes,
             fixes=tuple(
-                replace_fix(
-                    f"Replace it with `{candidate.id}`", _whole(view, entry, use), candidate.id, safe=match.safe
-                )
+                replace_fix(f"Replace it with `{candidate.id}`", _whole(view, use), candidate.id, safe=match.safe)
                 for candidate in match.candidates[:3]
             ),
             tags=() if is_alias else (Tag.DEPRECATED,),
@@ -82,7 +78,7 @@ def old_quality_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def ambiguous_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A name with several meanings."""
-    for use, match in _matches(view, entry):
+    for use, match in _matches(view):
         if match.kind != "ambiguous":
             continue
         # The old name of a characteristic, `usability`, is read as what the characteristic is called now.
@@ -93,23 +89,21 @@ def ambiguous_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
             f"ambiguous quality name `{use.name}`" + (f"; btq reads it as `{usual}`" if usual else ""),
             notes=(match.explanation,) if match.explanation else (),
             fixes=tuple(
-                replace_fix(
-                    f"Replace it with `{candidate.id}`: {candidate.name}", _whole(view, entry, use), candidate.id
-                )
+                replace_fix(f"Replace it with `{candidate.id}`: {candidate.name}", _whole(view, use), candidate.id)
                 for candidate in match.candidates[:4]
             ),
             severity=Severity.INFO if usual else None,
         )
 
 
-def _matches(view: View, entry: Entry) -> Iterator[tuple[Use, QualityMatch]]:
+def _matches(view: View) -> Iterator[tuple[Use, QualityMatch]]:
     """Each quality named in an entry, except those that the files in scope declare themselves."""
     for use in view.uses(Kind.QUALITY):
         if use.name and (match := view.quality(use.name)) is not None:
             yield use, match
 
 
-def _whole(view: View, entry: Entry, use: Use) -> Span:
+def _whole(view: View, use: Use) -> Span:
     """The span to replace: for `performance <time-behavior>` with the `>`, which is not a part of the name."""
     text = view.text
     end = use.span.end

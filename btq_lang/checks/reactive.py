@@ -94,7 +94,7 @@ def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
         guard: ResolvedNode | None = None
         for child in seen.node.nodes:
             if guard is not None and result(view, child).usual & RUNNING:
-                fixable = _can_be_asked_again(view, entry, nodes, seen)
+                fixable = _can_be_asked_again(view, nodes, seen)
                 yield _not_asked_again(view, seen, guard, child, fixable=fixable)
                 break
             guard = guard or _guard(nodes, nodes[id(child)])
@@ -168,7 +168,7 @@ def _is_resuming_sequence(seen: ResolvedNode) -> bool:
     return seen.flow == "sequence" and not _begins_again(seen)
 
 
-def _can_be_asked_again(view: View, entry: Entry, nodes: dict[int, ResolvedNode], seen: ResolvedNode) -> bool:
+def _can_be_asked_again(view: View, nodes: dict[int, ResolvedNode], seen: ResolvedNode) -> bool:
     """Whether `R?` would restart only what its condition is for: any other child that takes time and fails would
     restart at the next tick, and halt what was to follow it."""
     return all(

@@ -13,8 +13,8 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found
-from btq_lang.checks.view import View
-from btq_lang.checks.writers import all_entries, declared_ports, isolated, key_of
+from btq_lang.checks.view import View, declared_ports
+from btq_lang.checks.writers import all_entries, isolated, key_of
 from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements import nodes
 from btq_lang.requirements.reading import signals_in
@@ -35,7 +35,7 @@ def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
     """A guard whose signals all have writers in the mission, none of which is ticked while the node runs."""
     for applied, claim, node, place, why in demanded.hard:
         signals = _watched(applied.requirement, claim) if why is None else ()
-        keys = dict.fromkeys([(signal.key or "").removeprefix("@") for signal in signals])
+        keys = dict.fromkeys([signal.entry for signal in signals])
         if not keys or not all(_is_fixed(demanded, node, key) for key in keys):
             continue
         writers = [*dict.fromkeys([writer for key in keys for writer in demanded.view.ask(_writers, key)])]

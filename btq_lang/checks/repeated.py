@@ -49,11 +49,11 @@ def named_twice(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for elements in (item.uses, item.targets, item.exceptions):
             spans = [part.name.span if isinstance(part, ReqRef) else Span(part.start, part.end) for part in elements]
             named = [_Named(shape(part), span) for part, span in zip(elements, spans, strict=True)]
-            yield from _repeated(view, entry, named)
+            yield from _repeated(view, named)
     elif isinstance(item, Tree):
         for clauses in (item.clauses, *[seen.node.clauses for seen in view.seen.demanding]):
             if _names_several(clauses) and not view.is_torn(clauses[0].start, clauses[-1].end):
-                yield from _repeated(view, entry, [named for clause in clauses for named in _of_clause(view, clause)])
+                yield from _repeated(view, [named for clause in clauses for named in _of_clause(view, clause)])
 
 
 def _names_several(clauses: tuple[NodeClause, ...]) -> bool:
@@ -66,7 +66,7 @@ def _names_several(clauses: tuple[NodeClause, ...]) -> bool:
     return len(clause.names if isinstance(clause, Tags) else clause.uses) > 1
 
 
-def _repeated(view: View, entry: Entry, names: list[_Named]) -> Iterator[Diagnostic]:
+def _repeated(view: View, names: list[_Named]) -> Iterator[Diagnostic]:
     first: dict[object, Span] = {}
     for named in names:
         if first.setdefault(named.says, named.span) is named.span:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.checks import lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place
 from btq_lang.checks.view import COUNTS, View
@@ -70,7 +71,7 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
     if view.is_used(Kind.REQUIREMENT, requirement.name.text) or view.is_meant_as_requirement(requirement.name.text):
         return
-    if not view.is_read or view.names_unknown_requirements:
+    if not view.is_read or view.look_up(lookups.names_unknown_requirements):
         return  # its user may be on a line that could not be read, or misspell it
     yield Diagnostic(
         "unused-requirement",

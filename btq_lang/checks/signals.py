@@ -68,7 +68,7 @@ def _never_written(view: View, here: list[Signal], guards: Sequence[Guard]) -> I
     writes = [write for each in view.ask(all_entries) for write in each.writes] if guards else []
     guarding = {signal.name for signals, _ in guards for signal in signals}
     for signal in here:
-        key = (signal.key or "").removeprefix("@")
+        key = signal.entry
         if key in written and signal.name in guarding and (writer := isolated(view, writes, key)) is not None:
             message = f"`{signal.name}` reads the root's `{key}`, but the tree `{writer.tree}` writes its own `{key}`"
             notes = (f"write `{{@{key}}}`, or pass the entry on to the tree: `{key} = {{{key}}}`",)
@@ -103,7 +103,7 @@ def _of_text(view: View, here: list[Signal]) -> Iterator[Found]:
     """A numeric signal whose entry a text port writes: a script that compares it converts the text, and throws if it is
     not a number."""
     main = view.ask(mission)
-    numbers = {(signal.key or "").removeprefix("@"): signal for signal in here if signal.sort == "number"}
+    numbers = {signal.entry: signal for signal in here if signal.sort == "number"}
     entries = [each for each in view.ask(all_entries) if not numbers.keys().isdisjoint(each.pointers)]
     for key, signal in numbers.items():
         for node, pair, is_of_root in (pointer for each in entries for pointer in each.pointers.get(key, ())):

@@ -6,14 +6,12 @@ powers of two; a missing or surplus child can return anything.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Final, TypeAlias
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Flow, NodeKind, Role
     from btq_lang.syntax.tree import Node, Word
-
-    _Decorator: TypeAlias = Callable[[NodeKind, Node, int, bool], int]
 
 SUCCESS: Final = 1
 FAILURE: Final = 2
@@ -37,8 +35,9 @@ def of_builtin(kind: NodeKind, node: Node, children: Sequence[int], starting: bo
         return RUNNING if starting and _number(kind, node, "time") != 0 else SUCCESS | RUNNING
     if flow in GOES_ON:
         return _in_order(children, GOES_ON[flow], kind.pauses, starting)
-    if flow in _DECORATORS:
-        return _DECORATORS[flow](kind, node, children[0] if len(children) == 1 else ANYTHING, starting)
+    decorated = _decorated(kind, node, children[0] if len(children) == 1 else ANYTHING, starting)
+    if decorated is not None:
+        return decorated
     if flow == "switch" and children:
         return _any_of(children if node.attribute("variable") is not None else children[-1:])
     if flow == "choice" and len(children) in (2, 3):
@@ -116,12 +115,37 @@ def _parallel(kind: NodeKind, node: Node, children: Sequence[int]) -> int:
     return (found & (FAILURE | RUNNING)) | succeeds | (SKIPPED if found & SKIPPED else 0)
 
 
-def _repeat(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    return _again(child, SUCCESS, _number(kind, node, "count"), starting)
-
-
-def _retry(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    return _again(child, FAILURE, _number(kind, node, "count"), starting)
+def _decorated(kind: NodeKind, node: Node, child: int, starting: bool) -> int | None:
+    """The statuses of a decorator; None for another flow."""
+    match kind.flow:
+        case "invert":
+            found = child & ~(SUCCESS | FAILURE)
+            return found | (FAILURE if child & SUCCESS else 0) | (SUCCESS if child & FAILURE else 0)
+        case "force-success":
+            return child & ~FAILURE | (SUCCESS if child & FAILURE else 0)
+        case "force-failure":
+            return child & ~SUCCESS | (FAILURE if child & SUCCESS else 0)
+        case "until-failure":
+            return child & ~SUCCESS | (RUNNING if child & (SUCCESS | SKIPPED) else 0)
+        case "repeat":
+            return _again(child, SUCCESS, _number(kind, node, "count"), starting)
+        case "retry":
+            return _again(child, FAILURE, _number(kind, node, "count"), starting)
+        case "timeout":
+            return child | (FAILURE if child & RUNNING and not starting else 0)
+        case "delay":
+            return RUNNING if starting and _number(kind, node, "time") != 0 else child | RUNNING
+        case "once":  # once it has run it is skipped, or repeats a result that it had at any tick
+            return child | (SKIPPED if node.attribute("then_skip") is None else ANYTHING)
+        case "precondition":
+            return child | _otherwise(kind, node)
+        case "for-each":
+            return child | RUNNING | _otherwise(kind, node)
+        case "skip-unless-updated":
+            return child | SKIPPED
+        case "wait-until-updated":
+            return child | RUNNING
+    return None
 
 
 def _again(child: int, repeats: int, count: int | None, starting: bool) -> int:
@@ -133,53 +157,6 @@ def _again(child: int, repeats: int, count: int | None, starting: bool) -> int:
     found = child | RUNNING
     counted = not starting or child & SKIPPED  # a skipped child does not change the count
     return found if count is None or (count > 0 and counted) else found & ~repeats
-
-
-def _invert(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    found = child & ~(SUCCESS | FAILURE)
-    return found | (FAILURE if child & SUCCESS else 0) | (SUCCESS if child & FAILURE else 0)
-
-
-def _force_success(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    return child & ~FAILURE | (SUCCESS if child & FAILURE else 0)
-
-
-def _force_failure(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    return child & ~SUCCESS | (FAILURE if child & SUCCESS else 0)
-
-
-def _until_failure(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    return child & ~SUCCESS | (RUNNING if child & (SUCCESS | SKIPPED) else 0)
-
-
-def _timeout(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    return child | (FAILURE if child & RUNNING and not starting else 0)
-
-
-def _delay(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    return RUNNING if starting and _number(kind, node, "time") != 0 else child | RUNNING
-
-
-def _once(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    """Once it has run it is skipped, or repeats a result that it had at any tick."""
-    skips = node.attribute("then_skip") is None
-    return child | (SKIPPED if skips else ANYTHING)
-
-
-def _precondition(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    return child | _otherwise(kind, node)
-
-
-def _for_each(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    return child | RUNNING | _otherwise(kind, node)
-
-
-def _skip_unless_updated(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    return child | SKIPPED
-
-
-def _wait_until_updated(kind: NodeKind, node: Node, child: int, starting: bool) -> int:
-    return child | RUNNING
 
 
 def _otherwise(kind: NodeKind, node: Node) -> int:
@@ -194,18 +171,3 @@ _STATUSES: Final = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED, 
 _LEAVES: Final[Mapping[Flow, int]] = {"succeeds": SUCCESS, "fails": FAILURE, "answers": SUCCESS | FAILURE}
 # The status of a child after which the next one is ticked.
 GOES_ON: Final[Mapping[Flow, int]] = {"sequence": SUCCESS, "fallback": FAILURE}
-_DECORATORS: Final[Mapping[Flow, _Decorator]] = {
-    "invert": _invert,
-    "force-success": _force_success,
-    "force-failure": _force_failure,
-    "until-failure": _until_failure,
-    "repeat": _repeat,
-    "retry": _retry,
-    "timeout": _timeout,
-    "delay": _delay,
-    "once": _once,
-    "precondition": _precondition,
-    "for-each": _for_each,
-    "skip-unless-updated": _skip_unless_updated,
-    "wait-until-updated": _wait_until_updated,
-}

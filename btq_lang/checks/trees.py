@@ -10,7 +10,7 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
-from btq_lang.checks.kinds import include_place, is_torn
+from btq_lang.checks.kinds import include_place
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.blocks import OF_ITS_OWN
@@ -33,7 +33,7 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in view.seen.subtrees:
         word = seen.node.category
         is_nameless = seen.id is None or seen.id.text == ""
-        if word is not None and is_nameless and not is_torn(view, entry, seen):
+        if word is not None and is_nameless and not view.is_torn(seen.node.start, seen.node.end):
             yield Diagnostic("unknown-tree", word.span, "missing tree of this SubTree: write `SubTree <ID>`")
     for use in view.uses(Kind.TREE):
         if use.name == "" or view.defines(Kind.TREE, use.name) or view.is_pooled(Kind.TREE, use.name):

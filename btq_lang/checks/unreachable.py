@@ -25,11 +25,11 @@ def unreachable_child(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         flow = seen.flow
         if flow in GOES_ON:
-            found = _behind(view, entry, seen, seen.node.children, GOES_ON[flow])
+            found = _behind(view, seen.node.children, GOES_ON[flow])
         elif flow == "try":
-            found = _in_try(view, entry, seen)
+            found = _in_try(view, seen)
         elif flow == "choice":
-            found = _by_condition(view, entry, seen)
+            found = _by_condition(view, seen)
         elif flow == "switch":
             found = _in_switch(seen)
         else:
@@ -38,9 +38,7 @@ def unreachable_child(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield found
 
 
-def _behind(
-    view: View, entry: Entry, seen: ResolvedNode, children: tuple[Node | Verbatim, ...], goes_on: int
-) -> Diagnostic | None:
+def _behind(view: View, children: tuple[Node | Verbatim, ...], goes_on: int) -> Diagnostic | None:
     """The child after one that can only end the node."""
     known = results(view)
     for child, following in pairwise(children):
@@ -50,10 +48,10 @@ def _behind(
     return None
 
 
-def _in_try(view: View, entry: Entry, seen: ResolvedNode) -> Diagnostic | None:
+def _in_try(view: View, seen: ResolvedNode) -> Diagnostic | None:
     """The last child of a try, which cleans up after a failure and perhaps after a halt, if it can never run."""
     *tried, last = seen.node.children
-    found = _behind(view, entry, seen, tuple(tried), SUCCESS)
+    found = _behind(view, tuple(tried), SUCCESS)
     if found is not None or seen.node.attribute("catch_on_halt") is not None:
         return found
     if any(result(view, child).ever & FAILURE for child in tried):
@@ -61,7 +59,7 @@ def _in_try(view: View, entry: Entry, seen: ResolvedNode) -> Diagnostic | None:
     return _unreachable(last, "nothing before it can fail", None)
 
 
-def _by_condition(view: View, entry: Entry, seen: ResolvedNode) -> Diagnostic | None:
+def _by_condition(view: View, seen: ResolvedNode) -> Diagnostic | None:
     condition, *branches = seen.node.children
     results = result(view, condition).ever
     if not isinstance(condition, Node) or not results & (SUCCESS | FAILURE):

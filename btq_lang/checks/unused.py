@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 def unused_signal(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A signal that no condition, no bound and no `uses` names."""
-    if isinstance(entry.item, Signal) and _is_unused(view, entry, Kind.SIGNAL):
+    if isinstance(entry.item, Signal) and _is_unused(view, Kind.SIGNAL):
         yield from _unused(entry.item, "unused-signal", "no clause uses the signal")
 
 
 def unused_context(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A context that no condition names."""
-    if isinstance(entry.item, Context) and _is_unused(view, entry, Kind.CONTEXT):
+    if isinstance(entry.item, Context) and _is_unused(view, Kind.CONTEXT):
         yield from _unused(entry.item, "unused-context", "no condition uses the context")
 
 
@@ -34,25 +34,21 @@ def _unused(item: Signal | Context, rule: str, message: str) -> Iterator[Diagnos
         yield Diagnostic(rule, item.name.span, f"{message} `{item.name.text}`", tags=(Tag.UNNECESSARY,))
 
 
-def _is_unused(view: View, entry: Entry, kind: Kind) -> bool:
+def _is_unused(view: View, kind: Kind) -> bool:
     if not view.has_trees or view.is_used_elsewhere:
         return False  # a file of signals, or a library: their users may be anywhere
     for symbol in view.facts.summary.symbols:
         return (
             view.defines_here(kind, symbol.name)
             and not view.look_up(lookups.is_asked_for, symbol.name)
-            and not _is_meant(view, symbol.name)
+            and not view.ask(_is_meant, symbol.name)
             and view.is_read  # else its user may be on a line that could not be read
         )
     return False
 
 
-def _is_meant(view: View, name: str) -> bool:
+def _is_meant(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     """Whether something uses an undeclared name that looks like this one, which is reported already."""
-    return view.ask(_is_near, name)
-
-
-def _is_near(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     view = View(store, viewpoint)
     asked = view.look_up(lookups.asked_for_in_vain)
     declared = len(view.names(Kind.SIGNAL)) + len(view.names(Kind.CONTEXT))

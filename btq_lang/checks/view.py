@@ -264,11 +264,6 @@ class View:
         """Whether the name of one of the file's trees may be on a line that could not be read."""
         return self.look_up(lookups.has_torn_tree)
 
-    @property
-    def names_unknown_requirements(self) -> bool:
-        """Whether the file refers to a requirement that is defined nowhere."""
-        return self.look_up(lookups.names_unknown_requirements)
-
     def is_used(self, kind: Kind, name: str) -> bool:
         """Whether something in the file refers to a name."""
         return self.ask(_is_used, kind, name)
@@ -276,11 +271,6 @@ class View:
     def is_meant_as_requirement(self, name: str) -> bool:
         """Whether a name in the place of a quality or a node seems to be a requirement's; each is reported."""
         return self.is_used(Kind.QUALITY, name) or self.ask(_is_misspelt_use, name)
-
-    @property
-    def has_palette(self) -> bool:
-        """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file."""
-        return self.look_up(lookups.has_palette)
 
     @property
     def other_files(self) -> tuple[str, ...]:
@@ -339,11 +329,13 @@ class _NodeNames:
 
 def subtree_ports(view: View, seen: ResolvedNode) -> tuple[Port, ...]:
     """The ports that the tree of a SubTree declares, in its block or in a model of its own."""
-    name = seen.node.id
-    if name is None:
-        return ()
+    return declared_ports(view, seen.node.id.text) if seen.node.id is not None else ()
+
+
+def declared_ports(view: View, name: str) -> tuple[Port, ...]:
+    """The ports that a tree declares, or if it declares none, a model of the same name."""
     for kind in (Kind.TREE, Kind.MODEL):
-        meaning = view.find(kind, name.text)
+        meaning = view.find(kind, name)
         if meaning is not None and meaning.ports:
             return meaning.ports
     return ()

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
-from btq_lang.catalog.name_kinds import Kind
-from btq_lang.checks.view import View
+from btq_lang.checks.view import View, declared_ports
 from btq_lang.requirements import nodes
-from btq_lang.syntax.tree import Pair, Port, Verbatim
+from btq_lang.syntax.tree import Pair, Port, Verbatim, port_named
 from btq_lang.util.record import Record
 from btq_lang.workspace import inputs
 from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
@@ -130,16 +129,7 @@ def declared_port(view: View, node: ResolvedNode, port: str) -> Port | None:
     """The port as the node's model, or the tree of a SubTree, declares it."""
     name = node.node.id
     ports = declared_ports(view, name.text) if name is not None else ()
-    return next((each for each in ports if each.name is not None and each.name.text == port), None)
-
-
-def declared_ports(view: View, name: str) -> tuple[Port, ...]:
-    """The ports that a tree declares, or if it declares none, a model of the same name."""
-    for kind in (Kind.TREE, Kind.MODEL):
-        meaning = view.find(kind, name)
-        if meaning is not None and meaning.ports:
-            return meaning.ports
-    return ()
+    return port_named(ports, port)
 
 
 def _is_script(node: ResolvedNode, key: str) -> bool:

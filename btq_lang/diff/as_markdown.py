@@ -44,13 +44,13 @@ def code(text: str) -> str:
 def _change(comparison: Comparison, change: Change) -> Iterator[str]:
     thing, name, happened = headline(change)
     what, _, more = happened.partition(" ")
-    said = [thing, code(name) if name else "", f"**{what}**", _more(change, more), f"({code(comparison.line(change))})"]
+    said = [thing, code(name) if name else "", f"**{what}**", _more(more), f"({code(comparison.line(change))})"]
     yield f"- {' '.join(word for word in said if word)}"
     for line in lines(change):
         yield f"  - {_WORDS[line.sign]}{code(line.text)}"
 
 
-def _more(change: Change, more: str) -> str:
+def _more(more: str) -> str:
     for before in ("from around ", "around ", "from ", "to "):
         head, found, names = more.partition(before)
         if found:

@@ -106,7 +106,7 @@ class Signals:
 
     def _series(self, signal: Signal) -> Series | None:
         series = self._given.get(signal.name)
-        return series if series is not None else self.logged.get(_entry(signal))
+        return series if series is not None else self.logged.get(signal.entry)
 
 
 def _initially(signal: Signal, is_sampled: bool) -> SampleValue | Unknown:
@@ -139,7 +139,7 @@ def _as_declared(signal: Signal, value: SampleValue, unit: Unit | None) -> Sampl
 
 def by_signal(signals: Iterable[Signal], *sources: Mapping[str, Series]) -> dict[str, Series]:
     """The samples of signals, each from the first source that has it by its name or its entry."""
-    names = {signal.name: (signal.name, _entry(signal)) for signal in signals}
+    names = {signal.name: (signal.name, signal.entry) for signal in signals}
     found: dict[str, Series] = {}
     for signal, keys in names.items():
         for source in sources:
@@ -147,10 +147,6 @@ def by_signal(signals: Iterable[Signal], *sources: Mapping[str, Series]) -> dict
                 found[signal] = source[key]
                 break
     return found
-
-
-def _entry(signal: Signal) -> str:
-    return (signal.key or "").removeprefix("@")
 
 
 NO_SAMPLES: Final = "no samples of"

@@ -102,6 +102,11 @@ class Signal(Record):
     initially: Value | Flag | Text | None
     place: Place
 
+    @property
+    def entry(self) -> str:
+        """The blackboard entry without the `@` of the root's; empty if none is named."""
+        return (self.key or "").removeprefix("@")
+
 
 class Read(Record):
     """The last sample of a signal; of a bool signal, a condition as well."""

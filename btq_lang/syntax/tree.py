@@ -7,7 +7,7 @@ wherever edits elsewhere have moved it.  The tree has words, not meanings: `Retr
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.syntax.clauses import Amount as Amount
@@ -269,6 +269,17 @@ class Entry(Record):
 def moved_by(entry: Entry, by: int) -> Entry:
     """The same item elsewhere in its file."""
     return Entry(entry.start + by, entry.item, entry.in_root, entry.diagnostics)
+
+
+def models_in(item: Item) -> list[Model]:
+    """The models that an item declares."""
+    parts = item.models if isinstance(item, Models) else (item,)
+    return [part for part in parts if isinstance(part, Model)]
+
+
+def port_named(ports: Iterable[Port], name: str) -> Port | None:
+    """The declared port of a name."""
+    return next((port for port in ports if port.name is not None and port.name.text == name), None)
 
 
 def quote(text: str) -> str:

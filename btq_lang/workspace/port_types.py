@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, port_type
-from btq_lang.syntax.tree import Model, Node, Pair, Port, Tree
+from btq_lang.syntax.tree import Model, Node, Pair, Port, Tree, port_named
 from btq_lang.util.record import Record
 from btq_lang.workspace.node_names import tag_of
 
@@ -66,7 +66,7 @@ def meetings(scope: Scope, version: str, tree: str, port: str) -> Iterator[Meeti
 
 def declared_type(ports: tuple[Port, ...], name: str) -> str:
     """The declared type of a port; empty if it has none that restricts values."""
-    port = next((each for each in ports if each.name is not None and each.name.text == name), None)
+    port = port_named(ports, name)
     return _plain(port.type.text) if port is not None and port.type is not None else ""
 
 
