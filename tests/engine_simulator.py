@@ -422,8 +422,7 @@ class Precondition(Sim):
 class SubTree(Sim):
     def __init__(self, run: Run, source: ResolvedNode) -> None:
         super().__init__(run, source)
-        assert source.node.id is not None
-        root = run.found.nodes.root(source.node.id.text)
+        root = run.found.nodes.run_by(source)
         assert root is not None
         self.children = [make(run, root)]
 

@@ -8,7 +8,7 @@ to all of its claims, wherever they are among them.
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.catalog.units import Dimension, a_dimension
 from btq_lang.catalog.verbs import VERBS
@@ -46,9 +46,6 @@ from btq_lang.syntax.tree import Subject as WrittenSubject
 from btq_lang.syntax.tree import Window as WrittenWindow
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span as TextSpan
-
-if TYPE_CHECKING:
-    pass
 
 
 def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[WrittenClause, ...]) -> Requirement:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from math import fsum, inf
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.units import to_si
 from btq_lang.requirements.durations import (
@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Flow, Role
     from btq_lang.syntax.tree import Word
     from btq_lang.workspace.resolved import ResolvedNode
-
-    _Rule: TypeAlias = Callable[["ResolvedNode", Sequence["Budget"]], "Budget | None"]
 
 
 class Budget(Record):
@@ -91,10 +89,13 @@ def compose(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
         return _LEAVES[node.flow]
     if node.flow == "sleeps":
         return _sleep(node)
-    rule = _RULES.get(node.flow)
-    if rule is None or not children or (node.category == "Decorator" and len(children) != 1):
+    found: Budget | None = None
+    if node.flow in _DECORATORS and len(children) == 1:
+        found = _DECORATORS[node.flow](node, children[0])
+    elif node.flow in _CONTROLS and children and node.category != "Decorator":
+        found = _CONTROLS[node.flow](node, children)
+    else:
         return unknown("is a node of unknown duration")
-    found = rule(node, children)
     if found is None:
         return unknown("has the wrong number of children")
     if found.waits or node.kind is None or node.kind.execution != "asynchronous":
@@ -337,23 +338,19 @@ def _try(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
 # ---- decorators ----
 
 
-def _invert(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    (child,) = children
+def _invert(node: ResolvedNode, child: Budget) -> Budget:
     return replace(child, success=child.failure, failure=child.success)
 
 
-def _force_success(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    (child,) = children
+def _force_success(node: ResolvedNode, child: Budget) -> Budget:
     return replace(child, success=child.completes, failure=None)
 
 
-def _force_failure(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    (child,) = children
+def _force_failure(node: ResolvedNode, child: Budget) -> Budget:
     return replace(child, success=None, failure=child.completes)
 
 
-def _retry(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    (child,) = children
+def _retry(node: ResolvedNode, child: Budget) -> Budget:
     count = port_count(node, "count")
     go, end, skip, reason = _again(child.failure, child.success, child.skip, count)
     return Budget(
@@ -361,8 +358,7 @@ def _retry(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     )
 
 
-def _repeat(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    (child,) = children
+def _repeat(node: ResolvedNode, child: Budget) -> Budget:
     count = port_count(node, "count")
     go, end, skip, reason = _again(child.success, child.failure, child.skip, count)
     return Budget(
@@ -401,9 +397,8 @@ def _before(go: Range | None, end: Range | None, count: float) -> Range | None:
     return hull(end, plus(times(int(count), go), end))
 
 
-def _timeout(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
+def _timeout(node: ResolvedNode, child: Budget) -> Budget:
     """It can interrupt only what returns RUNNING."""
-    (child,) = children
     limit = port_seconds(node)
     longest = child.running
     if limit == 0 or not child.waits:
@@ -420,8 +415,7 @@ def _timeout(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     )
 
 
-def _delay(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    (child,) = children
+def _delay(node: ResolvedNode, child: Budget) -> Budget:
     seconds = port_seconds(node)
     wait = ANY if seconds is None else Range(seconds, seconds)
     reason = "" if seconds is not None else "reads from the blackboard how long it waits"
@@ -435,8 +429,7 @@ def _delay(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     )
 
 
-def _until_failure(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    (child,) = children
+def _until_failure(node: ResolvedNode, child: Budget) -> Budget:
     again = child.success is not None or child.skip is not None
     failure = without_end(child.failure) if again else child.failure
     likely = child.probability if child.probability == 1.0 or not again else 0.0
@@ -444,9 +437,8 @@ def _until_failure(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     return Budget(None, failure, None, True, likely, reason, child.endless or again)
 
 
-def _once(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
+def _once(node: ResolvedNode, child: Budget) -> Budget:
     """After the first run it is skipped, or repeats its result at once."""
-    (child,) = children
     return replace(
         child,
         success=hull(child.success, ZERO) if child.success is not None else None,
@@ -455,9 +447,8 @@ def _once(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     )
 
 
-def _precondition(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
+def _precondition(node: ResolvedNode, child: Budget) -> Budget:
     """4.6 evaluates the script at every tick, later versions when the child starts."""
-    (child,) = children
     word, default = _port(node, "otherwise")
     status = word.text if word is not None else default
     running = child.running
@@ -467,21 +458,18 @@ def _precondition(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     return replace(child, **{key: hull(getattr(child, key), running)})
 
 
-def _for_each(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    (child,) = children
+def _for_each(node: ResolvedNode, child: Budget) -> Budget:
     if child.running.high == 0.0:
         return Budget(ZERO, ZERO, ZERO, True, child.probability)
     reason = "runs its child for each item of a queue of unknown length"
     return Budget(ANY, ANY, ANY, True, 0.0 if child.probability < 1.0 else 1.0, reason, True)
 
 
-def _skip_unless_updated(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    (child,) = children
+def _skip_unless_updated(node: ResolvedNode, child: Budget) -> Budget:
     return replace(child, skip=hull(child.skip, ZERO))
 
 
-def _wait_until_updated(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    (child,) = children
+def _wait_until_updated(node: ResolvedNode, child: Budget) -> Budget:
     return replace(
         child,
         success=without_end(child.success),
@@ -521,7 +509,7 @@ _LEAVES: Final[Mapping[Flow, Budget]] = {
     "fails": Budget(None, ZERO, None, False),
     "answers": Budget(ZERO, ZERO, None, False),
 }
-_RULES: Final[Mapping[Flow, _Rule]] = {
+_CONTROLS: Final[Mapping[Flow, Callable[[ResolvedNode, Sequence[Budget]], Budget | None]]] = {
     "sequence": _sequence,
     "fallback": _fallback,
     "parallel": _parallel,
@@ -529,6 +517,8 @@ _RULES: Final[Mapping[Flow, _Rule]] = {
     "choice": _choice,
     "switch": _switch,
     "try": _try,
+}
+_DECORATORS: Final[Mapping[Flow, Callable[[ResolvedNode, Budget], Budget]]] = {
     "invert": _invert,
     "force-success": _force_success,
     "force-failure": _force_failure,

@@ -134,10 +134,6 @@ class Nodes:
         """Whether there are any."""
         return any(tree.all for tree in self.trees)
 
-    def root(self, tree: str) -> ResolvedNode | None:
-        """The written root of a tree; None if the tree has none, or is unknown."""
-        return self._roots.get(tree)
-
     def within(self, item: Tree) -> ResolvedTree:
         """The nodes of one of the trees.
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from btq_lang.util.record import Record
+
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, Trace
     from btq_lang.requirements.nodes import Nodes
@@ -13,7 +15,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
 
-class Requirements:
+class Requirements(Record):
     """All requirements that a file sees.
 
     Attributes:
@@ -29,31 +31,17 @@ class Requirements:
         mission: the main tree's root; None if it is unknown which tree runs.
     """
 
-    def __init__(
-        self,
-        store: Store[Workspace],
-        viewpoint: str,
-        signals: dict[str, Signal],
-        contexts: dict[str, Condition | None],
-        of_name: dict[str, Requirement],
-        applied: tuple[Applied, ...],
-        traces: tuple[Trace, ...],
-        attached: frozenset[str],
-        problems: tuple[Problem, ...],
-        nodes: Nodes,
-        mission: ResolvedNode | None,
-    ) -> None:
-        self.store = store
-        self.viewpoint = viewpoint
-        self.signals = signals
-        self.contexts = contexts
-        self.all = of_name
-        self.applied = applied
-        self.traces = traces
-        self.attached = attached
-        self.problems = problems
-        self.nodes = nodes
-        self.mission = mission
+    store: Store[Workspace]
+    viewpoint: str
+    signals: dict[str, Signal]
+    contexts: dict[str, Condition | None]
+    all: dict[str, Requirement]
+    applied: tuple[Applied, ...]
+    traces: tuple[Trace, ...]
+    attached: frozenset[str]
+    problems: tuple[Problem, ...]
+    nodes: Nodes
+    mission: ResolvedNode | None
 
     def of(self, node: ResolvedNode) -> tuple[Applied, ...]:
         """What applies to a node."""

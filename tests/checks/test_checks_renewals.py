@@ -202,8 +202,7 @@ def _writes_meanwhile(text: str, seed: int) -> bool:
     """Whether, in some runs, the writer is ticked while the node with the tag runs."""
     found = resolved(text)
     (guarded,) = found.nodes.tagged("g")
-    root = found.nodes.root("Main")
-    assert root is not None
+    root = found.nodes.find(("Main",))[0].node
     run = Run(found, root, seed, lambda _source, _status, _seconds: None)
     sims = [*_below(run.root)]
     targets = [sim for sim in sims if sim.source is guarded]

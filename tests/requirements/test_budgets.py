@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.requirements.budgets import Budgets, Range
-from btq_lang.requirements.composition import _RULES
+from btq_lang.requirements.composition import _CONTROLS, _DECORATORS
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.workspace.resolved import ResolvedNode
 
@@ -44,9 +44,13 @@ def test_no_run_of_any_kind_of_node_lies_outside_its_budget(top: str) -> None:
 
 def test_all_flows_are_simulated_that_have_a_rule() -> None:
     found = [kind for name in KINDS if (kind := lookup(name)) is not None]
-    assert {kind.flow for kind in found if kind.children != (0, 0)} | NOT_SIMULATED == {*_RULES}
+    assert {
+        kind.flow for kind in found if kind.children != (0, 0)
+    } | NOT_SIMULATED == _CONTROLS.keys() | _DECORATORS.keys()
     simulated = {kind.tag for kind in found}
-    assert {tag for tag, kind in BUILTINS.items() if kind.flow in _RULES} - simulated == {
+    assert {
+        tag for tag, kind in BUILTINS.items() if kind.flow in _CONTROLS.keys() | _DECORATORS.keys()
+    } - simulated == {
         *("LoopInt", "LoopBool", "LoopDouble", "LoopString", "SkipUnlessUpdated", "WaitValueUpdate"),
         *("Switch3", "Switch4", "Switch5", "Switch6"),
     }
@@ -66,8 +70,7 @@ def assert_within_budgets(text: str, seed: int) -> set[str]:
         if node is root:
             ended.add(status)
 
-    root = found.nodes.root("Main")
-    assert root is not None
+    root = found.nodes.find(("Main",))[0].node
     run = Run(found, root, seed, report)
     try:
         for _ in range(6):
@@ -98,8 +101,7 @@ def budget(tree: str, requirements: str = LEAVES) -> tuple[Budgets, ResolvedNode
     lines = "".join(f"    {line}\n" for line in tree.strip("\n").split("\n"))
     everyone = "BehaviorTree Unused\n    ->\n        A\n        B\n        X\n"  # so that each name is one of a node
     found = resolved(f"{requirements}BehaviorTree Main\n{lines}{everyone}")
-    root = found.nodes.root("Main")
-    assert root is not None
+    root = found.nodes.find(("Main",))[0].node
     return Budgets(found.store, found.viewpoint), root
 
 

@@ -200,7 +200,7 @@ def test_other_subjects() -> None:
     found = resolved(text.replace("Action Wave", "").replace("Root", ""))
     mission, total = applied(found, "rq1")
     assert isinstance(mission.subject, Mission)
-    assert mission.node is found.nodes.root("Main") is found.mission
+    assert mission.node is found.nodes.find(("Main",))[0].node is found.mission
     assert isinstance(total.subject, Total)
     assert [target.node.node.head.text for target in total.subject.targets] == ["Walk", "Turn"]
     assert [claim.text for claim in total.requirement.claims] == ["sum of Walk, Left takes at most 30 s"]
