@@ -21,11 +21,7 @@ if TYPE_CHECKING:
 
 # The command line needs them for every command, so no writer is imported here.
 FORMATS: Final = ("table", "csv", "json", "markdown", "html")
-_MODULES: Final = {
-    "csv": "csv_rows",
-    "json": "json_document",
-    "html": "page",
-}  # named otherwise
+_MODULES: Final = {"csv": "csv_rows", "json": "json_document", "html": "page"}  # named otherwise
 
 
 def write(overview: Overview, form: str, *, colour: bool = False, width: int = 120) -> str:
