@@ -11,7 +11,7 @@ from btq_lang.commands.output import write_output
 from btq_lang.cpp.grammar import GrammarMissing
 from btq_lang.cpp.model import CppNodes
 from btq_lang.cpp.nodes import read_nodes
-from btq_lang.trace.wording import counted
+from btq_lang.util.text import counted
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.loader import LoadProblem, absolute, collect, head, read, shown
 
