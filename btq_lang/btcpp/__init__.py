@@ -18,6 +18,7 @@ restoring   a mission from its XML and its side file
 xsd         a schema of XML files with a project's nodes; `interfaces`: what these may have inside and beside them
 marks       what a build puts into the XML so that an import knows it
 recognition which XML is the engine's
+typed_xml   the tag at a place of XML that is being typed
 
 One invariant: no other package knows XML.
 """

@@ -21,10 +21,11 @@ from btq_lang.ide.clause_words import Expected, expected, is_count, is_window
 from btq_lang.ide.completion_list import listed
 from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.measures import Measured, measured_at
-from btq_lang.ide.place import Place, item_tokens, place_at, word_text
+from btq_lang.ide.place import Place, item_tokens, open_brace, place_at, word_text
 from btq_lang.ide.ports import ports_of_kind, ports_of_tree
 from btq_lang.ide.proposals import Proposal
 from btq_lang.ide.snippets import item_snippets, model_snippets, node_snippets
+from btq_lang.ide.xml_completion import complete_in_xml
 from btq_lang.syntax.tokens import (
     CATEGORIES,
     CLOSE,
@@ -55,20 +56,24 @@ class Completion(Record):
 def complete(
     workspace: Workspace, path: str, offset: int, *, asked: bool = True, trigger: str = "", snippets: bool = True
 ) -> Completion:
-    """What may follow at an offset.
+    """What may follow at an offset of a file as the editor has it; the spans of the result count there too.
 
     Args:
         asked: whether the user requests it; otherwise the editor does, because of what was typed.
         trigger: the character that made the editor request it.
         snippets: whether the editor supports snippets.
     """
-    place = place_at(workspace, path, offset)
-    text = workspace.files[path].text
-    if not asked and _ends_something(place, text[:offset], trigger):
-        return Completion(Span(offset, offset), ())
-    found = _complete(workspace, path, place, offset)
-    known = (one for one in found.proposals if one.label)
-    proposals = [one for one in known if not _is_typed_here(workspace, path, found.span, one)]
+    text = workspace.files[path].source
+    if workspace.files[path].origin is not None:
+        found = Completion(*complete_in_xml(workspace, path, offset))
+        proposals = list(found.proposals)
+    else:
+        place = place_at(workspace, path, offset)
+        if not asked and _ends_something(place, text[:offset], trigger):
+            return Completion(Span(offset, offset), ())
+        found = _complete(workspace, path, place, offset)
+        known = (one for one in found.proposals if one.label)
+        proposals = [one for one in known if not _is_typed_here(workspace, path, found.span, one)]
     if not snippets:
         proposals = [replace(one, snippet=None) for one in proposals if one.kind != "snippet"]
     return Completion(found.span, listed(proposals, text[found.span.start : offset], asked))
@@ -141,19 +146,14 @@ def _in_comment(place: Place, offset: int) -> Completion | None:
 
 def _in_braces(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
     """`{` and what may follow: entries of the blackboard; after `{@` those of the root's."""
-    line = text[line_start(text, offset) : offset]
-    begun = re.search(r"\{(@?)([^{}\"'\s]*)$", line)
+    begun = open_brace(text, offset)
     if begun is None or place.inside == "comment":
         return None
-    rest = re.match(r"[\w./-]*(\s*\})?", text[offset:])
-    end = offset + (len(rest[0]) - len(rest[1] or "") if rest else 0)
-    closing = "" if rest and rest[1] else "}"
     entry = entry_at(workspace, path, offset)
-    keys = [] if entry is None else list(offer.keys(workspace, path, entry, bool(begun[1])))
-    if not begun[1] and place.node is not None:
-        keys.insert(0, Proposal("=", "key", "the entry with the name of the port", "="))
-    found = tuple(replace(one, insert=f"{one.insert}{closing}") for one in keys)
-    return Completion(Span(offset - len(begun[2]), end), found)
+    keys = [] if entry is None else list(offer.keys(workspace, path, entry, begun.is_root))
+    if not begun.is_root and place.node is not None:
+        keys.insert(0, offer.SAME_ENTRY)
+    return Completion(begun.span, tuple(replace(one, insert=f"{one.insert}{begun.closing}") for one in keys))
 
 
 def _in_string(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
@@ -164,9 +164,8 @@ def _in_string(workspace: Workspace, path: str, place: Place, text: str, offset:
     key = place.key
     entry = entry_at(workspace, path, offset)
     if key is not None and entry is not None and offer.is_script(workspace, path, place.node, key):
-        word = re.search(r"@?\w*$", place.text)
-        begin = offset - len(word[0]) if word else offset
-        return Completion(Span(begin, offset), tuple(offer.keys(workspace, path, entry, False)))
+        typed, found = offer.in_script(workspace, path, entry, place.text)
+        return Completion(Span(offset - typed, offset), found)
     whole = Span(offset - len(place.text) - 1, offset)
     if key in ("ID", "Quality", "main_tree_to_execute") or place.last in ("satisfies", "satisfices", ","):
         found = _unique(_in_code(workspace, path, place, offset))

@@ -6,6 +6,7 @@ tokens, not from the tree, which does not have the line that is being typed yet.
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
@@ -46,6 +47,31 @@ class LineNode(Record):
     @property
     def is_subtree(self) -> bool:
         return self.category == "SubTree"
+
+
+class OpenBrace(Record):
+    """The `{` before an offset.
+
+    Attributes:
+        span: what is typed after it, which a completion replaces.
+        is_root: whether the entry is of the root blackboard: `{@`.
+        closing: the `}` that is missing; empty if it is there.
+    """
+
+    span: Span
+    is_root: bool
+    closing: str
+
+
+def open_brace(text: str, offset: int) -> OpenBrace | None:
+    """The `{` before an offset on its line, in whatever language; None if there is none, or it is closed."""
+    line = text[line_start(text, 0, offset) : offset]
+    begun = re.search(r"\{(@?)([^{}\"'\s]*)$", line)
+    if begun is None:
+        return None
+    rest = re.match(r"[\w./-]*(\s*\})?", text[offset:])
+    end = offset + (len(rest[0]) - len(rest[1] or "") if rest else 0)
+    return OpenBrace(Span(offset - len(begun[2]), end), bool(begun[1]), "" if rest and rest[1] else "}")
 
 
 class Place(Record):

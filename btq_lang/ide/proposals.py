@@ -4,6 +4,7 @@ engine's nodes, qualities and units."""
 from __future__ import annotations
 
 import posixpath
+import re
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
@@ -119,7 +120,11 @@ def port_heads() -> Iterator[Proposal]:
 
 def port_words(place: Place) -> Iterator[Proposal]:
     if place.last == ":":
-        yield from words(_TYPES, "enum")
+        yield from types()
+
+
+def types() -> Iterator[Proposal]:
+    yield from words(_TYPES, "enum")
 
 
 def clauses(given: tuple[str, ...]) -> Iterator[Proposal]:
@@ -341,7 +346,7 @@ def ports(known: tuple[NodePort, ...], given: tuple[str, ...], node: LineNode) -
     for port in sorted((one for one in known if one.name not in given), key=lambda one: not one.required):
         default = f" = {port.default}" if port.default else ""
         detail = f"{port.direction}{f' : {port.type}' if port.type else ''}{default}"
-        snippet = f"{escaped(written(port.name))} = {_hole(0, port)}"
+        snippet = f"{escaped(written(port.name))} = {hole(0, port)}"
         insert = f"{written(port.name)} = "
         documented = f"{node.category or ''} {node.name}".strip() + f"/{port.name}"
         yield Proposal(port.name, "port", detail, insert, snippet, "", documented)
@@ -381,6 +386,18 @@ def port_values(workspace: Workspace, path: str, entry: Entry | None, port: Node
     if port is not None and port.type.endswith("NodeStatus"):
         said = [word for word in port.doc.replace(",", " ").split() if word in _STATUSES]  # from the engine's table
         yield from words(said if port.type.startswith("BT::") and said else _STATUSES, "enum")
+
+
+def in_script(workspace: Workspace, path: str, entry: Entry, before: str) -> tuple[int, tuple[Proposal, ...]]:
+    """What may follow in a script of an item, and how many characters before the cursor it replaces.
+
+    Args:
+        before: the part of the script before the cursor.
+    """
+    begun = re.search(r"@?\w*$", before)
+    word = begun[0] if begun else ""
+    others = () if word.startswith("@") else words(("true", "false"), "keyword")
+    return len(word), (*keys(workspace, path, entry, False), *others)
 
 
 def is_plain(value: str) -> bool:
@@ -565,16 +582,16 @@ def _by_children(word: str, smallest: NodeKind) -> Proposal:
 
 
 def _with_ports(head: str, needed: Iterable[NodePort]) -> str | None:
-    holes = [f"{escaped(written(port.name))} = {_hole(index, port)}" for index, port in enumerate(needed, 1)]
+    holes = [f"{escaped(written(port.name))} = {hole(index, port)}" for index, port in enumerate(needed, 1)]
     return f"{escaped(head)} ({' '.join(holes)})" if holes else None
 
 
-def _hole(index: int, port: NodePort) -> str:
-    """A snippet's placeholder for a value of the port."""
+def hole(index: int, port: NodePort, in_xml: bool = False) -> str:
+    """A snippet's placeholder for a value of the port; in XML it is in quotes already, and has no unit."""
     if port.content == "script":
-        return f'"${{{index}:true}}"'
+        return f"${{{index}:true}}" if in_xml else f'"${{{index}:true}}"'
     if port.unit == "ms":
-        return f"${{{index}:1 s}}"
+        return f"${{{index}:1000}}" if in_xml else f"${{{index}:1 s}}"
     if port.direction != "input":
         return f"{{${{{index}:{escaped(port.name)}}}\\}}"
     if port.type in _NUMBERS:
@@ -582,6 +599,7 @@ def _hole(index: int, port: NodePort) -> str:
     return f"${{{index}:{{=\\}}}}"
 
 
+SAME_ENTRY = Proposal("=", "key", "the entry with the name of the port", "=")
 _KIND_NAMES = {
     Kind.TREE: "tree",
     Kind.REQUIREMENT: "requirement",

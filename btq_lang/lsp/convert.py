@@ -257,10 +257,8 @@ class Converter:
         return Json(f'{{"contents": {contents}, "range": {self._range_as_json(file.source_lines, span)}}}')
 
     def completion(self, workspace: Workspace, path: str, found: Completion) -> Json:
-        """Proposals as JSON: a large file has hundreds, and an editor waits for them."""
-        file = workspace.files[path]
-        assert file.origin is None, "XML has no completion"
-        range_, of_path = self._range_as_json(file.lines, found.span), as_json(path)
+        """Proposals as JSON: an editor waits, and they may be hundreds.  Their span counts in the XML, if it is XML."""
+        range_, of_path = self._range_as_json(workspace.files[path].source_lines, found.span), as_json(path)
         items = []
         for number, one in enumerate(found.proposals):
             label = as_json(one.label)

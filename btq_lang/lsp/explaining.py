@@ -40,8 +40,10 @@ def register(server: Server) -> None:
             trigger=context.trigger_character or "",
             snippets=server.takes_snippets,
         )
-        found = server.ask(params.text_document, params.position, feature)
-        return convert.completion(*found) if found else None
+        place = server.at(params.text_document, reads=True)
+        if place is None:
+            return None
+        return convert.completion(*place, feature(*place, convert.offset(*place, params.position)))
 
     @server.feature(types.COMPLETION_ITEM_RESOLVE)
     def resolve(item: types.CompletionItem) -> types.CompletionItem:

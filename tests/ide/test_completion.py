@@ -96,7 +96,10 @@ def typed(line: str) -> str:
         ("BehaviorTree X\n    input shelf : string\n    Pick (from = {$0", ("=", "shelf", "@battery_level")),
         ("BehaviorTree X\n    Pick (a = {there} from = {t$0} b = 1)", ("=", "there", "@battery_level")),
         ("BehaviorTree X\n    Pick (from = {@$0", ("battery_level",)),
-        ('BehaviorTree X\n    input shelf : string\n    Script (code = "a := sh$0', ("shelf", "@battery_level")),
+        (
+            'BehaviorTree X\n    input shelf : string\n    Script (code = "a := sh$0',
+            ("shelf", "@battery_level", "true", "false"),
+        ),
         # The grammar of clauses.
         ('QualityReq a "t" takes $0', ("at most", "at least", "less than", "more than", "between")),
         ('QualityReq a "t" takes at $0', ("most", "least")),

@@ -308,6 +308,22 @@ def test_what_is_found_in_xml_is_mended(foreign: Editor) -> None:
     assert made == [text.replace("Timeot", "Timeout"), text.replace("<Timeot", ignored)]
 
 
+@pytest.mark.parametrize(("encoding", "start", "end"), [("utf-8", 18, 20), ("utf-16", 16, 18), ("utf-32", 15, 17)])
+def test_xml_is_completed(tmp_path: Path, encoding: str, start: int, end: int) -> None:
+    """While it is not well-formed, too: the range is that of the word in the XML."""
+    editor = Editor(tmp_path, capabilities={"general": {"positionEncodings": [encoding]}})
+    editor.open(
+        "dock.xml", DOCK.replace("    <Timeout", '    <A b="🤖"/><Do\n    <Timeout').replace("Action ID", "Dock ID")
+    )
+    found = editor.request("textDocument/completion", **editor.at("dock.xml", 2, end))
+    dock = next(item for item in found["items"] if item["label"] == "Dock")
+    place = {"start": {"line": 2, "character": start}, "end": {"line": 2, "character": end}}
+    assert dock["textEdit"] == {"range": place, "newText": "Dock"}
+    resolved = editor.request("completionItem/resolve", **dock)
+    assert resolved["documentation"]["value"].startswith("`Dock`: a custom node")
+    assert editor.close() == ""
+
+
 def applied(text: str, edits: list[Message]) -> str:
     """A text after edits of the protocol."""
     lines = LineIndex(text)
@@ -321,7 +337,7 @@ def applied(text: str, edits: list[Message]) -> str:
 def test_xml_is_never_edited(foreign: Editor) -> None:
     options = {"tabSize": 4, "insertSpaces": True}
     assert foreign.request("textDocument/formatting", **foreign.document("dock.xml"), options=options) is None
-    for method in ("completion", "signatureHelp", "linkedEditingRange"):
+    for method in ("signatureHelp", "linkedEditingRange"):
         assert foreign.request(f"textDocument/{method}", **foreign.at("dock.xml", 3, 21)) is None
     place = {"start": {"line": 3, "character": 21}, "end": {"line": 3, "character": 21}}
     context = {"diagnostics": []}
