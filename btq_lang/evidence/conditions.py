@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 from btq_lang.catalog.units import Unit, parse_unit
 from btq_lang.evidence.signals import Unknown
@@ -52,7 +52,7 @@ class Bound(Record):
     text: str
 
 
-class Reading:
+class Reading(NamedTuple):  # not a Record, which takes longer to make: a log has many, as of Measure
     """A signal, or an aggregate of it, compared with a bound, as in `battery >= 3 %`.
 
     Attributes:
@@ -61,17 +61,12 @@ class Reading:
         holds: whether the condition holds.
     """
 
-    __slots__ = ("bound", "excess", "holds", "name", "si", "unit")  # not a Record: a log has many, as of Measure
-
-    def __init__(
-        self, name: str, unit: Unit | None, si: float, bound: Value | Bound, excess: float, holds: bool
-    ) -> None:
-        self.name: Final = name
-        self.unit: Final = unit
-        self.si: Final = si
-        self.bound: Final = bound
-        self.excess: Final = excess
-        self.holds: Final = holds
+    name: str
+    unit: Unit | None
+    si: float
+    bound: Value | Bound
+    excess: float
+    holds: bool
 
 
 def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:

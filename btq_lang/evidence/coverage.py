@@ -38,7 +38,7 @@ class Coverage:
         """
         self._now = {}
         for uid, node in tree.nodes.items():
-            new = _Node(node.path, node.kind, tree.last[uid] == uid, written.get(uid))
+            new = _Node(node.path, node.kind, uid in tree.leaves, written.get(uid))
             self._now[uid] = self._nodes.setdefault((uid, node.path), new)
         self._repeated = {}
         for uid, node in tree.nodes.items():

@@ -53,11 +53,10 @@ class Explainer:
         self._tree: Final = tree
         self._signals: Final = signals
         self._below: Final[dict[int, Sums]] = {uid: {} for uid in judged}  # since the last end of each judged node
-        self._above: Final = {uid: [each for each in _above(uid, tree) if each in judged] for uid in tree.nodes}
+        self._above: Final = {uid: [each for each in tree.above(uid) if each in judged] for uid in tree.nodes}
         self._last: Final[dict[int, tuple[int, Outcome, Origin | None]]] = {}  # of open nodes: their last child
         self._ended: Final[dict[int, tuple[Activation, Sums, Origin | None]]] = {}  # the last of each judged node
         self._leaves: Final[dict[int, Activation]] = {}  # the last activation of each leaf
-        self._leaf_uids: Final = {uid for uid, last in tree.last.items() if uid == last}
         self._failed: Activation | None = None  # the run's last leaf that took time and failed
         self.over_run: Final = RunExplainer(tree, partial(self._samples, is_named=True))
         self._is_over_run: Final = has_clauses_over_runs
@@ -73,7 +72,7 @@ class Explainer:
         if uid in self._below:
             self._ended[uid] = activation, self._below[uid], origin
             self._below[uid] = {}
-        if uid in self._leaf_uids:
+        if uid in self._tree.leaves:
             self._leaves[uid] = activation
             if self._is_over_run:
                 self.over_run.add(activation)
@@ -170,12 +169,6 @@ class Explainer:
                 path = self._tree.nodes[min(ran, key=lambda each: each.end).uid].path
                 text += f", while {path} ran"
             yield Link("sample", path, text, age / 1e6, 1, 0)
-
-
-def _above(uid: int, tree: LoggedTree) -> Iterator[int]:
-    """The ancestors of a node."""
-    while uid := tree.parent[uid]:
-        yield uid
 
 
 _NO_CHILD: Final[tuple[int, Outcome | None, Origin | None]] = (0, None, None)

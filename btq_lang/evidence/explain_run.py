@@ -79,7 +79,7 @@ class RunExplainer:
     def _going_on(self, begin: int, end: int, own: Sequence[Activation]) -> Iterator[Link]:
         """What ran below a node that did not end; for a leaf, how long it ran."""
         late = next(each for each in own if each.begin <= begin <= each.end >= end)
-        if self._tree.last[late.uid] == late.uid:
+        if late.uid in self._tree.leaves:
             yield Link("self", self._path(late), f"it ran {duration(late.seconds)}", late.seconds, 1, _failed([late]))
         else:
             yield from self._meanwhile(begin, end, range(late.uid + 1, self._tree.last[late.uid] + 1))

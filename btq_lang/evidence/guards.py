@@ -7,6 +7,7 @@ halted itself.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from itertools import takewhile
 from typing import Final
 
 from btq_lang.btcpp.around import EVALUATING
@@ -59,12 +60,7 @@ class Guards:
         self._waiting: list[tuple[Activation, tuple[int, ...]]] = []
         self.concerned: Final = {*judged, *enforcing, ROOT}
         for uid in judged:
-            around: list[int] = []
-            above = tree.parent[uid]
-            while above in self._guards:
-                around.append(above)
-                above = tree.parent[above]
-            self._around[uid] = tuple(around)
+            around = self._around[uid] = tuple(takewhile(self._guards.__contains__, tree.above(uid)))
             for guard in self._guards:
                 if self._guards[guard].kind == EVALUATING and tree.parent[guard] in around:
                     verb = tree.nodes[tree.parent[guard]].path.rpartition("_")[2]

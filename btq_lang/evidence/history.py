@@ -109,10 +109,7 @@ def near(uid: int, others: Sequence[int], tree: LoggedTree) -> tuple[int, ...]:
 def _use_around(uid: int, tree: LoggedTree) -> int:
     """The SubTree node that a node is inside of, by the prefix of its path; 0 in the main tree."""
     path = tree.nodes[uid].path
-    above = tree.parent[uid]
-    while above and not path.startswith(f"{tree.nodes[above].path}/"):
-        above = tree.parent[above]
-    return above
+    return next((above for above in tree.above(uid) if path.startswith(f"{tree.nodes[above].path}/")), 0)
 
 
 def _started(activation: Activation) -> Moment:

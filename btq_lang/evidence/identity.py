@@ -15,12 +15,11 @@ from btq_lang.btcpp.side_file import Built, RunningTree
 from btq_lang.btcpp.wrappers import MARK
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.evidence.model import LoggedTree
+from btq_lang.evidence.readers.tree import kind_of
 from btq_lang.requirements.resolve import requirements
-from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
-    from btq_lang.btcpp.document import Element
     from btq_lang.btcpp.instances import Instance
     from btq_lang.requirements.model import Target
     from btq_lang.requirements.resolved import Requirements
@@ -106,7 +105,7 @@ class Build(Record):
         """The tree as a log would hold it, as far as its nodes have numbers."""
         return LoggedTree(
             [
-                (each.uid, _kind(each.element), each.path, each.parent or 0)
+                (each.uid, kind_of(each.element), each.path, each.parent or 0)
                 for each, _ in self.running.all
                 if each.uid is not None
             ]
@@ -115,14 +114,13 @@ class Build(Record):
 
 def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
     """The mission that a log's tree belongs to, with its nodes joined; None if no mission has half of the nodes."""
-    wanted = [(node.uid, node.kind, node.path) for node in tree.nodes.values()]
-    nodes = [(uid, path) for uid, _, path in wanted]
+    nodes = [(node.uid, node.path) for node in tree.nodes.values()]
     for mission in sorted(missions, key=lambda each: each.side != nodes):  # building a mission takes time
         for build in mission.builds():
-            if (same := _same(mission, build, tree, wanted)) is not None:
+            if (same := join_build(mission, build, tree)) is not None:
                 return same
     best = _nearest(missions, tree)
-    return best if best is not None and best.number * 2 >= len(wanted) else None
+    return best if best is not None and best.number * 2 >= len(nodes) else None
 
 
 def difference(missions: Sequence[Candidate], tree: LoggedTree) -> str:
@@ -145,12 +143,8 @@ def _nearest(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
 
 def join_build(mission: Candidate, build: Build, tree: LoggedTree) -> Joined | None:
     """All nodes, if the trees of a log and of a build are equal; else None."""
-    return _same(mission, build, tree, [(node.uid, node.kind, node.path) for node in tree.nodes.values()])
-
-
-def _same(mission: Candidate, build: Build, tree: LoggedTree, wanted: list[tuple[int, str, str]]) -> Joined | None:
-    """All nodes, if these are the ones of a build; else None."""
-    made = [(_number(each), _kind(each.element), each.path) for each, _ in build.running.all]
+    wanted = [(node.uid, node.kind, node.path) for node in tree.nodes.values()]
+    made = [(_number(each), kind_of(each.element), each.path) for each, _ in build.running.all]
     if made != wanted:
         return None
     is_side = mission.side == [(uid, path) for uid, _, path in wanted]
@@ -162,7 +156,7 @@ def _by_path(mission: Candidate, build: Build, tree: LoggedTree) -> Joined:
     """The nodes whose paths are equal and unique on both sides."""
     logged = _unique([((node.kind, _without_number(node.path)), node.uid) for node in tree.nodes.values()])
     made = _unique(
-        [((_kind(each.element), _without_number(each.path)), _number(each)) for each, _ in build.running.all]
+        [((kind_of(each.element), _without_number(each.path)), _number(each)) for each, _ in build.running.all]
     )
     uids = {number: logged[key] for key, number in made.items() if key in logged}
     return Joined(mission, tree, "built from another version", uids, len(uids), build)
@@ -201,10 +195,6 @@ def _running(mission: Candidate, workspace: Workspace, is_enforced: bool) -> Run
 def _number(instance: Instance) -> int:
     """Its number in the build; 0 after a subtree whose tree is unknown."""
     return instance.uid or 0
-
-
-def _kind(element: Element) -> str:
-    return element.get("ID") or element.tag if element.tag in CATEGORIES else element.tag
 
 
 def _without_number(path: str) -> str:

@@ -3,31 +3,19 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Container
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.wording import timestamp
+from btq_lang.util.record import fields_of
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Repeats, Report, RequirementVerdict, Source
+    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Source
 
     Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
 FORMAT: Final = "btq-verdicts"
 VERSION: Final = 1
-_OF_NODES: Final = (
-    "path",
-    "kind",
-    "runs",
-    "succeeded",
-    "failed",
-    "halted",
-    "interrupted",
-    "failures_began",
-    "p50",
-    "p95",
-    "tick_p95",
-    "tick_worst",
-)
 
 
 def render(report: Report) -> str:
@@ -68,15 +56,11 @@ def _mission(mission: MissionVerdicts) -> Json:
         "name": mission.name,
         "runs": mission.runs,
         "outcomes": dict(mission.outcomes),
-        "retries": _repeats(mission.retries),
-        "recoveries": _repeats(mission.recoveries),
-        "contexts": [{"name": each.name, "runs": each.runs, "unknown": each.unknown} for each in mission.contexts],
-        "nodes": [{name: getattr(node, name) for name in _OF_NODES} for node in mission.nodes],
+        "retries": _fields(mission.retries),
+        "recoveries": _fields(mission.recoveries),
+        "contexts": [_fields(each) for each in mission.contexts],
+        "nodes": [_fields(node, but=("is_leaf", "written")) for node in mission.nodes],
     }
-
-
-def _repeats(repeats: Repeats) -> Json:
-    return {"total": repeats.total, "most": repeats.most, "run": repeats.run}
 
 
 def _requirement(requirement: RequirementVerdict, mission: MissionVerdicts) -> Json:
@@ -90,7 +74,6 @@ def _requirement(requirement: RequirementVerdict, mission: MissionVerdicts) -> J
 
 
 def _clause(clause: ClauseVerdict) -> Json:
-    worst = clause.worst
     return {
         "text": clause.text,
         "path": clause.path,
@@ -101,32 +84,23 @@ def _clause(clause: ClauseVerdict) -> Json:
         "violated": clause.violated,
         "unknown": clause.unknown,
         "cut_off": clause.cut_off,
-        "worst": {"si": worst.si, "text": worst.text, "run": worst.run} if worst is not None else None,
+        "worst": _fields(clause.worst) if clause.worst is not None else None,
         "interval": list(clause.interval) if clause.interval is not None else None,
         "confidence": clause.confidence,
         "more": clause.more,
         "violations": [
             {
-                "run": each.run,
-                "source": each.source,
-                "path": each.path,
+                **_fields(each),
                 "start": timestamp(each.start),
-                "at": each.at,
                 "measured": each.measured or None,
                 "bound": each.bound or None,
-                "why": each.why,
-                "chain": [
-                    {
-                        "kind": link.kind,
-                        "path": link.path,
-                        "text": link.text,
-                        "seconds": link.seconds,
-                        "activations": link.activations,
-                        "failed": link.failed,
-                    }
-                    for link in each.chain
-                ],
+                "chain": [_fields(link) for link in each.chain],
             }
             for each in clause.violations
         ],
     }
+
+
+def _fields(record: object, but: Container[str] = ()) -> dict[str, Json]:
+    """The fields of a record by name; the schema has them."""
+    return {name: getattr(record, name) for name in fields_of(record) if name not in but}

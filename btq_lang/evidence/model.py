@@ -64,9 +64,15 @@ class LoggedTree:
         for uid, _, _, parent in reversed(nodes):
             if parent:
                 self.last[parent] = max(self.last[parent], self.last[uid])
+        self.leaves: Final = frozenset(uid for uid, last in self.last.items() if uid == last)
         self.nodes: Final = {
             uid: LoggedNode(uid, kind, path, parent, self.last[uid]) for uid, kind, path, parent in nodes
         }
+
+    def above(self, uid: int) -> Iterator[int]:
+        """The ancestors of a node, the nearest first."""
+        while uid := self.parent[uid]:
+            yield uid
 
 
 class Activation:

@@ -44,23 +44,21 @@ class Stretch(Record):
     why: str = ""
 
 
-class OverRun:
+class OverRun(Record):
     """A run that has ended.
 
     Attributes:
+        verb, scopes: of the clause.
         root: the activation of its root, which spans the run.
         own: the activations of the clause's nodes, in the order of their starts.
         observed: of the whole run.
     """
 
-    def __init__(
-        self, verb: str, scopes: Sequence[Scope], root: Activation, own: Sequence[Activation], observed: Observed
-    ) -> None:
-        self.root: Final = root
-        self.own: Final = own
-        self.observed: Final = observed
-        self._verb: Final = verb
-        self._scopes: Final = scopes
+    verb: str
+    scopes: Sequence[Scope]
+    root: Activation
+    own: Sequence[Activation]
+    observed: Observed
 
     @property
     def is_cut_off(self) -> bool:
@@ -69,11 +67,11 @@ class OverRun:
 
     def counts(self, begin: Moment, end: Moment) -> bool | Unknown:
         """Whether the scopes include a period."""
-        return not self._scopes or in_scope(self._scopes, self._verb, self.observed.between(begin, end))
+        return not self.scopes or in_scope(self.scopes, self.verb, self.observed.between(begin, end))
 
     def counts_one(self, activation: Activation) -> bool | Unknown:
         """Whether the scopes include an activation."""
-        return not self._scopes or in_scope(self._scopes, self._verb, self.observed.during(activation))
+        return not self.scopes or in_scope(self.scopes, self.verb, self.observed.during(activation))
 
     def starts(self) -> list[tuple[Activation, bool | Unknown]]:
         """The activations of the clause's nodes that count or may count."""
@@ -82,7 +80,7 @@ class OverRun:
 
     def stretches(self) -> list[Stretch]:
         """The parts of the run whose time counts or may count."""
-        conditions = [scope.condition for scope in self._scopes if scope.word == "while"]
+        conditions = [scope.condition for scope in self.scopes if scope.word == "while"]
         if not conditions:
             return [Stretch(self.observed.begin, self.observed.end)]
         return self.with_all_along(All(tuple(conditions)))

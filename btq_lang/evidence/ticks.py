@@ -27,12 +27,11 @@ def timed(session: Session, took: Callable[[int, int], None]) -> Session:
 def _timed(session: Session, took: Callable[[int, int], None]) -> Iterator[Transition]:
     tree = session.tree
     parent = tree.parent
-    leaves = {uid for uid, last in tree.last.items() if uid == last}
     running: set[int] = set()
     before, uid_before, status_before = 0, 0, RUNNING
     for row in session.transitions:
         time, uid, status = row
-        if uid in leaves:
+        if uid in tree.leaves:
             if uid not in running and status in _ANSWERS and time >= before:
                 above = parent[uid]
                 is_sibling = parent.get(uid_before) == above and uid_before < uid

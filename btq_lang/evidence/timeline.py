@@ -54,7 +54,7 @@ class Timelines:
             tuple(
                 Bar(
                     tree.nodes[each.uid].path,
-                    _depth(tree, each.uid),
+                    sum(1 for _ in tree.above(each.uid)),
                     (each.begin - run.begin) / 1e6,
                     (each.end - run.begin) / 1e6,
                     each.outcome,
@@ -63,13 +63,6 @@ class Timelines:
             ),
             self._left_out,
         )
-
-
-def _depth(tree: LoggedTree, uid: int) -> int:
-    depth = 0
-    while uid := tree.parent[uid]:
-        depth += 1
-    return depth
 
 
 _MOST_BARS: Final = 1000

@@ -33,7 +33,8 @@ from __future__ import annotations
 import json
 from typing import TypeAlias
 
-from btq_lang.trace.overview import At, Overview, QualityRow, RequirementRow
+from btq_lang.trace.overview import Overview, QualityRow, RequirementRow
+from btq_lang.util.record import fields_of
 from btq_lang.util.version import __version__
 
 Json: TypeAlias = "bool | int | str | list[Json] | dict[str, Json] | None"
@@ -57,12 +58,12 @@ def render(overview: Overview) -> str:
                 "category": each.category,
                 "skill": each.is_skill,
                 "carries": each.carries,
-                "at": _at(each.at),
+                "at": _fields(each.at),
             }
             for each in overview.nodes
         ],
         "trees": [
-            {"name": each.name, "at": _at(each.at), "nodes": list(each.nodes), "without_quality": each.is_bare}
+            {"name": each.name, "at": _fields(each.at), "nodes": list(each.nodes), "without_quality": each.is_bare}
             for each in overview.trees
         ],
         "totals": [
@@ -99,14 +100,14 @@ def _requirement(each: RequirementRow) -> Json:
         "quality_key": each.quality_key,
         "how": each.way,
         "clauses": list(each.clauses),
-        "at": _at(each.at),
+        "at": _fields(each.at),
         "clauses_without_nodes": list(each.loose),
         "holds_for": [
             {
                 "subject": use.subject,
                 "nodes": list(use.nodes),
                 "arguments": use.arguments,
-                "at": _at(use.at),
+                "at": _fields(use.at),
                 "attached_by": use.how,
                 "clauses": [{"text": one.text, "how": one.way, "why": one.why} for one in use.clauses],
             }
@@ -116,17 +117,9 @@ def _requirement(each: RequirementRow) -> Json:
 
 
 def _quality(each: QualityRow) -> Json:
-    return {
-        "key": each.key,
-        "name": each.name,
-        "id": each.id,
-        "characteristic": each.characteristic,
-        "definition": each.definition,
-        "at": _at(each.at),
-        "concerns": list(each.concerns),
-        "requirements": list(each.requirements),
-    }
+    return {**_fields(each), "at": _fields(each.at)}
 
 
-def _at(at: At) -> Json:
-    return {"path": at.path, "line": at.line, "column": at.column}
+def _fields(record: object) -> dict[str, Json]:
+    """The fields of a record by name."""
+    return {name: getattr(record, name) for name in fields_of(record)}

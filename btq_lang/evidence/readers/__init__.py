@@ -90,12 +90,8 @@ def whole_bags(paths: Iterable[str]) -> tuple[str, ...]:
         for folder in (os.path.dirname(path) for path in given if os.path.basename(path) == bag.METADATA)
         for file in bag.files_in(folder)
     }
-    return tuple(dict.fromkeys(files.get(path, path) for path in given if path in files or not _is_metadata(path)))
-
-
-def _is_metadata(path: str) -> bool:
-    """Whether it was found by its name only, and not by its content."""
-    return path.endswith(bag.METADATA)
+    kept = (path for path in given if path in files or not path.endswith(bag.METADATA))
+    return tuple(dict.fromkeys(files.get(path, path) for path in kept))
 
 
 _LONGEST: Final = max(map(len, (btlog.MAGIC, sqlite.MAGIC, bag.MCAP)))

@@ -48,7 +48,8 @@ def read(path: str, time: str = "") -> dict[str, Series]:
                     raise NoSamples("expected text in UTF-8, found UTF-16 or no text")
                 if names and isinstance(_value(names[0]), float):
                     raise NoSamples(f"line 1: {_NAMES}, found the number `{names[0]}`; write one above it: `t,battery`")
-                return _table(names, time, ((f"line {lines.line_num}", _values(row)) for row in lines if row))
+                rows_of_text = ([_value(cell.strip()) for cell in row] for row in lines if row)
+                return _table(names, time, ((f"line {lines.line_num}", row) for row in rows_of_text))
             except csv.Error as error:
                 raise NoSamples(f"line {lines.line_num}: {error}") from error
     except parquet.NotParquet as error:
@@ -70,11 +71,6 @@ def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[objec
             if column != at and isinstance(value, bool | int | float | str) and is_sample(value):
                 found[names[column]].add(moment, value)
     return found
-
-
-def _values(row: list[str]) -> list[object]:
-    """The values of the cells of a line; None for an empty one."""
-    return [_value(cell.strip()) for cell in row]
 
 
 def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Series]:

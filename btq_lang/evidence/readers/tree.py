@@ -51,7 +51,7 @@ def _numbered(tops: dict[int, tuple[Element, str]]) -> list[tuple[int, str, str,
     while waiting:
         element, prefix, parent = waiting.pop()
         uid = _uid(element)
-        found.append((uid, _kind(element), _path(element, uid, prefix), parent))
+        found.append((uid, kind_of(element), _path(element, uid, prefix), parent))
         if element.tag == "SubTree":
             if uid + 1 in tops:  # popped: no tree is below two nodes, or itself
                 waiting.append((*tops.pop(uid + 1), uid))
@@ -65,14 +65,15 @@ def _uid(element: Element) -> int:
     return int(uid) if uid.isascii() and uid.isdecimal() and len(uid) <= _MOST_DIGITS else 0
 
 
-def _kind(element: Element) -> str:
+def kind_of(element: Element) -> str:
+    """The ID that a node is registered under."""
     return element.get("ID") or element.tag if element.tag in CATEGORIES else element.tag
 
 
 def _path(element: Element, uid: int, prefix: str) -> str:
     if element.tag == "SubTree":
         return element.get("_fullpath") or ""
-    kind = _kind(element)
+    kind = kind_of(element)
     name = element.get("name") or kind
     own = name if name != kind else f"{kind}::{uid}"
     return f"{prefix}/{own}" if prefix else own

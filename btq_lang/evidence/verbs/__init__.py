@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.model import Claim, Span, Subject, Total
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     RunJudge: TypeAlias = Callable[[Claim, OverRun], Iterator["Judgement | None"]]
 
 
-class Judgement:
+class Judgement(NamedTuple):  # not a Record for the same reason as Measure
     """Whether an activation, or a run, satisfies a clause.
 
     Attributes:
@@ -37,23 +37,12 @@ class Judgement:
         starts: for such a clause, the activations that it counts or adds up.
     """
 
-    __slots__ = ("at", "holds", "measure", "sentence", "since", "starts")  # not a Record for the same reason as Measure
-
-    def __init__(
-        self,
-        holds: bool | None,
-        at: int,
-        sentence: str,
-        measure: Measure | Reading | None = None,
-        since: int | None = None,
-        starts: Sequence[Activation] = (),
-    ) -> None:
-        self.holds: Final = holds
-        self.at: Final = at
-        self.sentence: Final = sentence
-        self.measure: Final = measure
-        self.since: Final = since
-        self.starts: Final = starts
+    holds: bool | None
+    at: int
+    sentence: str
+    measure: Measure | Reading | None = None
+    since: int | None = None
+    starts: Sequence[Activation] = ()
 
 
 def judges_of(claim: Claim, subject: Subject | None) -> tuple[Judge | None, RunJudge | None]:
