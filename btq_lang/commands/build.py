@@ -16,7 +16,7 @@ from btq_lang.btcpp.side_file import is_side_file, side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.commands.building import errors, for_target
 from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
-from btq_lang.commands.output import is_coloured
+from btq_lang.commands.output import is_coloured, tell
 from btq_lang.commands.stale_outputs import stale_outputs
 from btq_lang.diagnostics.model import Place
 from btq_lang.render import Finding, Report, render, with_paths
@@ -79,17 +79,14 @@ def build(options: Namespace, files: Files) -> Outcome:
     groups, problems = files.groups(options.paths, options.stdin_filename)
     if options.target:
         groups = tuple(replace(group, workspace=for_target(group.workspace, options.target)) for group in groups)
-    watched = tuple(
-        path for group in groups for path in (*group.workspace.files, *group.absent, group.project_file) if path
-    )
+    watched = tuple(path for group in groups for path in group.watched)
     problems += tuple(
         LoadProblem(path, "is XML already")
         for group in groups
         for path in group.given
         if not is_mission(group.workspace, path)
     )
-    for problem in problems:
-        print(f"btq: {problem}", file=sys.stderr)
+    tell(problems)
     if usage := no_mission_below(options.paths, groups):
         print(f"btq build: {usage}", file=sys.stderr)
     if problems or usage:  # an unreadable file may be part of any other

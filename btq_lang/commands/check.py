@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from btq_lang.checks import check, check_each
 from btq_lang.checks.includes import is_reported_beside
 from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
-from btq_lang.commands.output import is_coloured
+from btq_lang.commands.output import is_coloured, tell
 from btq_lang.commands.reporting import FOR_PEOPLE, form_of, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.render import Finding, Report, Trouble
@@ -85,7 +85,7 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
             return 2, _watched(groups)
     mended = 0
     if options.diff:
-        _tell(problems)
+        tell(problems)
         return _show_fixes(groups, options, bool(problems)), _watched(groups)
     if options.fix:
         from btq_lang.commands.fixing import fix, write_fixes
@@ -94,7 +94,7 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         groups, trouble = write_fixes(groups, after, files.stdin)
         problems += trouble
         mended = 0 if trouble else mended  # fixes that could not be written do not count
-    _tell(problems)
+    tell(problems)
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     findings, checked = _findings(groups, texts, options)
     known = 0
@@ -106,7 +106,7 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         from btq_lang.commands.baseline import compared
 
         findings, known, trouble = compared(findings, groups, options, is_whole=not problems)
-        _tell(trouble)
+        tell(trouble)
         problems += trouble
     if options.add_ignore is not None:
         from copy import copy  # as all here only where it is needed
@@ -114,7 +114,7 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         from btq_lang.commands.ignoring import add_ignores
 
         count, trouble = add_ignores(groups, findings, options.add_ignore)
-        _tell(trouble)
+        tell(trouble)
         print(f"Added {counted(count, 'comment')}", file=sys.stderr)
         again = copy(options)
         again.add_ignore = None
@@ -150,16 +150,9 @@ def _findings(
     return findings, tuple(of_file)
 
 
-def _tell(problems: Iterable[LoadProblem]) -> None:
-    for problem in problems:
-        print(f"btq: {problem}", file=sys.stderr)
-
-
 def _watched(groups: Iterable[Group]) -> tuple[str, ...]:
     """The files that another run depends on."""
-    return tuple(
-        path for group in groups for path in (*group.workspace.files, *group.absent, group.project_file) if path
-    )
+    return tuple(path for group in groups for path in group.watched)
 
 
 def _show_fixes(groups: tuple[Group, ...], options: CheckOptions, has_problems: bool) -> int:

@@ -52,6 +52,11 @@ class Group(Record):
     project_file: str | None
     pooled: frozenset[str] = frozenset()
 
+    @property
+    def watched(self) -> Iterator[str]:
+        """The files that another run would depend on."""
+        return (path for path in (*self.workspace.files, *self.absent, self.project_file) if path)
+
 
 def usage_problem(paths: Iterable[str]) -> str | None:
     """The usage error in the paths of a command line, without accessing the disk."""

@@ -6,7 +6,7 @@ import sys
 from argparse import Namespace
 
 from btq_lang.commands.files import Files, usage_problem, write_stdout
-from btq_lang.commands.output import is_coloured
+from btq_lang.commands.output import is_coloured, tell
 from btq_lang.formatter import format_text
 from btq_lang.render.colour import painter
 from btq_lang.util.text import LineIndex, counted
@@ -58,8 +58,7 @@ def run(options: Namespace) -> int:
                         refused += 1
             if from_stdin and not is_dry_run and path not in group.damaged:
                 write_stdout(done.text)
-    for problem in trouble:
-        print(f"btq: {problem}", file=sys.stderr)
+    tell(trouble)
     _sum_up(count, changed, refused, is_dry_run)
     if trouble:
         return 2

@@ -188,7 +188,7 @@ def revisions(spec: str, path: str) -> Revisions:
 
 def _commit(root: str, revision: str) -> str:
     words = ("rev-parse", "--verify", "--end-of-options", f"{revision}^{{commit}}")
-    if not _succeeds(root, *words):
+    if _run(root, *words).returncode != 0:
         raise GitTrouble(f"git does not know the revision `{revision}`")
     return _git(root, *words).strip()
 
@@ -203,10 +203,6 @@ def _git_bytes(folder: str, *arguments: str) -> bytes:
         message = os.fsdecode(run.stderr).strip().removeprefix("fatal: ")
         raise GitTrouble(f"git: {message}")
     return run.stdout
-
-
-def _succeeds(folder: str, *arguments: str) -> bool:
-    return _run(folder, *arguments).returncode == 0
 
 
 def _run(folder: str, *arguments: str) -> subprocess.CompletedProcess[bytes]:

@@ -7,7 +7,7 @@ from argparse import Namespace
 
 from btq_lang.checks import check
 from btq_lang.commands.files import Files, no_mission_below, usage_problem
-from btq_lang.commands.output import form_of, form_problem, write_output
+from btq_lang.commands.output import form_of, form_problem, tell, write_output
 from btq_lang.diagnostics.rules import UNREADABLE
 from btq_lang.graph import FORMATS, draw
 from btq_lang.graph.missions import figures
@@ -24,8 +24,7 @@ def run(options: Namespace) -> int:
     given = [(group.workspace, path) for group in groups for path in group.given]
     if len(given) > 1:
         problems += (LoadProblem(given[1][1], "expected one file to draw, found more"),)
-    for each in problems:
-        print(f"btq: {each}", file=sys.stderr)
+    tell(problems)
     if empty := no_mission_below(options.paths, groups):
         print(f"btq graph: {empty}", file=sys.stderr)
     if problems or not given:

@@ -12,7 +12,7 @@ from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.btcpp.version3 import Change
-from btq_lang.commands.output import is_coloured
+from btq_lang.commands.output import is_coloured, tell
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import LineIndex, counted
@@ -63,8 +63,7 @@ def import_files(options: Namespace) -> tuple[int, tuple[str, ...]]:
     written = [job for job in good if _write(job, problems)]
     for job in written:
         _show_changes(job)
-    for problem in problems:
-        print(f"btq: {problem}", file=sys.stderr)
+    tell(problems)
     _sum_up(written, len(jobs) - len(good))
     code = 2 if problems else int(len(good) < len(jobs))
     return code, tuple(job.target for job in written if job.target is not None)

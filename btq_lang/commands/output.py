@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from btq_lang.commands.files import write_stdout
@@ -61,6 +61,12 @@ def write_output(command: str, path: str | None, text: str) -> int:
         print(f"btq {command}: {LoadProblem(target, f'cannot be written: {error.strerror}')}", file=sys.stderr)
         return 2
     return 0
+
+
+def tell(problems: Iterable[LoadProblem]) -> None:
+    """Print on standard error what could not be read or written."""
+    for problem in problems:
+        print(f"btq: {problem}", file=sys.stderr)
 
 
 def is_coloured(options: Namespace | CheckOptions, is_terminal: bool) -> bool:

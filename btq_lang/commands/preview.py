@@ -145,8 +145,7 @@ class _Mission:
             groups, problems = self._files.groups([self.path])
         for group in groups:
             if self.path in group.given:
-                on_disk = (self.path, *group.workspace.files, *group.absent, group.project_file)
-                self._watched = tuple(path for path in on_disk if path)
+                self._watched = (self.path, *group.watched)
                 return group.workspace
         return "; ".join(map(str, problems))
 

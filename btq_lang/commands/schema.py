@@ -11,7 +11,7 @@ from btq_lang.btcpp.xsd import xsd
 from btq_lang.catalog.versions import targets as engine_lines
 from btq_lang.checks import check
 from btq_lang.commands.files import Files, Group, no_mission_below, usage_problem
-from btq_lang.commands.output import form_problem, write_output
+from btq_lang.commands.output import form_problem, tell, write_output
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.workspace.file import File
@@ -36,8 +36,7 @@ def _write_xsd(options: Namespace) -> int:
     """Write the schema of a project's nodes; of files with errors, those that can be read."""
     paths = options.paths or ["."]
     groups, problems = Files().groups(paths, with_xml=True)
-    for each in problems:
-        print(f"btq: {each}", file=sys.stderr)
+    tell(problems)
     if problems:
         return 2
     if empty := no_mission_below(paths, groups, "no .btq file and no BehaviorTree.CPP XML"):

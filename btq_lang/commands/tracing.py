@@ -6,7 +6,7 @@ import sys
 from argparse import Namespace
 
 from btq_lang.commands.files import Files, no_mission_below, usage_problem
-from btq_lang.commands.output import form_of, form_problem, is_coloured, terminal_width, write_output
+from btq_lang.commands.output import form_of, form_problem, is_coloured, tell, terminal_width, write_output
 from btq_lang.trace import FORMATS
 from btq_lang.trace.missions import trace_tables
 
@@ -17,8 +17,7 @@ def run(options: Namespace) -> int:
         print(f"btq trace: {problem}", file=sys.stderr)
         return 2
     groups, problems = Files().groups(options.paths, options.stdin_filename)
-    for each in problems:
-        print(f"btq: {each}", file=sys.stderr)
+    tell(problems)
     if empty := no_mission_below(options.paths, groups):
         print(f"btq trace: {empty}", file=sys.stderr)
     if problems or empty:

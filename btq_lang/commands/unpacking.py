@@ -63,7 +63,7 @@ def unpacked(
             problems.append(LoadProblem(target, f"its bundle contains `{name}`, which the import would overwrite"))
         elif not os.path.lexists(path):
             found[path] = text
-        elif not _says(path, text):
+        elif not os.path.isfile(path) or read(path) != (text, None):
             found[path] = text
             if not force:
                 problems.append(LoadProblem(path, "already exists; --force overwrites it"))
@@ -77,10 +77,6 @@ def _below(root: str, folder: str, name: str) -> str | None:
     if posixpath.normpath(name) != name or not path.startswith(f"{root.rstrip('/')}/"):
         return None
     return path if os.path.realpath(path).startswith(os.path.join(os.path.realpath(root), "")) else None
-
-
-def _says(path: str, text: str) -> bool:
-    return os.path.isfile(path) and read(path) == (text, None)
 
 
 _FOREIGN = "\\:\0"  # on some systems, characters that turn a name into another path

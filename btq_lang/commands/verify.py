@@ -18,17 +18,15 @@ from btq_lang.commands.output import form_of, form_problem, is_coloured, termina
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.verdict_formats import FORMATS, write
 from btq_lang.evidence.identity import Candidate
-from btq_lang.evidence.notes import foreign_runs, no_logs
-from btq_lang.evidence.readers import SUFFIXES, whole_bags
-from btq_lang.evidence.readers.bag import METADATA
+from btq_lang.evidence.notes import foreign_runs
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.readers.side import SideFile, side_file_at, side_files_beside
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
-from btq_lang.evidence.verifying import judged
+from btq_lang.evidence.verifying import judged, logs_below
 from btq_lang.util.text import counted
-from btq_lang.workspace.loader import IS_SPECIAL, collect, find_project, is_special, shown
+from btq_lang.workspace.loader import IS_SPECIAL, find_project, is_special, shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Series
@@ -86,15 +84,12 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
         untold = "no log given; name one, or set `logs` in [evidence] of btq.toml"
         problems += map(str, home.problems) if home.problems else [untold]
         return (), (), {}
-    files, unreachable = collect(requested, project, (*SUFFIXES, METADATA))
-    logs = whole_bags(files)
-    problems += map(str, unreachable)
-    if not logs and not unreachable:
-        problems.append(no_logs(requested))
-    special = [path for path in (*logs, *filter(None, [options.signals])) if is_special(path)]
-    problems += [f"{shown(path)}: {IS_SPECIAL}" for path in special]
+    logs, wrong = logs_below(requested, project)
+    problems += wrong
     samples: dict[str, Series] = {}
-    if options.signals is not None and options.signals not in special:
+    if options.signals is not None and is_special(options.signals):
+        problems.append(f"{shown(options.signals)}: {IS_SPECIAL}")
+    elif options.signals is not None:
         try:
             samples = read_samples(options.signals)
         except NoSamples as error:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.evidence.readers import SUFFIXES
 from btq_lang.evidence.wording import period
 from btq_lang.syntax.tree import Signal
 from btq_lang.util.spelling import did_you_mean, near
@@ -78,11 +77,6 @@ def missing_verdicts(report: Report, requested: Sequence[str]) -> Iterator[str]:
             yield "no log matches a known mission; name the mission with --mission FILE"
     elif report.missions and not any(mission.runs for mission in report.missions):
         yield "no run in any log, so there is nothing to judge"
-
-
-def no_logs(requested: Iterable[str]) -> str:
-    """The message if no log was found."""
-    return f"no {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} below {', '.join(requested)}"
 
 
 def foreign_runs(report: Report) -> Iterator[str]:

@@ -14,7 +14,6 @@ from btq_lang.evidence.notes import (
     ignored_columns,
     missing_verdicts,
     missions_with_errors,
-    no_logs,
     other_times,
 )
 from btq_lang.evidence.readers import SUFFIXES, whole_bags
@@ -29,6 +28,7 @@ from btq_lang.workspace.loader import IS_SPECIAL, absolute, collect, is_special,
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report
+    from btq_lang.workspace.config import Project
     from btq_lang.workspace.project_evidence import SignalSource
     from btq_lang.workspace.workspace import Workspace
 
@@ -84,11 +84,7 @@ def verify_logs(
     name = os.path.splitext(os.path.basename(path))[0]
     mission = Candidate(workspace, path, name, side.nodes if side is not None and is_side else None)
     given = [logs] if isinstance(logs, str) else logs
-    files, unreachable = collect(given, workspace.project, (*SUFFIXES, METADATA))
-    problems = [*map(str, unreachable), *(f"{shown(each)}: {IS_SPECIAL}" for each in files if is_special(each))]
-    if not files and not problems:
-        problems.append(no_logs(given))
-    readable = [each for each in whole_bags(files) if not is_special(each)]
+    readable, problems = logs_below(given, workspace.project)
     try:
         samples = read_samples(signals) if signals is not None else {}
     except NoSamples as error:
@@ -100,6 +96,16 @@ def verify_logs(
         raise ValueError("; ".join(wrong))
     found = judged(readable, [mission], (signals or "", samples), sources, of_files, [path])
     return replace(found, problems=(*problems, *(found.problems if readable else ())))
+
+
+def logs_below(paths: Sequence[str], project: Project) -> tuple[Sequence[str], list[str]]:
+    """The logs that paths denote, and what is wrong with the paths."""
+    files, unreachable = collect(paths, project, (*SUFFIXES, METADATA))
+    logs = whole_bags(files)
+    problems = [*map(str, unreachable), *(f"{shown(each)}: {IS_SPECIAL}" for each in logs if is_special(each))]
+    if not logs and not problems:
+        problems.append(f"no {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} below {', '.join(paths)}")
+    return [each for each in logs if not is_special(each)], problems
 
 
 def judged(
