@@ -81,13 +81,16 @@ if TYPE_CHECKING:
 
 Check: TypeAlias = "Callable[[View, Entry], Iterator[Diagnostic]]"
 
-_OF_MODELS: tuple[Check, ...] = (
-    kinds.duplicate_definition,
-    ports.duplicate_attribute,
+_OF_PORTS: tuple[Check, ...] = (
     ports.duplicate_port,
     ports.misspelt_type,
     literals.invalid_literal,
     literals.quantity_on_unitless_port,
+)
+_OF_MODELS: tuple[Check, ...] = (
+    kinds.duplicate_definition,
+    ports.duplicate_attribute,
+    *_OF_PORTS,
     constants.number_for_text,
     names.forbidden_name,
     empty.empty_text,
@@ -136,10 +139,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         ports.missing_port,
         ports.unknown_attribute,
         ports.duplicate_attribute,
-        ports.duplicate_port,
-        ports.misspelt_type,
-        literals.invalid_literal,
-        literals.quantity_on_unitless_port,
+        *_OF_PORTS,
         constants.number_for_text,
         mixed_types.entry_with_two_types,
         outputs.literal_for_output,
@@ -212,10 +212,7 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
         unreachable.unreachable_child,
     )
 )
-# Of models, of which a file has many, these need only the ports, and the others only the ports of trees' models.
-_OF_PORTS: frozenset[Check] = frozenset(
-    (ports.duplicate_port, ports.misspelt_type, literals.invalid_literal, literals.quantity_on_unitless_port)
-)
+# Of models, of which a file has many, `_OF_PORTS` need only the ports, and these only the ports of trees' models.
 _OF_PORTS_OF_TREES: frozenset[Check] = frozenset((constants.number_for_text, names.forbidden_name))
 _OF_NODES = tuple(each for each in CHECKS[Model] if each not in _OF_PORTS_OF_TREES)
 _WITHOUT_PORTS = tuple(each for each in _OF_NODES if each not in _OF_PORTS)

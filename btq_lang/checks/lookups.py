@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, lookup
-from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.syntax.tree import Apply, Include, Model, Models, Port, Qualities, Root, Tree, models_in
+from btq_lang.syntax.tree import Apply, Include, Model, Models, Port, Root, Tree, models_in
 from btq_lang.util.record import Record
 from btq_lang.workspace.inputs import of_name, of_viewpoint
 from btq_lang.workspace.item_index import Facts
@@ -397,11 +396,7 @@ def is_crowded(workspace: Workspace, viewpoint: str, kind: Kind) -> bool:
 @of_viewpoint
 def edition(workspace: Workspace, viewpoint: str) -> str:
     """The edition of the quality model that holds for the file."""
-    for each in workspace.files[viewpoint].of_type(Qualities):
-        named = each.edition
-        if named is not None and named.text in EDITIONS:
-            return named.text
-    return workspace.project.qualities
+    return workspace.edition(viewpoint)
 
 
 @of_viewpoint

@@ -153,7 +153,7 @@ class _Reader:
         self.entry: syntax.Entry = syntax.Entry(0, syntax.Verbatim(0, 0, None), False)
         self.inside: list[Item] = []  # requirements that are defined at nodes
         self._file: Final = file
-        self._edition: Final = EDITIONS[_edition(file) or workspace.project.qualities]
+        self._edition: Final = EDITIONS[workspace.edition(file.path)]
 
     # ---- trees ----
 
@@ -394,17 +394,6 @@ def _default(port: syntax.Port) -> str:
     if port.default is not None and port.default.kind == NUMBER and _saying(port.type) in ("double", "float"):
         return f"{float(port.default.text):.15g}"  # a build writes 25.0 for 25
     return _saying(port.default)
-
-
-def _edition(file: File) -> str | None:
-    for entry in file.parsed.entries:
-        if (
-            isinstance(entry.item, syntax.Qualities)
-            and entry.item.edition is not None
-            and entry.item.edition.text in EDITIONS
-        ):
-            return entry.item.edition.text
-    return None
 
 
 _MISSION_WORDS: Final = {"main_tree_to_execute": MAIN}

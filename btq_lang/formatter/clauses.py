@@ -31,7 +31,8 @@ def sections(lines: Sequence[Line], marks: Marks, options: FormatOptions) -> Ite
     """
     starts = [line.pieces[0].start for line in lines[:-1]]
     # Of several requirements in one line, only the last may have a block.
-    found = {bisect_right(starts, clauses.start) - 1: clauses for clauses in sorted(marks.clauses, key=_start)}
+    in_order = sorted(marks.clauses, key=lambda each: each.start)
+    found = {bisect_right(starts, each.start) - 1: each for each in in_order}
     index = 0
     while index < len(lines):
         head = lines[index]
@@ -50,10 +51,6 @@ def sections(lines: Sequence[Line], marks: Marks, options: FormatOptions) -> Ite
             yield Section(Span(start, middle), (head,))
             if clauses is not None and block:
                 yield Section(Span(middle, end), _arranged(block, clauses))
-
-
-def _start(clauses: Clauses) -> int:
-    return clauses.start
 
 
 def _is_too_long(head: Line, clauses: Clauses, marks: Marks, options: FormatOptions) -> bool:

@@ -16,6 +16,7 @@ needed.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -36,16 +37,7 @@ def draw(figures: Sequence[Figure], form: str = "svg", direction: str = "down") 
     """
     if direction not in DIRECTIONS:
         raise ValueError(f"unknown direction {direction!r}; expected one of {', '.join(DIRECTIONS)}")
-    if form == "svg":
-        from btq_lang.graph.svg import document
-
-        return document(figures, direction)
-    if form == "dot":
-        from btq_lang.graph.dot import dot
-
-        return dot(figures, direction)
-    if form == "mermaid":
-        from btq_lang.graph.mermaid import mermaid
-
-        return mermaid(figures, direction)
-    raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")
+    if form not in FORMATS:
+        raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")
+    text: str = import_module(f"{__name__}.{form}").render(figures, direction)
+    return text

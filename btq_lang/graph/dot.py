@@ -12,7 +12,7 @@ from btq_lang.graph.figure import Figure, Note
 from btq_lang.graph.placing import note_lines
 
 
-def dot(figures: Sequence[Figure], direction: str = "down") -> str:
+def render(figures: Sequence[Figure], direction: str) -> str:
     """Figures as one graph, each tree a cluster of it."""
     lines = [
         "digraph mission {",

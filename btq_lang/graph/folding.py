@@ -11,6 +11,7 @@ from collections.abc import Container
 
 from btq_lang.graph.figure import Box, Figure, Note
 from btq_lang.util.record import replace
+from btq_lang.util.text import counted
 
 
 def foldable(figure: Figure, folded: Container[str] = ()) -> Figure:
@@ -55,10 +56,10 @@ def _kept(box: Box, name: str, below: list[Box], now: dict[int, int]) -> Box:
     parent = None if box.parent is None else now[box.parent]
     if not below:
         return replace(box, name=name, parent=parent)
-    count = f"{len(below)} node{'s' if len(below) > 1 else ''}"
     # A search for a folded node finds the box that hides it.
     text = f"{box.text or box.title}; folded: {', '.join(each.text or each.title for each in below)}"
-    return replace(box, name=name, parent=parent, hidden=len(below), lines=(*box.lines, f"… {count}"), text=text)
+    lines = (*box.lines, f"… {counted(len(below), 'node')}")
+    return replace(box, name=name, parent=parent, hidden=len(below), lines=lines, text=text)
 
 
 def _names(figure: Figure) -> list[str]:

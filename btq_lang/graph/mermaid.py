@@ -13,7 +13,7 @@ from btq_lang.graph.figure import Figure
 from btq_lang.graph.placing import note_lines
 
 
-def mermaid(figures: Sequence[Figure], direction: str = "down") -> str:
+def render(figures: Sequence[Figure], direction: str) -> str:
     """Figures as one flow chart, each tree a subgraph of it."""
     side = "TB" if direction == "down" else "LR"
     lines = [f"flowchart {side}"]

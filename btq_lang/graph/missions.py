@@ -175,10 +175,7 @@ def _notes(found: Requirements) -> dict[int, tuple[Note, ...]]:
 
 
 def _outline(node: ResolvedNode) -> Outline:
-    category = node.category
-    if category == "SubTree":
-        return "subtree"
-    return _OUTLINES.get(category or "", "unknown")
+    return _OUTLINES.get(node.category or "", "unknown")
 
 
 def _title(node: ResolvedNode) -> str:
@@ -197,13 +194,9 @@ def _lines(node: ResolvedNode) -> tuple[str, ...]:
     if name is not None and name.text != _title(node):
         lines.append(name.text)
     if node.kind is not None:
-        values = [pair for pair in node.node.attributes if pair.key.text in _ports(node) and pair.value is not None]
-        lines += [f"{pair.key.text} = {pair.value.text}" for pair in values if pair.value is not None]
+        pairs = [pair for pair in node.node.attributes if node.kind.port(pair.key.text) is not None]
+        lines += [f"{pair.key.text} = {pair.value.text}" for pair in pairs if pair.value is not None]
     return tuple(" ".join(line.split()) for line in lines)
-
-
-def _ports(node: ResolvedNode) -> frozenset[str]:
-    return frozenset(port.name for port in node.kind.ports) if node.kind is not None else frozenset()
 
 
 def _text(node: ResolvedNode) -> str:
@@ -219,4 +212,5 @@ _OUTLINES: Final[Mapping[str, Outline]] = {
     "Condition": "condition",
     "Control": "control",
     "Decorator": "decorator",
+    "SubTree": "subtree",
 }

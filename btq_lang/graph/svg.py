@@ -13,6 +13,7 @@ from typing import Final
 
 from btq_lang.graph.figure import Figure
 from btq_lang.graph.placing import LEADING, MARGIN, SMALL, TITLE, Drawing, Line, PlacedBox, PlacedNote, Rectangle, place
+from btq_lang.graph.widths import width
 
 # Selectors, properties, and colours on light and dark background; text has a contrast of at least 4.5.
 _COLOURS: Final = (
@@ -52,11 +53,12 @@ def colours(dark: bool) -> str:
     return "".join(f"{part} {{ {what}: {dark_ if dark else light}; }}\n" for part, what, light, dark_ in _COLOURS)
 
 
-def document(figures: Sequence[Figure], direction: str = "down") -> str:
+def render(figures: Sequence[Figure], direction: str) -> str:
     """Figures below each other, each with its title, as a standalone document."""
     drawings = [place(figure, direction) for figure in figures]
     title = ", ".join(drawing.title for drawing in drawings)
-    total = max((max(drawing.width, _title_width(drawing)) for drawing in drawings), default=2 * MARGIN)
+    widths = [max(each.width, width(each.title, TITLE, bold=True) + 2 * MARGIN) for each in drawings]
+    total = max(widths, default=2 * MARGIN)
     height = sum(drawing.height + _CAPTION for drawing in drawings)
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{total}" height="{height}" viewBox="0 0 {total} {height}"'
@@ -90,12 +92,6 @@ def part(drawing: Drawing, label: str) -> str:
         "</svg>",
     ]
     return "\n".join(lines)
-
-
-def _title_width(drawing: Drawing) -> int:
-    from btq_lang.graph.widths import width
-
-    return width(drawing.title, TITLE, bold=True) + 2 * MARGIN
 
 
 def _drawn(drawing: Drawing) -> Iterator[str]:
@@ -137,21 +133,16 @@ def _note(placed: PlacedNote) -> Iterator[str]:
     yield f'<g class="note {note.kind} {note.state}" data-note="{escape(note.key)}">'.replace(' "', '"')
     yield f"<title>{escape(note.text or note.title)}</title>"
     yield from _opened(note.link)
-    radius = at.h // 2 if note.kind == "quality" and len(placed.lines) == 1 else 3
+    radius, left = 3, at.x + 8
+    if note.kind == "quality" and len(placed.lines) == 1:
+        radius, left = at.h // 2, at.x + (at.w - width(placed.lines[0], SMALL, bold=True)) // 2
     yield f'<rect class="outline" x="{at.x}" y="{at.y}" width="{at.w}" height="{at.h}" rx="{radius}"/>'
-    left = at.x + (at.w - _note_text(placed)) // 2 if note.kind == "quality" and len(placed.lines) == 1 else at.x + 8
     for number, line in enumerate(placed.lines):
         kind = "title" if number == 0 else "small"
         y = at.y + 15 + number * LEADING
         yield f'<text class="{kind}" font-size="{SMALL}" x="{left}" y="{y}">{escape(line)}</text>'
     yield from _closed(note.link)
     yield "</g>"
-
-
-def _note_text(placed: PlacedNote) -> int:
-    from btq_lang.graph.widths import width
-
-    return width(placed.lines[0], SMALL, bold=True)
 
 
 def _opened(link: str) -> Iterator[str]:

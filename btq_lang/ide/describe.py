@@ -15,7 +15,6 @@ from btq_lang.ide.meaning import (
     Found,
     Subject,
     defined_elsewhere,
-    edition,
     everywhere,
     home_of,
     quality_of,
@@ -163,7 +162,7 @@ def called(node: Node) -> str:
 
 def quality(workspace: Workspace, path: str, found: Quality, explanation: str = "") -> str:
     """A quality of the standard: definition, edition, parts and siblings."""
-    year = EDITIONS[edition(workspace, path)]
+    year = EDITIONS[workspace.edition(path)]
     lines = [f"**{found.id}** · {found.name}", found.definition, f"_{found.source}_"]
     lines += [explanation] if explanation else []
     lines += [f"Measures: {found.measures}"] if found.measures else []

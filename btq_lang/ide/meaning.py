@@ -14,7 +14,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.syntax.tokens import COMMENT, NAME
-from btq_lang.syntax.tree import Entry, Model, Qualities, QualityPath, Requirement, Root, Satisfices, Tree, Word
+from btq_lang.syntax.tree import Entry, Model, QualityPath, Requirement, Root, Satisfices, Tree, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
@@ -195,18 +195,9 @@ def quality_of(requirement: Definition) -> QualityPath | None:
     return None
 
 
-def edition(workspace: Workspace, path: str) -> str:
-    """The edition of the quality model that holds for a file."""
-    for entry in workspace.files[path].parsed.entries:
-        word = entry.item.edition if isinstance(entry.item, Qualities) else None
-        if word is not None and word.text in EDITIONS:
-            return word.text
-    return workspace.project.qualities
-
-
 def quality_match(workspace: Workspace, path: str, name: str) -> QualityMatch:
     """The match of a quality name in the standard."""
-    return match_of(name, edition(workspace, path))
+    return match_of(name, workspace.edition(path))
 
 
 @lru_cache(2_000)  # colouring looks up each quality of a file, and a misspelt one is compared with all names

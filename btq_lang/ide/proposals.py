@@ -19,7 +19,7 @@ from btq_lang.catalog.qualities import qualities as standard_qualities
 from btq_lang.catalog.units import dimension_name, parse_unit, symbols
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.diagnostics.rules import RULES
-from btq_lang.ide.meaning import Found, edition, is_main, match_of, subject
+from btq_lang.ide.meaning import Found, is_main, match_of, subject
 from btq_lang.ide.measures import Measured, parameters_at
 from btq_lang.ide.outline import requirement_detail
 from btq_lang.ide.place import LineNode, Place, word_text
@@ -429,7 +429,7 @@ def qualities(workspace: Workspace, path: str, place: Place) -> Iterator[Proposa
     A part is found by its own name and by its characteristic's.  Some editors compare the typed letters with the start
     of the filter text alone, so the name that begins with these letters comes first in it.
     """
-    chosen = EDITIONS[edition(workspace, path)]
+    chosen = EDITIONS[workspace.edition(path)]
     if place.last == ".":
         whole = find_quality((word_text(place.group[-2]),), chosen).quality if len(place.group) > 1 else None
         for one in quality_parts(whole.id, chosen) if whole else ():
@@ -449,7 +449,7 @@ def qualities(workspace: Workspace, path: str, place: Place) -> Iterator[Proposa
         typed = place.prefix.lower()
         both = " ".join(sorted(names, key=lambda name: not name.lower().startswith(typed)))
         yield Proposal(one.id, "quality", one.name, one.id, None, both, one.id)
-        yield from _short_names(part, edition(workspace, path))
+        yield from _short_names(part, workspace.edition(path))
 
 
 def _short_names(part: str, chosen: str) -> Iterator[Proposal]:

@@ -7,7 +7,6 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.ide.meaning import edition
 from btq_lang.ide.stretches import Known, Stretch, encoded
 from btq_lang.parser import Parsed
 from btq_lang.util.text import Encoding, Span
@@ -40,7 +39,7 @@ def encoded_within(workspace: Workspace, path: str, within: Span, encoding: Enco
 def known_of(workspace: Workspace, path: str) -> Known:
     """What a file's workspace knows of names."""
     scope = workspace.scope(path)
-    return Known((edition(workspace, path), scope.names(Kind.TREE), scope.names(Kind.QUALITY)))
+    return Known((workspace.edition(path), scope.names(Kind.TREE), scope.names(Kind.QUALITY)))
 
 
 def groups(parsed: Parsed) -> list[tuple[int, int]]:

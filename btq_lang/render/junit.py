@@ -50,7 +50,8 @@ def _case(report: Report, path: str, findings: list[Finding], troubles: list[Tro
         yield f'      <error type="io-error" message="{escaped(troubles[0].message)}">'
         yield "\n".join(escaped(str(trouble)) for trouble in troubles) + "</error>\n"
     if failures:
-        worst = next(severity for severity in _FAILURES if _has(failures, severity))
+        found = {finding.diagnostic.effective_severity for finding in failures}
+        worst = next(severity for severity in _FAILURES if severity in found)
         yield f'      <failure type="{worst.value}" message="{counted_by_severity(failures)}">'
         yield "\n".join(_lines(report, failures)) + "</failure>\n"
     if others:
@@ -60,10 +61,6 @@ def _case(report: Report, path: str, findings: list[Finding], troubles: list[Tro
 
 def _fails(finding: Finding) -> bool:
     return finding.diagnostic.effective_severity in _FAILURES
-
-
-def _has(findings: Iterable[Finding], severity: Severity) -> bool:
-    return any(finding.diagnostic.effective_severity is severity for finding in findings)
 
 
 def _lines(report: Report, findings: Iterable[Finding]) -> Iterator[str]:

@@ -33,13 +33,7 @@ def _lines(overview: Overview) -> Iterator[str]:
         yield from table(("Quality", "Nodes"), rows)
     yield from _gaps(overview)
     yield from ("", f"### Totals, ISO/IEC 25010:{overview.edition}", "")
-    totals = [
-        (
-            escaped(each.name),
-            *map(str, (each.concerns, each.requirements, each.enforced, each.monitored, each.reviewed)),
-        )
-        for each in overview.totals
-    ]
+    totals = [(escaped(each.name), *map(str, each.numbers)) for each in overview.totals]
     yield from table(("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed"), totals, 1)
 
 

@@ -102,11 +102,6 @@ class RequirementRow(Record):
         found = [clause.why for use in self.uses for clause in use.clauses if clause.way == "monitored" and clause.why]
         return tuple(dict.fromkeys((*found, *(f"`{clause}` applies to no node" for clause in self.loose))))
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """The keys of all its nodes."""
-        return tuple(dict.fromkeys(key for use in self.uses for key in use.nodes))
-
 
 class QualityRow(Record):
     """A quality that the missions name.
@@ -171,6 +166,10 @@ class Total(Record):
     enforced: int
     monitored: int
     reviewed: int
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        return self.concerns, self.requirements, self.enforced, self.monitored, self.reviewed
 
 
 class Overview(Record):

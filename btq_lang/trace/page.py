@@ -212,9 +212,8 @@ def _totals(overview: Overview) -> Iterator[str]:
     yield f"<table class='numbers'><caption>By characteristic of ISO/IEC 25010:{overview.edition}</caption>"
     yield _head("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed")
     for each in overview.totals:
-        numbers = (each.concerns, each.requirements, each.enforced, each.monitored, each.reviewed)
-        cells = "".join(f"<td>{number or '–'}</td>" for number in numbers)
-        kind = "" if any(numbers) else ' class="empty"'
+        cells = "".join(f"<td>{number or '–'}</td>" for number in each.numbers)
+        kind = "" if any(each.numbers) else ' class="empty"'
         yield f'<tr{kind}><th scope="row">{escape(each.name)}</th>{cells}</tr>'
     yield "</tbody></table></section>"
 

@@ -52,20 +52,10 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
             yield from (f"  {cut(printable(line), 0, width - 3)}" for line in lines)
             yield ""
     heading = (f"ISO/IEC 25010:{overview.edition}", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed")
-    totals = [
-        (
-            (each.name,),
-            *((_number(n),) for n in (each.concerns, each.requirements, each.enforced, each.monitored, each.reviewed)),
-        )
-        for each in overview.totals
-    ]
+    totals = [((each.name,), *((str(number or "-"),) for number in each.numbers)) for each in overview.totals]
     yield from _table(heading, totals, paint, width, numbers_from=1)
     yield ""
     yield from broken(summary(overview), width)
-
-
-def _number(number: int) -> str:
-    return str(number) if number else "-"
 
 
 def _folder(overview: Overview) -> str:

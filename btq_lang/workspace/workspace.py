@@ -18,7 +18,7 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.syntax.tree import Entry, Include, Model, Root, Word
+from btq_lang.syntax.tree import Entry, Include, Model, Qualities, Root, Word
 from btq_lang.util.record import Record
 from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import Definition, File, Origin, is_of_package
@@ -322,6 +322,13 @@ class Workspace:
         return users
 
     # ---- missions ----
+
+    def edition(self, path: str) -> str:
+        """The edition of the quality model that holds for a file."""
+        from btq_lang.catalog.qualities import EDITIONS  # its tables are large, and few commands need them
+
+        named = [each.edition.text for each in self.files[path].of_type(Qualities) if each.edition is not None]
+        return next((name for name in named if name in EDITIONS), self.project.qualities)
 
     def main_tree(self, path: str) -> Definition | None:
         """The tree that runs when the engine loads the file: the factory's first main tree, or the one that its `Root`
