@@ -35,7 +35,7 @@ def open_workspace(*paths: str) -> Workspace:
         files[path] = file_of(path, text)
         return (include.path.text for include in files[path].includes if include.path is not None)
 
-    loaded = load(paths or (".",), found.project, includes_of)
+    loaded = load((*(paths or (".",)), *found.project.node_files), found.project, includes_of)
     for problem in (*found.problems, *loaded.problems):
         raise OSError(str(problem))
     return Workspace(files, found.project)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
+from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
@@ -132,7 +133,7 @@ def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 def has_palette(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file."""
     scope = workspace.scope(viewpoint)
-    for each in (*scope.paths, *scope.node_paths):
+    for each in (*scope.paths, *(path for path in scope.node_paths if path not in PACKAGED.values())):
         for entry in workspace.files[each].parsed.entries:
             if isinstance(entry.item, Models) and any(_is_of_node(model) for model in entry.item.models):
                 return True

@@ -7,6 +7,7 @@ from collections.abc import Container, Iterable, Iterator
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.btcpp.recognition import included_in
+from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.util.record import replace
 from btq_lang.workspace.factories import Factory
 from btq_lang.workspace.file import GROOT_SUFFIX, SUFFIXES
@@ -30,6 +31,9 @@ def resolved(factory: Factory, root: str, xml: XmlBelow) -> Factory:
 
     def files(patterns: tuple[str, ...]) -> Iterator[str]:
         for pattern in patterns:
+            if pattern in PACKAGED:
+                yield PACKAGED[pattern]
+                continue
             folder, inside = _place(pattern, root)
             found = matching(folder, inside) if folder is not None else ()
             if not found:

@@ -257,7 +257,7 @@ class Files:
             return (include for include, _ in self._file(path, text).included_paths)
 
         registered = (path for factory in factories for path in (*factory.files, *factory.node_files))
-        wanted = tuple(dict.fromkeys((*paths, *registered)))
+        wanted = tuple(dict.fromkeys((*paths, *registered, *home.project.node_files)))
         known = {path: self.overlay[path] for path in wanted if path in self.overlay}
         loaded = load((path for path in wanted if path not in known), home.project, includes_of, known)
         files = {path: self._file(path, text) for path, text in loaded.texts.items()}
@@ -285,7 +285,8 @@ def _by_factory(group: Group, factories: Iterable[Factory], in_each: bool) -> It
     taken: set[str] = set()
     whole = group.workspace
     for factory in factories:
-        files = [path for path in (*factory.files, *factory.node_files) if path in whole.files]
+        named = (*factory.files, *factory.node_files, *whole.project.node_files)
+        files = [path for path in named if path in whole.files]
         inside = dict.fromkeys(each for path in files for each in whole.closure(path))
         workspace = Workspace({path: whole.files[path] for path in inside}, whole.project, factory)
         registered = workspace.registered

@@ -5,11 +5,12 @@ One invariant: the first line says what wrote the file, so that it is not taken 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from btq_lang.btcpp.document import Attribute, Comment, Document, Element, Text, escape, write
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.cpp.model import CppNode, CppPort
+from btq_lang.util.record import replace
 
 MADE_BY = "made by `btq nodes`"
 
@@ -20,14 +21,19 @@ def as_btq(nodes: Iterable[CppNode], sources: str) -> str:
     Args:
         sources: what the nodes were read from.
     """
-    models = _models(nodes, optional=True)
+    return models_in_btq(map(_with_optional_inputs, nodes), _headline(sources))
+
+
+def models_in_btq(nodes: Iterable[CppNode], headline: str, texts: Mapping[str, str] | None = None) -> str:
+    """The models in btq's language, below a comment; texts: descriptions of nodes, by name."""
+    models = _models(nodes, texts or {})
     text = import_xml(write(Document([Element("root", (), [Element("TreeNodesModel", (), models)])]))).text
-    return f"# {_headline(sources)}\n\n{text.partition(_BLANK_LINE)[2]}"
+    return f"# {headline}\n\n{text.partition(_BLANK_LINE)[2]}"
 
 
 def as_xml(nodes: Iterable[CppNode], sources: str) -> str:
     """The models as XML."""
-    root = Element("root", [Attribute("BTCPP_format", "4")], [Element("TreeNodesModel", (), _models(nodes))])
+    root = Element("root", [Attribute("BTCPP_format", "4")], [Element("TreeNodesModel", (), _models(nodes, {}))])
     return write(Document([Comment(f" {_headline(sources)} "), root]))
 
 
@@ -35,17 +41,21 @@ def _headline(sources: str) -> str:
     return f"{MADE_BY} from {sources.replace('--', '- -')}: change the C++ code and run it again"
 
 
-def _models(nodes: Iterable[CppNode], optional: bool = False) -> Iterator[Comment | Element]:
+def _with_optional_inputs(node: CppNode) -> CppNode:
+    ports = tuple(replace(port, default="") if node.goes_on_without(port) else port for port in node.ports)
+    return replace(node, ports=ports)
+
+
+def _models(nodes: Iterable[CppNode], texts: Mapping[str, str]) -> Iterator[Comment | Element]:
     for node in nodes:
         if not node.complete:
             yield Comment(f" it cannot be seen whether {node.name} has more ports ")
-        ports = [_port(port, optional and node.goes_on_without(port)) for port in node.ports]
-        yield Element(node.category, [Attribute("ID", escape(node.name))], ports)
+        text = [Element("description", (), [Text(texts[node.name])])] if node.name in texts else []
+        yield Element(node.category, [Attribute("ID", escape(node.name))], [*text, *map(_port, node.ports)])
 
 
-def _port(port: CppPort, is_optional: bool) -> Element:
-    default = "" if is_optional else port.default
-    said = (("name", port.name), ("type", port.type or None), ("default", default))
+def _port(port: CppPort) -> Element:
+    said = (("name", port.name), ("type", port.type or None), ("default", port.default))
     attributes = [Attribute(key, escape(value)) for key, value in said if value is not None]
     return Element(f"{port.direction}_port", attributes, [Text(port.text)] if port.text.strip() else [])
 

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import instance_name_problem, is_port_name, model_name_problem
+from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import fold
 from btq_lang.ide.meaning import ENGINE, STANDARD, Found, Subject, at, definition, everywhere, subject
@@ -106,6 +107,8 @@ def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
     if wanted.home.startswith(ENGINE):
         return f"cannot rename `{wanted.name}`: the engine defines it"
     place, shown = definition(workspace, found.path, wanted), workspace.project.shown
+    if place is not None and place.path in PACKAGED.values():
+        return f"cannot rename `{wanted.name}`: Nav2 defines it"
     if place is not None and not _is_ours(workspace, place.path):
         return f"cannot rename `{wanted.name}`: its definition is in {shown(place.path)}, which is not a .btq file"
     if place is not None and not wanted.home:

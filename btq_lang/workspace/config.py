@@ -3,6 +3,7 @@
     engine = "4.10"                   # or a list; without it files must hold for every known version
     qualities = "iso25010-2023"       # or "iso25010-2011"
     include-paths = ["missions"]      # where includes are searched, after the including file's own folder
+    nodes = ["nav2-jazzy"]            # declared in all files: nodes that btq knows
     exclude = ["generated/"]          # what the check of a folder leaves out: see globs.py
     select = ["unknown-node"]         # only these rules
     ignore = ["unused-tree"]          # all but these
@@ -66,6 +67,7 @@ class Project(Record):
         pools: folders in which an XML file finds the trees and models that it lacks; the loader finds them.
         evidence: its table about logs, if it has one.
         factories: what each of its programs registers.
+        node_files: files of btq whose models count in all files.
     """
 
     root: str = "."
@@ -83,6 +85,7 @@ class Project(Record):
     pools: tuple[str, ...] = ()
     evidence: Evidence | None = None
     factories: tuple[Factory, ...] = ()
+    node_files: tuple[str, ...] = ()
 
     def shown(self, path: str) -> str:
         """A path for display: relative to a working folder if it is inside one, else as it is."""
@@ -310,6 +313,15 @@ def _factories(key: str, value: object) -> _Read:
     return found, [_Complaint(message, below, named) for message, below, named in complaints]
 
 
+def _nodes(key: str, value: object) -> _Read:
+    from btq_lang.catalog.nav2 import PACKAGED  # few projects have this key
+
+    names, complaints = _strings(key, value)
+    unknown = [name for name in names or () if name not in PACKAGED]
+    complaints += [_Complaint(f"unknown nodes `{name}`{_meant(name, PACKAGED)}", value=name) for name in unknown]
+    return tuple(PACKAGED[name] for name in dict.fromkeys(names or ()) if name in PACKAGED), complaints
+
+
 SEVERITIES: dict[str, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}
 # What a key sets in a Project, how its value is read, which values that accepts, as the name of a definition in
 # project_schema.py, and a line for editors.
@@ -322,6 +334,7 @@ KEYS = {
         "strings",
         "folders searched for included files, after that of the including file",
     ),
+    "nodes": ("node_files", _nodes, "packaged", "nodes that btq knows, as those of Nav2, declared in all files"),
     "exclude": ("exclude", _strings, "strings", "patterns of paths that the check of a folder leaves out"),
     "select": ("select", _rule_names, "rules", "only these rules"),
     "ignore": ("ignore", _rule_names, "rules", "all rules except these"),

@@ -4,7 +4,7 @@
     name = "navigation"
     load = ["trees/*.xml", "package://docking/trees/*.xml"]    # in the order in which the program registers them
     main = ["Navigate", "Dock"]                                # a tree, or a list of them
-    nodes = ["models/*.xml"]                                   # where the nodes are declared that it registers
+    nodes = ["nav2-jazzy", "models/*.xml"]                     # where the nodes are declared that it registers
 
 One invariant: what is wrong is left out and reported, and the rest is kept.  Not known here: which files the patterns
 match, which the loader fills in, and what is in them.
@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
 
@@ -32,7 +33,7 @@ class Factory(Record):
         name: as messages call it.
         load: patterns of the files that it registers.
         main: the trees that it may create; empty: unknown.
-        nodes: patterns of the files whose models declare the nodes that it registers.
+        nodes: patterns of files whose models declare the nodes that it registers, and names of nodes that btq knows.
         files: those of `load`, in order, each once.
         node_files: those of `nodes` that are not in `files`.
         lost: the patterns that match no file, so that it is not known what the program registers.
@@ -69,6 +70,11 @@ def read_factories(tables: object) -> tuple[tuple[Factory, ...], list[Complaint]
                     else "a tree or a list of trees"
                 )
                 complaints.append((f"`factory.{key}` must be {form}", (*at, key), None))
+        for source in values["nodes"] or ():
+            if _is_name(source) and source not in PACKAGED:
+                message = f"unknown nodes `{source}`{did_you_mean(near(source, PACKAGED, 1))}"
+                complaints.append((message, (*at, "nodes"), source))
+        values["nodes"] = tuple(each for each in values["nodes"] or () if not _is_name(each) or each in PACKAGED)
         name = values["name"][0] if values["name"] else ""
         if values["name"] is not None and not name:
             complaints.append(("a factory needs a `name`", at, None))
@@ -98,6 +104,11 @@ def _naming(diagnostic: Diagnostic, factories: list[str]) -> Diagnostic:
     return replace(diagnostic, notes=(*diagnostic.notes, note))
 
 
+def _is_name(source: str) -> bool:
+    """Whether nodes are named, and not a pattern of files."""
+    return source.startswith("nav2-") and not {*source} & {*"/*."}
+
+
 def _strings(value: object, key: str) -> tuple[str, ...] | None:
     """The strings of a value; None if it is anything else."""
     if isinstance(value, str) and key in ("name", "main"):
@@ -112,5 +123,5 @@ KEYS: Final = {
     "name": "the name of the factory in messages",
     "load": "patterns of the files that the program registers, in order; also package://NAME/…",
     "main": "the tree that the program creates, or a list of them",
-    "nodes": "patterns of the files that declare the program's nodes",
+    "nodes": "patterns of the files that declare the program's nodes, and names such as nav2-jazzy",
 }

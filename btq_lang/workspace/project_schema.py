@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
+from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.versions import targets
 from btq_lang.diagnostics.rules import RULES
@@ -32,6 +33,7 @@ def project_schema() -> Json:
             "engines": {"anyOf": [_form("engine"), _list(_form("engine"), minItems=1)]},
             "edition": {"enum": [*EDITIONS]},
             "strings": _list({"type": "string"}),
+            "packaged": _list({"enum": [*PACKAGED]}),
             "rule": {"enum": [*RULES]},
             "rules": _list(_form("rule")),
             "severity": {"enum": [*SEVERITIES]},

@@ -180,8 +180,14 @@ class Workspace:
     def scope(self, path: str) -> Scope:
         """The names that a file can use."""
         if path not in self._scopes:
-            self._scopes[path] = Scope(self.closure(path), self) if self.factory is None else self._of_factory
+            self._scopes[path] = self._scope(self.closure(path)) if self.factory is None else self._of_factory
         return self._scopes[path]
+
+    def _scope(self, paths: tuple[str, ...], node_files: tuple[str, ...] = (), is_known: bool = True) -> Scope:
+        """The scope of some files, and of the models in others."""
+        nodes = dict.fromkeys((*node_files, *self.project.node_files))
+        beside = tuple(path for path in nodes if path in self.files and path not in paths)
+        return Scope(paths, self, beside, is_known)
 
     @property
     def registered(self) -> tuple[str, ...]:
@@ -195,8 +201,7 @@ class Workspace:
         registered = dict.fromkeys(
             each for path in self.factory.files if path in self.files for each in self.closure(path)
         )
-        nodes = tuple(path for path in self.factory.node_files if path in self.files and path not in registered)
-        return Scope(tuple(registered), self, nodes, is_known=not self.factory.lost)
+        return self._scope(tuple(registered), self.factory.node_files, is_known=not self.factory.lost)
 
     @cached_property
     def included_files(self) -> frozenset[str]:
@@ -224,6 +229,8 @@ class Workspace:
 
     def linked(self, *paths: str) -> list[str]:
         """Files, those that see them, and those that they see, directly or not."""
+        if not {*self.project.node_files}.isdisjoint(paths):
+            return list(self.missions)  # all files see their models
         missions = {self.missions[path] for path in paths}
         return [other for other, of in self.missions.items() if of in missions]
 
@@ -317,7 +324,8 @@ class Workspace:
         """For each file, those that can use what it defines: itself, and all that include it."""
         users: dict[str, list[str]] = {path: [] for path in self.files}
         for path in self.files:
-            for used in self.scope(path).paths:
+            scope = self.scope(path)
+            for used in (*scope.paths, *scope.node_paths):
                 users[used].append(path)
         return users
 

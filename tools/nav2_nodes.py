@@ -1,0 +1,58 @@
+"""Writes `btq_lang/catalog/nav2/*.btq`, the nodes of Nav2 by distribution, from a clone of navigation2.
+
+    python tools/nav2_nodes.py CLONE
+
+What the nodes are called and which ports they have is read from the C++ code of the branches; descriptions, and without
+which inputs a node cannot do its work, are ours (nav2_words.py).
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from nav2_sources import DISTRIBUTIONS, sources  # noqa: E402  # beside this script
+from nav2_words import NODES, OF_MESSAGES, PORTS, REQUIRED, REQUIRED_IN  # noqa: E402
+
+from btq_lang.commands.node_writers import models_in_btq  # noqa: E402  # of this checkout
+from btq_lang.cpp.model import CppNode, CppPort  # noqa: E402
+from btq_lang.cpp.nodes import read_nodes  # noqa: E402
+from btq_lang.util.record import replace  # noqa: E402
+
+FOLDER = ROOT / "btq_lang" / "catalog" / "nav2"
+
+
+def model_file(clone: Path, distribution: str) -> str:
+    """The text of a distribution's file."""
+    files = {path: text for path, text in sources(clone, distribution).items() if not path.endswith(".xml")}
+    found = read_nodes(files)
+    if found.unseen:
+        raise SystemExit("\n".join(f"{each.place}: {each.message}" for each in found.unseen))
+    headline = f"The nodes of Nav2 in ROS 2 {distribution.capitalize()}; tools/nav2_nodes.py writes this file."
+    return models_in_btq(_described(found.nodes, distribution), headline, NODES)
+
+
+def _described(nodes: tuple[CppNode, ...], distribution: str) -> Iterator[CppNode]:
+    for node in nodes:
+        required = {*REQUIRED.get(node.name, ()), *REQUIRED_IN.get(distribution, {}).get(node.name, ())}
+        yield replace(node, ports=tuple(_described_port(port, port.name in required) for port in node.ports))
+
+
+def _described_port(port: CppPort, is_required: bool) -> CppPort:
+    default = port.default
+    if is_required:
+        default = None
+    elif port.direction != "output" and default is None:
+        default = ""
+    return replace(port, type=OF_MESSAGES.get(port.type, port.type), default=default, text=PORTS[port.name])
+
+
+if __name__ == "__main__":
+    for distribution in DISTRIBUTIONS:
+        path = FOLDER / f"{distribution}.btq"
+        path.write_text(model_file(Path(sys.argv[1]), distribution), encoding="utf-8")
+        print(path)
