@@ -13,6 +13,7 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spel
 from btq_lang.catalog.qualities import Quality, find, parts, qualities, siblings
 from btq_lang.catalog.units import Unit, dimension_name, nearest_units, parse_unit, symbols
 from btq_lang.catalog.verdicts import VERDICTS, Verdict
+from btq_lang.commands.explain_nav2 import nav2_nodes, nav2_page
 from btq_lang.commands.output import is_coloured
 from btq_lang.diagnostics.rules import RULES, page
 from btq_lang.ide.describe import in_si, si_symbol
@@ -50,6 +51,7 @@ def _pages(name: str) -> Iterator[str]:
         yield "\n".join(_node(kind))
     elif name in KNOWN_WORDS:
         yield f"# {name}\n\n{KNOWN_WORDS[name].why}."
+    yield from nav2_page(name)
     match = find(tuple(name.split(".")))
     for quality in (match.quality,) if match.quality else match.candidates:
         yield "\n".join(_quality(quality, name, match.explanation))
@@ -215,7 +217,15 @@ def _by_dimension(units: tuple[Unit, ...]) -> Iterator[tuple[str, list[str]]]:
 def _names() -> list[str]:
     words = [spelling for kind in BUILTINS.values() for spelling in spellings(kind)]
     ports = {port.name for kind in BUILTINS.values() for port in kind.ports}
-    known = [*RULES, *words, *ports, *VERDICTS, *RESERVED_ATTRIBUTES, *(unit.symbol for unit in symbols())]
+    known = [
+        *RULES,
+        *words,
+        *ports,
+        *nav2_nodes(),
+        *VERDICTS,
+        *RESERVED_ATTRIBUTES,
+        *(unit.symbol for unit in symbols()),
+    ]
     return [*known, *(quality.id for quality in qualities()), *(phrase.words for phrase in PHRASES)]
 
 

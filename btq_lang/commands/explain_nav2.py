@@ -1,0 +1,62 @@
+"""What `btq explain` says of a node of Nav2: its ports in all distributions side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from typing import Final
+
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, PACKAGED
+from btq_lang.parser import parse
+from btq_lang.syntax.tree import Model, Models, Port
+from btq_lang.workspace.loader import read
+
+
+def nav2_nodes() -> list[str]:
+    """The names of all nodes of Nav2, in whatever distribution."""
+    return sorted({name for each in DISTRIBUTIONS for name in _models(each)})
+
+
+def nav2_page(name: str) -> Iterator[str]:
+    """The page of a node, if it is one."""
+    found = {each: _models(each)[name] for each in DISTRIBUTIONS if name in _models(each)}
+    if not found:
+        return
+    *_, newest = found.values()
+    lines = [f"# {name} ({newest.category.raw} of Nav2)", "", newest.text.text if newest.text is not None else "", ""]
+    lines.append(f"in: {', '.join(map(str.capitalize, found))}")
+    if rows := _rows(found):
+        width = max(map(len, rows))
+        lines += ["", f"{'':{width}}  {'  '.join(each[0].upper() for each in found)}"]
+        for port, (has, text) in rows.items():
+            marks = "  ".join("x" if each in has else "-" for each in found)
+            lines.append(f"{port:{width}}  {marks}  {text}")
+        lines += ["", "An input without a default is one without which the node fails or has nothing to do."]
+    yield "\n".join(lines)
+
+
+def _rows(found: dict[str, Model]) -> dict[str, tuple[list[str], str]]:
+    """The ports as they are declared, those of one name together, each with its distributions and its meaning."""
+    by_name: dict[str, dict[str, tuple[list[str], str]]] = {}
+    for distribution, model in found.items():
+        for port in model.ports:
+            text = port.text.text if port.text is not None else ""
+            declared = by_name.setdefault(port.id.text if port.id is not None else "", {})
+            declared.setdefault(_declared(port), ([], text))[0].append(distribution)
+    return {port: row for declared in by_name.values() for port, row in declared.items()}
+
+
+def _declared(port: Port) -> str:
+    name = port.id.text if port.id is not None else ""
+    default = f" = {port.default.text or _NOTHING}" if port.default is not None else ""
+    return f"{port.direction.raw:6} {name} : {port.type.text if port.type is not None else ''}{default}"
+
+
+@cache
+def _models(distribution: str) -> dict[str, Model]:
+    text, _ = read(PACKAGED[f"nav2-{distribution}"])
+    models = (entry.item for entry in parse(text or "").entries if isinstance(entry.item, Models))
+    return {model.name.text: model for each in models for model in each.models if model.name is not None}
+
+
+_NOTHING: Final = '""'
