@@ -55,8 +55,9 @@ def _declared(port: Port) -> str:
 @cache
 def _models(distribution: str) -> dict[str, Model]:
     text, _ = read(PACKAGED[f"nav2-{distribution}"])
-    models = (entry.item for entry in parse(text or "").entries if isinstance(entry.item, Models))
-    return {model.name.text: model for each in models for model in each.models if model.name is not None}
+    palettes = (entry.item for entry in parse(text or "").entries if isinstance(entry.item, Models))
+    models = (each for palette in palettes for each in palette.models if isinstance(each, Model))
+    return {model.name.text: model for model in models if model.name is not None}
 
 
 _NOTHING: Final = '""'
