@@ -82,16 +82,13 @@ def _add_models(palette: Element, models: Element) -> None:
             palette.children.append(content)
             continue
         ports = {port.get("name") for port in first.elements}
-        first.children.extend(port for port in content.elements if _is_port(port) and port.get("name") not in ports)
+        new = [port for port in content.elements if port.tag.endswith("_port") and port.get("name") not in ports]
+        first.children.extend(new)
 
 
 def _named(model: Element) -> tuple[bool, str | None]:
     """What a model declares; a tree and a node may share a name."""
     return model.tag == "SubTree", model.get("ID")
-
-
-def _is_port(element: Element) -> bool:
-    return element.tag.endswith("_port")
 
 
 def _twice(workspace: Workspace, paths: tuple[str, ...]) -> list[Remark]:

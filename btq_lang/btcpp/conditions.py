@@ -9,7 +9,8 @@ Source: the engines' own grammars, src/script_parser.cpp (4.9 and later) and scr
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from functools import reduce
 from math import inf
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -75,15 +76,6 @@ def condition_script(condition: Condition, stored: Stored) -> str:
     raise NoScript(f"`{condition.name}` has no value")
 
 
-def value_script(value: Bounded, unit: Unit | None, stored: Stored) -> str:
-    """The script of a value in a unit (None: SI).
-
-    Raises:
-        NoScript: with the reason.
-    """
-    return _number(value, unit, stored)
-
-
 def table_script(table: Table, spelt: Callable[[Bounded], str], stored: Stored) -> str:
     """The script that gives the value of the first case that holds.
 
@@ -98,6 +90,11 @@ def table_script(table: Table, spelt: Callable[[Bounded], str], stored: Stored) 
         value = spelt(case.value)
         script = f"({condition_script(case.condition, stored)} ? {value} : {script})" if case.condition else value
     return script
+
+
+def all_of(scripts: Iterable[str]) -> str:
+    """The script that holds if each of some does; at least one."""
+    return reduce("({} && {})".format, scripts)
 
 
 def signal_script(signal: Signal) -> str:
@@ -121,7 +118,7 @@ def first_value_script(signal: Signal) -> str:
         NoScript: with the reason.
     """
     assert signal.initially is not None, "asked only of signals that have one"
-    return _number(signal.initially, signal.unit, _none_stored)
+    return number_script(signal.initially, signal.unit, _none_stored)
 
 
 def no_longer_than_allowed(script: str) -> None:
@@ -154,16 +151,17 @@ def _comparison(compare: Compare, stored: Stored) -> str:
     units = {signal.unit for signal in signals}
     plain = all(isinstance(operand, Read | Value | Table | Flag | Text) for operand in compare.operands)
     unit = signals[0].unit if plain and len(units) == 1 else None
-    written = [_number(operand, unit, stored) for operand in compare.operands]
-    script = ""
-    for operator, left, right in zip(compare.operators, written, written[1:], strict=False):
-        pair = f"({left} {operator} {right})"
-        script = f"({script} && {pair})" if script else pair
-    return script
+    written = [number_script(operand, unit, stored) for operand in compare.operands]
+    pairs = zip(compare.operators, written, written[1:], strict=False)
+    return all_of(f"({left} {operator} {right})" for operator, left, right in pairs)
 
 
-def _number(number: Number, unit: Unit | None, stored: Stored) -> str:
-    """The script of a value in a unit (None: SI)."""
+def number_script(number: Number, unit: Unit | None, stored: Stored) -> str:
+    """The script of a number in a unit (None: SI).
+
+    Raises:
+        NoScript: with the reason.
+    """
     if isinstance(number, Value):
         return real(from_si(number.si, unit) if unit is not None else number.si)
     if isinstance(number, Flag):
@@ -173,9 +171,9 @@ def _number(number: Number, unit: Unit | None, stored: Stored) -> str:
     if isinstance(number, Read):
         return _read(number.signal, unit)
     if isinstance(number, Minus):
-        return f"(-{_number(number.operand, unit, stored)})"
+        return f"(-{number_script(number.operand, unit, stored)})"
     if isinstance(number, Arithmetic):
-        left, right = (_number(part, unit, stored) for part in (number.left, number.right))
+        left, right = (number_script(part, unit, stored) for part in (number.left, number.right))
         return f"({left} {number.operator} {right})"
     if isinstance(number, Table):
         return stored(number, unit)

@@ -44,7 +44,8 @@ def description(
 
 def said_elsewhere(source: Source) -> Mapping[int, tuple[str, ...]]:
     """The lines that `apply` and claims with a subject of their own add to nodes, by `id(node)`."""
-    if not any(_speaks_of_nodes(entry.item) for path in source.scope.paths for entry in _entries(source, path)):
+    files = [source.workspace.files[path] for path in source.scope.paths]
+    if not any(_speaks_of_nodes(entry.item) for file in files for entry in file.parsed.entries):
         return {}
     from btq_lang.requirements.resolve import requirements  # few missions need it, and it resolves all requirements
 
@@ -52,14 +53,9 @@ def said_elsewhere(source: Source) -> Mapping[int, tuple[str, ...]]:
     for applied in requirements(source.workspace, source.path).applied:
         node = applied.node
         if node is not None and applied.how != "satisfies":
-            given = ", ".join(f"{each.name} = {each.value.text}" for each in applied.arguments)
-            line = _defined(source, applied.requirement.name, f"({given})" if given else "")
+            line = _defined(source, applied.requirement.name, applied.given)
             found[id(node.node)] = (*found.get(id(node.node), ()), line)
     return found
-
-
-def _entries(source: Source, path: str) -> tuple[Entry, ...]:
-    return source.workspace.files[path].parsed.entries
 
 
 def _speaks_of_nodes(item: object) -> bool:

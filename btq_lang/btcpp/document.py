@@ -10,6 +10,8 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Final, TypeAlias
 
+from btq_lang.util.text import Span
+
 
 class Attribute:
     """`name="raw"`.
@@ -70,6 +72,18 @@ class Element:
     def elements(self) -> Iterator[Element]:
         """The children that are elements."""
         return (child for child in self.children if isinstance(child, Element))
+
+    def walk(self) -> Iterator[Element]:
+        """This element and all below it, in no particular order."""
+        stack = [self]
+        while stack:
+            yield (element := stack.pop())
+            stack += element.elements
+
+    @property
+    def tag_span(self) -> Span:
+        """Where its tag's name is in the file that it was read from."""
+        return Span(self.start + 1, self.start + 1 + len(self.tag))
 
     def get(self, name: str) -> str | None:
         """The value of an attribute; None if the element does not have it."""

@@ -18,6 +18,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.btcpp.around import START, FirstValues, Leaf, Wrapper
+from btq_lang.btcpp.conditions import all_of
 from btq_lang.btcpp.document import Comment, Document, Element
 from btq_lang.btcpp.enforceability import Elsewhere, Judge, where_else
 from btq_lang.btcpp.export import Export, is_mission
@@ -219,13 +220,18 @@ class _Planner:
     def enforce(self, applied: Applied, claim: Claim) -> ClauseEnforcement:
         """How a clause is enforced; records the wrappers it needs."""
         requirement = applied.requirement
-        if (known_way := unasked(requirement)) is not None:
-            return ClauseEnforcement(
-                requirement.name, claim.text, claim.place, applied.node, *known_way, subject=applied.shown
-            )
+        known_way = unasked(requirement)
         monitored = ClauseEnforcement(
-            requirement.name, claim.text, claim.place, applied.node, "monitored", asked=True, subject=applied.shown
+            requirement.name,
+            claim.text,
+            claim.place,
+            applied.node,
+            *(known_way or ("monitored", "")),
+            asked=known_way is None,
+            subject=applied.shown,
         )
+        if known_way is not None:
+            return monitored
         try:
             node = self._judge.node(applied, claim)
             identity = (requirement.name, claim.text, id(node.node), applied.arguments)
@@ -322,10 +328,7 @@ def _start(plans: Iterable[_Plan]) -> tuple[Wrapper, ...]:
         return ()
     if not stops:
         return (Wrapper(START, _ALL, "Sequence", "btq_init", before=tuple(before)),)
-    code = ""
-    for key in stops:
-        one = f"({key} == false)"
-        code = f"({code} && {one})" if code else one
+    code = all_of(f"({key} == false)" for key in stops)
     # The flags are set outside the reactive node, which would reset them at every tick; the condition after it catches
     # violations in the tree's last tick.
     behind = (Leaf("ScriptCondition", "btq_end", code),)

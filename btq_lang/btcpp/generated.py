@@ -20,7 +20,9 @@ def may_be_generated(text: str) -> bool:
 
 def without_generated(document: Document, changes: list[Change]) -> int:
     """Remove the marks, in place; return the number of elements that a build had described."""
-    document.contents[:] = [each for each in document.contents if not _is_mark(each)]
+    document.contents[:] = [
+        each for each in document.contents if not (isinstance(each, Comment) and is_generated_mark(each.text))
+    ]
     enforcing: list[Span] = []
     described: list[Span] = []
     stack = [document.root]
@@ -33,20 +35,15 @@ def without_generated(document: Document, changes: list[Change]) -> int:
             if attribute.name == "_description" and DESCRIPTION_MARK in attribute.raw:
                 described += _cut(element, index)
                 break
-    if enforcing or described:
-        parts: list[str] = []
-        if enforcing:
-            parts.append(counted(len(enforcing), "node that enforces requirements", "nodes that enforce requirements"))
-        if described:
-            parts.append(counted(len(described), "description"))
+    parts: list[str] = []
+    if enforcing:
+        parts.append(counted(len(enforcing), "node that enforces requirements", "nodes that enforce requirements"))
+    if described:
+        parts.append(counted(len(described), "description"))
+    if parts:
         first = min((*enforcing, *described))
         changes.append(Change(first, f"removed what `btq build` added: {', '.join(parts)}"))
     return len(described)
-
-
-def _is_mark(content: Content) -> bool:
-    """Whether it is the comment that names the file to edit; its removal is not reported."""
-    return isinstance(content, Comment) and is_generated_mark(content.text)
 
 
 def _take_out(parent: Element, holding: set[Element], found: list[Span]) -> None:
@@ -61,7 +58,7 @@ def _take_out(parent: Element, holding: set[Element], found: list[Span]) -> None
             if inside is None:  # it was edited, so it belongs to the user now
                 child.attributes = tuple(each for each in child.attributes if each.name not in (MARK, MOVED))
             else:
-                found.append(Span(child.start + 1, child.start + 1 + len(child.tag)))
+                found.append(child.tag_span)
                 waiting += reversed(inside)
         if inside is None:
             kept.append(child)

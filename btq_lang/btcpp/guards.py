@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.btcpp.around import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, Leaf, Wrapper
 from btq_lang.btcpp.conditions import (
     NoScript,
+    all_of,
     condition_script,
     no_longer_than_allowed,
+    number_script,
     real,
     signal_script,
     table_script,
-    value_script,
 )
 from btq_lang.btcpp.keys import legal
 from btq_lang.catalog.units import Unit
@@ -164,7 +165,7 @@ class _Draft:
 
     def stored(self, table: Table, unit: Unit | None) -> str:
         return self.at_start(
-            "value", table_script(table, lambda value: value_script(value, unit, self.stored), self.stored)
+            "value", table_script(table, lambda value: number_script(value, unit, self.stored), self.stored)
         )
 
     def cell(self, what: str, first: str, with_node: ResolvedNode | None = None) -> str:
@@ -193,13 +194,11 @@ class _Draft:
             raise NotEnforced(f"its scope, `{self.requirement.scopes[0].text}`, is evaluated only in logs")
 
     def _scopes(self) -> str | None:
-        script: str | None = None
-        for scope in self.requirement.scopes:
+        scopes = self.requirement.scopes
+        for scope in scopes:
             if scope.word == "while":
                 raise NotEnforced(f"whether `{scope.text}` holds during a whole activation is known only at its end")
-            one = self.script(scope.condition)
-            script = one if script is None else f"({script} && {one})"
-        return script
+        return all_of(self.script(scope.condition) for scope in scopes) if scopes else None
 
 
 # ---- verbs ----
@@ -293,7 +292,7 @@ def _uses(draft: _Draft) -> None:
     key = signal_script(signal)
     before = draft.at_start("before", f"({key} + 0.0)")
     used = f"({before} - {key})" if signal.behaviour == "level" else f"({key} - {before})"
-    code = f"({used} {bound.relation} {value_script(bound.value, unit, draft.stored)})"
+    code = f"({used} {bound.relation} {number_script(bound.value, unit, draft.stored)})"
     if (when := draft.when()) is not None:
         code = f"((!{when}) || {code})"
     draft.around(CHECK, "Sequence", "used", behind=(draft.condition("check", code),))
@@ -309,7 +308,7 @@ def _tries(draft: _Draft) -> None:
     if isinstance(per, Target) and per.through:
         raise NotEnforced("its `per` names only some instances of a node")
     count = draft.cell("count", "0.0", holder)
-    most = value_script(bound.value, None, draft.stored)
+    most = number_script(bound.value, None, draft.stored)
     code = f"(({count} + 1.0) {bound.relation} {most})"
     draft.around(CONDITION, "Sequence", "tries", before=(draft.condition("check", code),))
     counter = Leaf("Script", f"{draft.name}_counter", f"{count} := ({count} + 1.0)")

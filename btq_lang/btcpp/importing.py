@@ -94,15 +94,15 @@ def import_xml(
         root = done.document.root
         if root.tag != "root":
             note = 'put the tree into <root BTCPP_format="4"><BehaviorTree ID="…"> … </BehaviorTree></root>'
-            span = Span(root.start + 1, root.start + 1 + len(root.tag))
-            problem = Diagnostic("xml-root", span, f"the document element is <{root.tag}>, not <root>", notes=(note,))
+            message = f"the document element is <{root.tag}>, not <root>"
+            problem = Diagnostic("xml-root", root.tag_span, message, notes=(note,))
             return Imported("", (), (*done.problems, problem), Places())
         writer = _Writer(text, for_people, included_as or _as_it_is)
         described = without_generated(done.document, writer.changes) if may_be_generated(text) else 0
         if not keep_v3 and is_version_3(root):
             translated(root, writer.changes)
         writer.document(done.document)
-        changes = tuple(sorted(writer.changes, key=_start))
+        changes = tuple(sorted(writer.changes, key=lambda change: change.span))
         problems = (*done.problems, *writer.ignored)
         places = Places() if writer.marks is None else Places(writer.marks, writer.out, located)
         return Imported("".join(writer.out), changes, problems, places, described, frozenset(_defined(root)))
@@ -117,10 +117,6 @@ def _defined(root: Element) -> Iterator[str]:
 
 def _as_it_is(path: str) -> str:
     return path
-
-
-def _start(change: Change) -> Span:
-    return change.span
 
 
 class _Writer:
@@ -215,9 +211,8 @@ class _Writer:
         meant = element.tag.rpartition(":")[2]
         if meant == element.tag or meant not in ("BehaviorTree", "include", "TreeNodesModel"):
             return
-        span = Span(element.start + 1, element.start + 1 + len(element.tag))
         message = f"the engine ignores <{element.tag}>, because it does not support namespaces; write <{meant}>"
-        self.ignored.append(Diagnostic("xml-ignored", span, message))
+        self.ignored.append(Diagnostic("xml-ignored", element.tag_span, message))
 
     def first(self, element: Element, key: str) -> Attribute | None:
         """The attribute that this language writes first; reported if it was not first in the XML."""
@@ -470,7 +465,7 @@ def located(marks: Sequence[Mark], starts: Sequence[int]) -> list[tuple[int, int
     for line, column, element, head, pairs, attributes, between in marks:
         at = starts[line] + column
         if element is not None:
-            places.append((at, at + len(head[0][0]), element.start + 1, element.start + 1 + len(element.tag)))
+            places.append((at, at + len(head[0][0]), *element.tag_span))
         for word, origin in head:
             if isinstance(origin, tuple):
                 places.append(_unlike(word, at, *origin))
@@ -543,11 +538,10 @@ def _is_description(content: Content) -> bool:
 
 def _text_of(content: Content) -> str:
     """The text of an element that contains nothing else; empty for any other."""
-    if not isinstance(content, Element) or content.attributes or not content.children:
+    if not isinstance(content, Element) or content.attributes:
         return ""
-    return "".join(child.text if isinstance(child, Text) else "" for child in content.children) * all(
-        isinstance(child, Text) for child in content.children
-    )
+    texts = [child.text for child in content.children if isinstance(child, Text)]
+    return "".join(texts) if len(texts) == len(content.children) else ""
 
 
 def _is_metadata(element: Element) -> bool:

@@ -62,10 +62,10 @@ def manual_edits(root: Element, built: Iterable[NodeGuards]) -> tuple[ManualEdit
     """
     built = tuple(built)
     known = {guard for each in built for guard in each.guards}
-    marked = {_name(each): each for each in _walk(root) if each.get(MARK) is not None and _name(each)}
+    marked = {_name(each): each for each in root.walk() if each.get(MARK) is not None and _name(each)}
     nodes = {key: (node, guards) for key, node, guards in _nodes(root)}
     found = [
-        ManualEdit(name, sum_, _span(marked[name]))
+        ManualEdit(name, sum_, marked[name].tag_span)
         for _, guards in nodes.values()
         for name, sum_ in guards.items()
         if (name, sum_) not in known
@@ -74,7 +74,7 @@ def manual_edits(root: Element, built: Iterable[NodeGuards]) -> tuple[ManualEdit
         node, guards = nodes.get(each.node, (None, {}))
         was_another = bool(guards) and guards.keys().isdisjoint(dict(each.guards))  # of its kind, before it was deleted
         if node is not None and not was_another:
-            found += [ManualEdit(name, "", _span(node)) for name, _ in each.guards if name not in marked]
+            found += [ManualEdit(name, "", node.tag_span) for name, _ in each.guards if name not in marked]
     return tuple(sorted(found, key=lambda each: each.span))
 
 
@@ -123,19 +123,8 @@ def _sum(parts: list[str]) -> str:
     return hashlib.sha256("\n".join(parts).encode("utf-8", "replace")).hexdigest()[:_DIGITS]
 
 
-def _walk(root: Element) -> Iterator[Element]:
-    stack = [root]
-    while stack:
-        yield (element := stack.pop())
-        stack += element.elements
-
-
 def _name(element: Element) -> str:
     return element.get("name") or ""
-
-
-def _span(element: Element) -> Span:
-    return Span(element.start + 1, element.start + 1 + len(element.tag))
 
 
 _DIGITS: Final = 16  # enough to detect an edit; it need not resist forgery

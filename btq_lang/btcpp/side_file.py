@@ -162,11 +162,12 @@ class RunningTree:
 
     def __init__(self, built: Built, nodes: Nodes, main: str | None) -> None:
         written = {id(built.elements[id(node.node)]): node for node in nodes.all if id(node.node) in built.elements}
-        trees: dict[str, Element] = {}
-        for document in built.documents:
-            for element in document.root.elements:
-                if element.tag == "BehaviorTree" and (ID := element.get("ID")) is not None:
-                    trees[ID] = element
+        trees = {
+            ID: element
+            for document in built.documents
+            for element in document.root.elements
+            if element.tag == "BehaviorTree" and (ID := element.get("ID")) is not None
+        }
         self._written = written
         self._of: dict[int, list[Instance]] = {}
         self.all = [

@@ -9,7 +9,6 @@ Sources: BehaviorTree.CPP 3.8, xml_parsing.cpp; 4.x, migration guide and convert
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Final
 
 from btq_lang.btcpp.document import Attribute, Element
@@ -36,7 +35,7 @@ def is_version_3(root: Element) -> bool:
     format_ = root.get("BTCPP_format")
     if format_ is not None:
         return format_.strip() == "3"
-    return not any(_is_new(element) for element in _walk(root))
+    return not any(_is_new(element) for element in root.walk())
 
 
 def translated(root: Element, changes: list[Change]) -> None:
@@ -48,7 +47,7 @@ def translated(root: Element, changes: list[Change]) -> None:
     else:
         changes.append(Change(span, 'BTCPP_format="4" is added'))
     root.attributes = (Attribute("BTCPP_format", "4"), *kept)
-    for element in _walk(root):
+    for element in root.walk():
         if element.tag in _MAY_BE_OLD:
             _Translator(element, changes).translate()
 
@@ -144,8 +143,7 @@ class _Translator:
     def report(self, message: str, attribute: Attribute | None = None) -> None:
         """Report a change of an attribute, or of the element's tag."""
         if attribute is None:
-            start = self.element.start + 1
-            self.changes.append(Change(Span(start, start + len(self.element.tag)), message))
+            self.changes.append(Change(self.element.tag_span, message))
         else:
             start, value_start = self.element.place(attribute)
             self.changes.append(Change(Span(start, value_start + len(attribute.raw) + 1), message))
@@ -156,15 +154,6 @@ def _is_new(element: Element) -> bool:
     if element.tag in _NEW_NODES:
         return True
     return any(attribute.name in _NEW_ATTRIBUTES for attribute in element.attributes)
-
-
-def _walk(root: Element) -> Iterator[Element]:
-    """Every element, in no particular order."""
-    stack = [root]
-    while stack:
-        element = stack.pop()
-        yield element
-        stack += [child for child in element.children if isinstance(child, Element)]
 
 
 def _is_true(said: str) -> bool:

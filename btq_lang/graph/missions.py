@@ -153,12 +153,6 @@ def _predicate(claim: Claim) -> str:
     return (verb + after).strip() if claim.subject is not None and verb else claim.text
 
 
-def arguments(applied: Applied) -> str:
-    """`(limit = 5 min)`; empty without arguments."""
-    given = ", ".join(f"{each.name} = {each.value.text}" for each in applied.arguments)
-    return f"({given})" if given else ""
-
-
 def _notes(found: Requirements) -> dict[int, tuple[Note, ...]]:
     notes: dict[int, list[Note]] = {}
     for node in found.nodes.all:
@@ -167,7 +161,7 @@ def _notes(found: Requirements) -> dict[int, tuple[Note, ...]]:
     for applied in found.applied:
         if applied.node is not None:
             lines, name = clauses_in_words(applied), applied.requirement.name
-            note = Note("requirement", name, name + arguments(applied), lines, "; ".join((name, *lines)))
+            note = Note("requirement", name, name + applied.given, lines, "; ".join((name, *lines)))
             notes.setdefault(id(applied.node), []).append(note)
     for trace in found.traces:
         notes.setdefault(id(trace.node), []).append(Note("requirement", trace.requirement, trace.requirement))

@@ -414,6 +414,12 @@ class Applied(Record):
         return self.subject.node if isinstance(self.subject, Target | Mission) else None
 
     @property
+    def given(self) -> str:
+        """Its arguments, `(limit = 5 min)`; empty without any."""
+        given = ", ".join(f"{each.name} = {each.value.text}" for each in self.arguments)
+        return f"({given})" if given else ""
+
+    @property
     def tree(self) -> str | None:
         """The tree to whose root it applies, if the claim names the root by its tree."""
         node = self.node

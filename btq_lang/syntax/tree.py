@@ -8,6 +8,7 @@ wherever edits elsewhere have moved it.  The tree has words, not meanings: `Retr
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from itertools import chain
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.syntax.clauses import Amount as Amount
@@ -219,12 +220,7 @@ class Tree(Record):
 
     def walk(self) -> Iterator[Node]:
         """All its nodes, depth first, in document order."""
-        stack = [child for child in reversed(self.children) if isinstance(child, Node)]
-        while stack:
-            node = stack.pop()
-            yield node
-            if node.children:
-                stack += [child for child in reversed(node.children) if isinstance(child, Node)]
+        return chain.from_iterable([child.walk() for child in self.children if isinstance(child, Node)])
 
 
 class Skipped(Record):

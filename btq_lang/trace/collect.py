@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from btq_lang.catalog.qualities import Edition, get, qualities
 from btq_lang.diagnostics.model import Place
 from btq_lang.graph.figure import Box, Note
-from btq_lang.graph.missions import arguments, by_tree, clauses_in_words, concerns, figure
+from btq_lang.graph.missions import by_tree, clauses_in_words, concerns, figure
 from btq_lang.requirements.model import Applied, Mission, Requirement, Span, Target, Total
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
@@ -177,7 +177,7 @@ class _Collector:
                 _subject(applied),
                 tuple(dict.fromkeys(node.key for node in nodes)),
                 applied.how,
-                arguments(applied),
+                applied.given,
                 place(applied.place),
                 tuple(clauses),
             )
