@@ -1,18 +1,20 @@
 """An edit of a text that was imported from XML, as the edit of the XML that has the same effect.
 
-One invariant: importing the edited XML gives the edited text.  So an edit is placed only where it replaces a word that
-both texts have letter by letter, by one that needs no other spelling in either.
+One invariant: after `exact_edits` the import of the XML is the edited text.  So an edit is placed only where it
+replaces a word that both texts have letter by letter, by one that needs no other spelling in either.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.btcpp.document import escape
 from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.wording import kind, name, string, value
 from btq_lang.syntax.tokens import CATEGORIES
+from btq_lang.syntax.tree import unquote
 from btq_lang.util.text import Edit, Span
 
 if TYPE_CHECKING:
@@ -35,7 +37,7 @@ def exact_edits(file: File, edit: Edit) -> tuple[Edit, ...] | None:
             if not new or _SPECIAL.search(new):
                 return None
             if xml[begin - 1] == "<":
-                ends = [Span(begin, stop), *_closing(xml, begin, old)] if _is_tag(old, new) else []
+                ends = [Span(begin, stop), *closing_name(xml, begin, old)] if _is_tag(old, new) else []
                 return tuple(Edit(span, new) for span in ends) or None
             if xml[stop : stop + 1] not in _QUOTES and not _PLACED.isdisjoint((old, new)):
                 return None
@@ -43,6 +45,23 @@ def exact_edits(file: File, edit: Edit) -> tuple[Edit, ...] | None:
             is_same = string(new) == f'"{new}"' if is_quoted else new in (name(new), value(new))
             return (Edit(Span(begin, stop), new),) if is_same else None
     return None
+
+
+def respelt(file: File, edits: Iterable[Edit]) -> Iterator[Edit]:
+    """Edits that replace words, or names in words, as edits of the file on the disk, which spells them as XML does.
+
+    Whether the result means what it should is for the caller to find.
+    """
+    if file.origin is None:
+        yield from edits
+        return
+    xml = file.origin.text
+    for edit in edits:
+        span = file.on_disk(edit.span)
+        new = escape(unquote(edit.text) if edit.text[:1] in _QUOTES else edit.text)
+        yield Edit(span, new)
+        if xml[span.start - 1 : span.start] == "<":
+            yield from (Edit(end, new) for end in closing_name(xml, span.start, xml[span.start : span.end]))
 
 
 def declares_version_4(xml: str) -> bool:
@@ -57,7 +76,7 @@ def _is_tag(old: str, new: str) -> bool:
     return all(kind(tag, has_code=False, symbols=False) == tag for tag in (old, new))
 
 
-def _closing(xml: str, begin: int, tag: str) -> Iterator[Span]:
+def closing_name(xml: str, begin: int, tag: str) -> Iterator[Span]:
     """The name in the end tag of the element whose name begins at an offset; nothing if it has none."""
     depth = 0
     for match in _TAG.finditer(xml, begin - 1):

@@ -135,8 +135,7 @@ class _Mission:
     def _position(self, workspace: Workspace, span: Span) -> tuple[int, int]:
         """Line and column, counted from 1, in the original file."""
         file = workspace.files[self.path]
-        span = file.origin.places.origin(span) if file.origin else span
-        position = file.source_lines.position(span.start)
+        position = file.source_lines.position(file.on_disk(span).start)
         return position.line + 1, position.column + 1
 
     def _read(self) -> Workspace | str:

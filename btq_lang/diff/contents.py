@@ -353,8 +353,7 @@ class _Reader:
 
     def _place(self, start: int, end: int) -> Place:
         span = Span(start, end).shifted(self.entry.start)
-        origin = self._file.origin
-        return Place(self._file.path, origin.places.origin(span) if origin is not None else span)
+        return Place(self._file.path, self._file.on_disk(span))
 
 
 def _places(part: object) -> Iterator[tuple[int, int]]:

@@ -115,7 +115,7 @@ def definition(workspace: Workspace, path: str, wanted: Subject) -> Definition |
     kind = _KINDS.get(wanted.what)
     if kind is None or wanted.home in (ENGINE, STANDARD):
         return None
-    found = workspace.scope(path).find(kind, wanted.name)
+    found = workspace.find(path, kind, wanted.name)
     if found is not None and home_of(found) == wanted.home:
         return found
     return next((one for one in defined_elsewhere(workspace, kind, wanted.name, wanted.home)), None)
@@ -157,11 +157,11 @@ def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | N
 
 
 def _paths(workspace: Workspace, wanted: Subject) -> list[str]:
-    """The files that may name a subject: those linked with its home, or all if it has none."""
+    """The files that may name a subject: those linked with its home and XML with a pool, or all if it has none."""
     home = wanted.home.removeprefix(ROOT_BLACKBOARD).rpartition(":")[0] or wanted.home.removeprefix(ROOT_BLACKBOARD)
     if home not in workspace.files:
         return sorted(workspace.files)
-    return sorted(workspace.linked(home))
+    return sorted({*workspace.linked(home), *(workspace.origins if workspace.project.pools else ())})
 
 
 def _spellings(wanted: Subject) -> tuple[str, ...]:
@@ -210,11 +210,13 @@ def match_of(name: str, edition: str) -> QualityMatch:
 
 
 def _defined(workspace: Workspace, path: str, what: What, name: str) -> Subject:
-    found = workspace.scope(path).find(_KINDS[what], name)
+    found = workspace.find(path, _KINDS[what], name)
     return Subject(what, name, home_of(found) if found else "")
 
 
 def _node(workspace: Workspace, path: str, mention: Mention) -> Subject:
+    if (tree := _modelled_tree(workspace, path, mention)) is not None:
+        return Subject(What.TREE, mention.name, home_of(tree))
     node = mention.node
     is_kind = node is not None and node.kind is not None and mention.word == node.kind
     quoted = mention.word.quoted
@@ -223,6 +225,14 @@ def _node(workspace: Workspace, path: str, mention: Mention) -> Subject:
         if builtin is not None:
             return Subject(What.NODE, builtin.tag, ENGINE)
     return _defined(workspace, path, What.NODE, mention.name)
+
+
+def _modelled_tree(workspace: Workspace, path: str, mention: Mention) -> Definition | None:
+    """The tree whose model has a name or a port, if it is that of a tree: its ports are entries of the tree."""
+    model = mention.owner
+    if not isinstance(model, Model) or model.category.raw != "SubTree" or model.name is None:
+        return None
+    return workspace.find(path, Kind.TREE, model.name.text)
 
 
 def _quality(workspace: Workspace, path: str, mention: Mention) -> Subject:
@@ -280,6 +290,8 @@ def _place(workspace: Workspace, path: str, name: str) -> Subject:
 def _port(workspace: Workspace, found: Found) -> Subject:
     mention = found.mention
     if mention.defines:
+        if (tree := _modelled_tree(workspace, found.path, mention)) is not None:
+            return Subject(What.KEY, mention.name, _blackboard(workspace, tree.path, tree.entry, False))
         name = mention.owner.name if isinstance(mention.owner, Model) else None
         model = _defined(workspace, found.path, What.NODE, name.text if name else "")
         return Subject(What.PORT, mention.name, model.home or found.path)
@@ -287,7 +299,7 @@ def _port(workspace: Workspace, found: Found) -> Subject:
     assert node is not None, "a port that is not declared is used at a node"
     name = called(node)
     if name is not None:
-        tree = workspace.scope(found.path).find(Kind.TREE, name.text)
+        tree = workspace.find(found.path, Kind.TREE, name.text)
         if tree is not None:
             return Subject(What.KEY, mention.name, _blackboard(workspace, tree.path, tree.entry, False))
         return Subject(What.PORT, mention.name, f"tree {name.text}")

@@ -1,13 +1,16 @@
 """Renaming: in every file, or not at all, with the reason.
 
 One invariant: after a rename every word that meant the thing still does, and no other word does; where that is
-impossible, nothing is renamed.  It is proved on the texts themselves, after the edits.
+impossible, nothing is renamed.  It is proved on the texts themselves, those on the disk, after the edits.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.btcpp.exact_edits import respelt
+from btq_lang.btcpp.marks import is_generated
+from btq_lang.btcpp.opening import with_source
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import instance_name_problem, is_port_name, model_name_problem
@@ -18,7 +21,7 @@ from btq_lang.ide.meaning import ENGINE, STANDARD, Found, Subject, at, definitio
 from btq_lang.syntax.tree import is_name, quote
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, Span, apply_edits
-from btq_lang.workspace.file import is_btq
+from btq_lang.workspace.file import File, is_btq
 from btq_lang.workspace.references import Mention, What
 from btq_lang.workspace.workspace import Workspace
 
@@ -37,7 +40,7 @@ class Refusal(Record):
 
 
 class Renaming(Record):
-    """The edits of a rename, by file."""
+    """The edits of a rename, by file; they count in the files on the disk, which may be XML."""
 
     edits: dict[str, tuple[Edit, ...]]
 
@@ -68,10 +71,9 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     if reason:
         return Refusal(reason)
     places = tuple(everywhere(workspace, wanted))
-    foreign = next((place.path for place in places if not _is_ours(workspace, place.path)), None)
-    if foreign is not None:  # a node without a model is the same in unrelated files
-        shown = workspace.project.shown(foreign)
-        return Refusal(f"cannot rename `{wanted.name}`: {shown}, which is not a .btq file, also uses it")
+    kept = next(((place.path, why) for place in places if (why := _is_kept(workspace.files[place.path]))), None)
+    if kept is not None:  # a node without a model is the same in unrelated files
+        return Refusal(f"cannot rename `{wanted.name}`: {workspace.project.shown(kept[0])}, {kept[1]}, also uses it")
     if not (name.isascii() and name.isidentifier()) and any(_is_in_script(place.mention) for place in places):
         return Refusal("a name in a script may contain only the letters A to Z, digits and `_`")
     # In a tree that runs itself, an entry may be a port as well: `{=}` then stays as it is.
@@ -83,7 +85,9 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     for in_quotes in (False, True):  # a word of the language is a name if it is quoted
         edits: dict[str, tuple[Edit, ...]] = {}
         for place in places:
-            edits[place.path] = (*edits.get(place.path, ()), *_edits(place, wanted, name, in_quotes, both))
+            made = _edits(place, wanted, name, in_quotes, both)
+            edits[place.path] = (*edits.get(place.path, ()), *respelt(workspace.files[place.path], made))
+        edits = {changed: tuple(sorted(made, key=lambda edit: edit.span)) for changed, made in edits.items()}
         reasons.append(_changes_meaning(workspace, path, found, places, edits, name))
         if not reasons[-1]:
             return Renaming(edits)
@@ -92,9 +96,13 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     return Refusal(reasons[0])
 
 
-def _is_ours(workspace: Workspace, path: str) -> bool:
-    """Whether a file can be edited: it is in this language, and not XML, whatever its name."""
-    return workspace.files[path].origin is None and is_btq(path)
+def _is_kept(file: File) -> str:
+    """Why a file cannot be edited; empty if it can: missions and XML can."""
+    if file.origin is None:
+        return "" if is_btq(file.path) else "which is not a .btq file"
+    if is_generated(file.origin.text):
+        return "which a build wrote"
+    return "" if file.origin.is_complete else "which cannot be read"
 
 
 def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
@@ -109,8 +117,8 @@ def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
     place, shown = definition(workspace, found.path, wanted), workspace.project.shown
     if place is not None and place.path in PACKAGED.values():
         return f"cannot rename `{wanted.name}`: Nav2 defines it"
-    if place is not None and not _is_ours(workspace, place.path):
-        return f"cannot rename `{wanted.name}`: its definition is in {shown(place.path)}, which is not a .btq file"
+    if place is not None and (why := _is_kept(workspace.files[place.path])):
+        return f"cannot rename `{wanted.name}`: its definition is in {shown(place.path)}, {why}"
     if place is not None and not wanted.home:
         return (
             f"cannot rename `{wanted.name}`: its definition is in {shown(place.path)}, which this file does not include"
@@ -121,9 +129,8 @@ def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
     if wanted.what is What.KEY and mention.node is not None and mention.node.attribute("_autoremap") is not None:
         return "cannot rename: `_autoremap` passes every entry under its own name"
     for path in workspace.scope(found.path).paths:
-        file = workspace.files[path]
-        if not _is_ours(workspace, path) and wanted.name in file.text:
-            return f"cannot rename `{wanted.name}`: {shown(path)}, which is not a .btq file, may also use it"
+        if (why := _is_kept(workspace.files[path])) and wanted.name in workspace.files[path].source:
+            return f"cannot rename `{wanted.name}`: {shown(path)}, {why}, may also use it"
     return ""
 
 
@@ -192,20 +199,27 @@ def _changes_meaning(
     """Why the texts after the edits have another meaning; empty if they do not."""
     after = workspace
     for changed, made in edits.items():
-        after = after.with_file(changed, apply_edits(workspace.files[changed].text, made))
-    moved = _after(found.span.start, edits[path])
-    now = at(after, path, moved)
+        after = with_source(after, changed, apply_edits(workspace.files[changed].source, made))
+        if why := _is_kept(after.files[changed]):
+            return f"`{name}` cannot stand in {workspace.project.shown(changed)}, {why} then"
+    moved = after.files[path].from_disk(_after(_start(workspace, found), edits[path]))
+    now = at(after, path, moved) if moved is not None else None
     if now is None or not _is_called(now.mention, name):
         return f"`{name}` would have another meaning here"
     meant = subject(after, now)
-    expected = {(one.path, _after(one.span.start, edits[one.path])) for one in places}
-    reached = {(one.path, one.span.start) for one in everywhere(after, meant)}
+    expected = {(one.path, _after(_start(workspace, one), edits[one.path])) for one in places}
+    reached = {(one.path, _start(after, one)) for one in everywhere(after, meant)}
     for taken, start in sorted(reached - expected):
-        line = after.files[taken].lines.position(start).line + 1
+        line = after.files[taken].source_lines.position(start).line + 1
         return f"`{name}` is already in use: {taken}, line {line}"
     if expected - reached:
         return f"`{name}` would have another meaning in another place"
     return ""
+
+
+def _start(workspace: Workspace, found: Found) -> int:
+    """Where a reference begins in its file on the disk."""
+    return workspace.files[found.path].on_disk(found.span).start
 
 
 def _is_called(mention: Mention, name: str) -> bool:

@@ -87,8 +87,7 @@ class Converter:
 
     def offset_made(self, workspace: Workspace, path: str, position: types.Position) -> int | None:
         """As `offset`; for a file in XML, the offset in the imported text; None: it has none."""
-        origin, offset = workspace.files[path].origin, self.offset(workspace, path, position)
-        return offset if origin is None else origin.places.made(offset)
+        return workspace.files[path].from_disk(self.offset(workspace, path, position))
 
     def span(self, workspace: Workspace, path: str, range_: types.Range) -> Span:
         start, end = (self.offset(workspace, path, position) for position in (range_.start, range_.end))
@@ -107,9 +106,7 @@ class Converter:
     def range(self, workspace: Workspace, path: str, span: Span) -> types.Range:
         """The range in the original file of a span that a feature returns, which counts in the imported text."""
         file = workspace.files[path]
-        if file.origin is not None:
-            span = file.origin.places.origin(span)
-        return self.plain_range(file.source_lines, span)
+        return self.plain_range(file.source_lines, file.on_disk(span))
 
     def plain_range(self, lines: LineIndex, span: Span) -> types.Range:
         start, end = (lines.position(offset, self.encoding) for offset in span)
@@ -252,9 +249,10 @@ class Converter:
     def hover(self, workspace: Workspace, path: str, found: Hover) -> Json:
         """A hover, as plain data: the first one made of lsprotocol's classes would compile a converter for each."""
         file = workspace.files[path]
-        span = file.origin.places.origin(found.span) if file.origin is not None else found.span
         contents = f'{{"kind": "markdown", "value": {as_json(found.markdown)}}}'
-        return Json(f'{{"contents": {contents}, "range": {self._range_as_json(file.source_lines, span)}}}')
+        return Json(
+            f'{{"contents": {contents}, "range": {self._range_as_json(file.source_lines, file.on_disk(found.span))}}}'
+        )
 
     def completion(self, workspace: Workspace, path: str, found: Completion) -> Json:
         """Proposals as JSON: an editor waits, and they may be hundreds.  Their span counts in the XML, if it is XML."""

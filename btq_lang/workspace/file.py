@@ -118,6 +118,14 @@ class File:
         """The text on the disk, which users see."""
         return self.origin.text if self.origin else self.text
 
+    def on_disk(self, span: Span) -> Span:
+        """The span on the disk for one of the text."""
+        return span if self.origin is None else self.origin.places.origin(span)
+
+    def from_disk(self, offset: int) -> int | None:
+        """The offset in the text for one on the disk; None: the text has no such place."""
+        return offset if self.origin is None else self.origin.places.made(offset)
+
     @property
     def is_understood(self) -> bool:
         """Whether a name that is not in this file's tree is not in the file."""

@@ -61,7 +61,7 @@ class Mention(Record):
         word: that contains it, to see whether it is quoted.
         defines: whether the name is defined here, and not used.
         node: that it is at, or that it replaces.
-        owner: the requirement of a parameter, the model of a port, the tree of a key; else None.
+        owner: the requirement of a parameter, the model of a port or of its own name, the tree of a key; else None.
         pair: the attribute with a port or a key.
         writes: whether it is a key that a script assigns.
         root: whether it is a key of the root blackboard: `{@key}`.
@@ -190,7 +190,7 @@ class _Mentions(Listener):
 
 
 def _model(model: syntax.Model, to: Listener) -> None:
-    to.word(What.NODE, model.name, defines=True)
+    to.word(What.NODE, model.name, defines=True, owner=model)
     _ports(model.ports, model, to)
 
 

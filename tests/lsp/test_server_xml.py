@@ -334,7 +334,7 @@ def applied(text: str, edits: list[Message]) -> str:
     return apply_edits(text, made)
 
 
-def test_xml_is_never_edited(foreign: Editor) -> None:
+def test_what_xml_is_not_served_with(foreign: Editor) -> None:
     options = {"tabSize": 4, "insertSpaces": True}
     assert foreign.request("textDocument/formatting", **foreign.document("dock.xml"), options=options) is None
     for method in ("signatureHelp", "linkedEditingRange"):
@@ -343,30 +343,28 @@ def test_xml_is_never_edited(foreign: Editor) -> None:
     context = {"diagnostics": []}
     asked = {**foreign.document("dock.xml"), "range": place, "context": context}
     assert foreign.request("textDocument/codeAction", **asked) == []
-    foreign.open("main.btq", 'include "dock.xml"\nBehaviorTree Main\n    SubTree Dock\n')
-    foreign.open("other.btq", "BehaviorTree Other\n    Pick\n")
-    for name, line, character, reason in (
-        (
-            "dock.xml",
-            3,
-            21,
-            "cannot rename `Home`: its definition is in dock.xml, which is not a .btq file",
-        ),
-        (
-            "main.btq",
-            2,
-            13,
-            "cannot rename `Dock`: its definition is in dock.xml, which is not a .btq file",
-        ),
-        ("other.btq", 1, 5, "cannot rename `Pick`: dock.xml, which is not a .btq file, also uses it"),
-    ):
-        refused = foreign.ask("textDocument/rename", **foreign.at(name, line, character), newName="another")
-        assert refused["error"] == {"code": -32803, "message": reason}
+
+
+def test_names_in_xml_are_renamed(foreign: Editor) -> None:
+    """In every file that names the thing, open or not; not in one that cannot be read."""
+    main = (foreign.root / "main.btq").read_text("utf-8")
+    foreign.open("main.btq", main)
+    for name, line, character in (("dock.xml", 1, 21), ("main.btq", 2, 13)):
+        assert (
+            foreign.request("textDocument/prepareRename", **foreign.at(name, line, character))["placeholder"] == "Dock"
+        )
+        edit = foreign.request("textDocument/rename", **foreign.at(name, line, character), newName="Station")
+        assert applied(DOCK, edit["changes"][foreign.uri("dock.xml")]) == DOCK.replace("Dock", "Station")
+        assert applied(main, edit["changes"][foreign.uri("main.btq")]) == main.replace("Dock", "Station")
+    edit = foreign.request("textDocument/rename", **foreign.at("other.btq", 1, 5), newName="Grab")
+    assert edit["changes"].keys() == {foreign.uri(name) for name in ("dock.xml", "other.btq")}
+    foreign.change("dock.xml", DOCK[:-9])
+    refused = foreign.ask("textDocument/rename", **foreign.at("main.btq", 2, 13), newName="Station")
+    assert refused["error"] == {"code": -32803, "message": "cannot rename `Dock`: it is not defined"}
 
 
 @pytest.mark.parametrize("name", ["trees.xml", "trees.tree"])
-def test_xml_under_any_name_is_not_renamed_in(editor: Editor, name: str) -> None:
+def test_xml_under_any_name_is_renamed_in(editor: Editor, name: str) -> None:
     editor.open(name, DOCK)
-    asked = editor.ask("textDocument/rename", **editor.at(name, 3, 21), newName="another")
-    reason = f"cannot rename `Home`: its definition is in {name}, which is not a .btq file"
-    assert asked["error"] == {"code": -32803, "message": reason}
+    edit = editor.request("textDocument/rename", **editor.at(name, 3, 21), newName="another")
+    assert applied(DOCK, edit["changes"][editor.uri(name)]) == DOCK.replace("Home", "another")

@@ -54,7 +54,6 @@ NOT_IN_XML = {
     *("textDocument/signatureHelp", "textDocument/linkedEditingRange", "textDocument/onTypeFormatting"),
     *("textDocument/formatting", "textDocument/rangeFormatting", "textDocument/foldingRange"),
     *("textDocument/selectionRange", "textDocument/inlayHint", "workspace/willRenameFiles"),
-    *("textDocument/prepareRename", "textDocument/rename"),
     "textDocument/typeDefinition",
 }
 COMMANDS = ("btq.server.nodePath", "btq.server.xml", "btq.server.picture", "btq.server.overview")
