@@ -65,11 +65,13 @@ def walk(node: Node, outside: frozenset[str] = frozenset()) -> Iterator[Node]:
 
 def errors(node: Node) -> Iterator[Node]:
     """What the grammar cannot read, and what it misses."""
-    if node.is_error or node.is_missing:
-        yield node
-    elif node.has_error:
-        for each in node.children:
-            yield from errors(each)
+    waiting = [node]
+    while waiting:  # expressions may be deep
+        node = waiting.pop()
+        if node.is_error or node.is_missing:
+            yield node
+        elif node.has_error:
+            waiting.extend(reversed(node.children))
 
 
 def field(node: Node, name: str) -> Node | None:

@@ -63,11 +63,11 @@ class PortsReader:
         ports = body.evaluated(node)
         return None if ports is None else Provided(tuple(ports.values()), self._complete)
 
-    def _of_class(self, bound: Bound, place: Place) -> Ports:
+    def _of_class(self, bound: Bound, place: Place, depth: int = 0) -> Ports:
         for each in self.sources.ancestry(bound):
             if bodies := self.sources.methods(each, "providedPorts"):
                 node, path = bodies[0]
-                return Body(self, Frame(each, each.scope, path)).result(node)
+                return Body(self, Frame(each, each.scope, path, depth)).result(node)
             if each.class_ is None:
                 if (ports := self._of_engine(each, place)) is not None:
                     if ports:
@@ -116,7 +116,10 @@ class PortsReader:
         """The ports of the class before `::providedPorts()`."""
         place = place_of(frame.path, call)
         found = self.sources.find(substituted(scope, frame.meanings), frame.scope, frame.path, place)
-        return self._of_class(found, place)
+        if frame.depth > _DEEPEST:
+            self.incomplete("this calls itself", place)
+            return {}
+        return self._of_class(found, place, frame.depth + 1)
 
 
 class Body:

@@ -60,12 +60,12 @@ class Sources:
         if unseen not in self.unseen:
             self.unseen.append(unseen)
 
-    def find(self, type_: str, scope: tuple[str, ...], path: str, place: Place) -> Bound:
-        """The class that a type means at a place."""
+    def find(self, type_: str, scope: tuple[str, ...], path: str, place: Place, aliases: int = 0) -> Bound:
+        """The class that a type means at a place; aliases: by how many of them it was found."""
         name, given = parts(type_)
         found = self._nearest(self._classes.get(_last(name), []), name, scope, path, place)
-        if found is None and (alias := self.alias(name, scope, path)) is not None and alias != type_:
-            return self.find(alias, scope, path, place)
+        if found is None and aliases < _MOST_ALIASES and (alias := self.alias(name, scope, path)) is not None:
+            return self.find(alias, scope, path, place, aliases + 1)
         if found is None:
             return Bound(None, name, {str(at): each for at, each in enumerate(given)})
         return Bound(found, found.name, dict(zip(found.parameters, given, strict=False)))
@@ -216,3 +216,6 @@ def _whole(found: Class | Function) -> str:
 
 def _last(name: str) -> str:
     return name.rpartition("::")[2]
+
+
+_MOST_ALIASES: Final = 20  # an alias may mean itself

@@ -408,6 +408,26 @@ def test_the_code_cannot_be_read_where_the_grammar_fails() -> None:
     assert unseen(found) == ["a.cpp:1:60: the C++ grammar cannot read this"]
 
 
+def test_what_means_itself_is_unseen() -> None:
+    found = read(
+        """
+        struct A : BT::SyncActionNode { static PortsList providedPorts() { return A::providedPorts(); } };
+        PortsList loop(PortsList more) { return loop(more); }
+        struct B : BT::SyncActionNode { static PortsList providedPorts() { return loop({ InputPort<X>("a") }); } };
+        using X = Y; using Y = X;
+        template <class T> struct C : C<C<T>> { };
+        void f() {
+          registerNodeType<A>("A"); registerNodeType<B>("B"); registerNodeType<X>("X"); registerNodeType<C<X>>("C");
+        }
+        """
+    )
+    assert [(node.name, node.complete) for node in found.nodes] == [("A", False), ("B", False)]
+    assert [each.message for each in found.unseen][-2:] == [
+        "the category of `C` cannot be seen: a base class is not in the sources",
+        "the class `X` of the node `X` is not in the sources",
+    ]
+
+
 WITHOUT = {
     'if (!getInput("p", p)) { throw 1; }': "fails",
     'if (!getInput("p", p)) return BT::NodeStatus::FAILURE;': "fails",
