@@ -30,11 +30,15 @@ from typing import Any
 
 import missions
 import report
+from btcpp_xml import built
 from report import ENVIRONMENT, Goal
+
+from btq_lang.btcpp.document import write
 
 FILES, NODES_A_FILE, LARGE = 100, 500, 10_000
 EDIT = {NODES_A_FILE: 16, LARGE: 50}  # nodes of a file of many trees, and the milliseconds to its diagnostics
 QUESTION, ALL_TOKENS, TOKEN_DELTA = 20, 150, 20  # milliseconds
+XML_NODES, XML_EDIT = 2_000, 50  # nodes of an XML file of many trees, and the milliseconds to its diagnostics
 MEMORY = 60  # MB above pygls alone
 MANY, NODES_OF_MANY = 1_000, 50
 ONE_TREE = {1_000: 60, 5_000: 250, 40_000: 2_000}  # nodes below one node, and the milliseconds that a key may take
@@ -69,6 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "edits": lambda: typing(FILES, NODES_A_FILE, options, slowness),
         "large": lambda: typing(1, LARGE, options, slowness),
         "tree": lambda: one_tree(options, slowness),
+        "xml": lambda: typing_xml(options, slowness),
         "many": lambda: many_files(options.spelling, slowness),
     }
     for part, measure in parts.items():
@@ -213,6 +218,31 @@ def _keys_in_one_tree(nodes: int, *, asks: bool) -> Series:
     return keys
 
 
+def typing_xml(options: argparse.Namespace, slowness: float) -> tuple[list[Series], list[Goal]]:
+    """What an author types in one XML file, alone in its folder: after most keys in a tag it is not well-formed."""
+    edits = _least([_typed_in_xml(options) for _ in range(options.repeats)])
+    return [edits], [_by_the_clock(edits, XML_EDIT, slowness)]
+
+
+def _typed_in_xml(options: argparse.Namespace) -> Series:
+    size = f"{XML_NODES:,} nodes".replace(",", " ")
+    edits = Series(f"edit to diagnostics, XML of {size}")
+    draw = random.Random(options.seed)
+    with tempfile.TemporaryDirectory() as name:
+        path = Path(name) / "mission.xml"
+        mission = missions.mission(XML_NODES, missions.SEED, options.spelling)
+        path.write_text(write(built(mission)), encoding="utf-8")
+        server = Server(BTQ, Path(name))
+        document = server.open(path)
+        server.wait_for(is_about(path))
+        for _ in range(options.rounds):
+            for edit in strokes(document, draw, IN_XML):
+                with server.measuring(edits):
+                    server.change(document, edit)
+        server.end()
+    return edits
+
+
 def many_files(spelling: missions.Spelling, slowness: float) -> tuple[list[Series], list[Goal]]:
     """A folder of 1 000 files: when what is open is told, and when all is, with progress meanwhile."""
     first, whole = Series(f"first diagnostics, {MANY:,} files"), Series(f"all diagnostics, {MANY:,} files")
@@ -276,26 +306,53 @@ class Stroke:
     text: str
 
 
-def strokes(document: Document, draw: random.Random) -> Iterator[Stroke]:
+@dataclass(frozen=True)
+class Typing:
+    """What is typed in a language.
+
+    Attributes:
+        after: the lines after which nodes are typed; `blanks` is their indentation.
+        node: the line that is typed.
+        values: what a digit is typed behind, as `it`.
+    """
+
+    after: re.Pattern[str]
+    node: str
+    values: tuple[re.Pattern[str], ...]
+
+
+IN_BTQ = Typing(
+    re.compile(r"^(?P<blanks>[ \t]{8,})[A-Z]\w+(?: \([^()\n]*\))?(?=\n)", re.MULTILINE),
+    "Charge (level = 80)",
+    (
+        re.compile(r" = (?P<it>[0-9]+)"),
+        re.compile(r" at most (?P<it>[0-9]+)"),
+        re.compile(r"^BehaviorTree (?P<it>\w+)", re.MULTILINE),
+    ),
+)
+IN_XML = Typing(
+    re.compile(r"^(?P<blanks>[ \t]{4,})<[^<>]*/>(?=\n)", re.MULTILINE),
+    '<Charge level="80"/>',
+    (re.compile(r' [a-z_]+="(?P<it>[0-9]+)"'), re.compile(r'<BehaviorTree ID="(?P<it>\w+)"')),
+)
+
+
+def strokes(document: Document, draw: random.Random, typing: Typing = IN_BTQ) -> Iterator[Stroke]:
     """What an author types in one go: a new node behind another, letter by letter, and a value; sometimes the name of
     a tree, or the bound of a requirement.  In the end all of it is taken back, so that the file stays as large."""
     before = document.text
-    line = draw.choice(list(_LEAF.finditer(before)))
-    typed = f"\n{line['blanks']}Charge (level = 80)"
+    line = draw.choice(list(typing.after.finditer(before)))
+    typed = f"\n{line['blanks']}{typing.node}"
     for index, letter in enumerate(typed):
         yield Stroke(line.end() + index, 0, letter)
     yield Stroke(line.end(), len(typed), "")
-    for pattern in (_VALUE, _BOUND, _TREE):
+    for pattern in typing.values:
         place = draw.choice([match.span("it") for match in pattern.finditer(before)] or [(0, 0)])
         if place[1]:
             yield Stroke(place[1], 0, "1")
             yield Stroke(place[1], 1, "")
 
 
-_LEAF = re.compile(r"^(?P<blanks>[ \t]{8,})[A-Z]\w+(?: \([^()\n]*\))?(?=\n)", re.MULTILINE)
-_VALUE = re.compile(r" = (?P<it>[0-9]+)")
-_BOUND = re.compile(r" at most (?P<it>[0-9]+)")
-_TREE = re.compile(r"^BehaviorTree (?P<it>\w+)", re.MULTILINE)
 _WORD = re.compile(r"\b[A-Z]\w{3,}")
 
 
@@ -334,7 +391,7 @@ class Server:
 
     def open(self, path: Path) -> Document:
         document = Document(path.as_uri(), path.read_text(encoding="utf-8"))
-        item = {"uri": document.uri, "languageId": "btq", "version": 1, "text": document.text}
+        item = {"uri": document.uri, "languageId": path.suffix[1:], "version": 1, "text": document.text}
         self.notify("textDocument/didOpen", textDocument=item)
         return document
 
@@ -487,7 +544,7 @@ def as_text(measured: Sequence[Series], goals: Sequence[Goal], slowness: float) 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = report.options(__doc__)
     parser.add_argument(
-        "--only", choices=("start", "edits", "large", "tree", "many"), help="measure one part, and the start"
+        "--only", choices=("start", "edits", "large", "tree", "xml", "many"), help="measure one part, and the start"
     )
     parser.add_argument(
         "--rounds", type=int, default=20, help="how often something is typed, some 30 edits (default 20)"
