@@ -22,9 +22,31 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import missions
+from btcpp_xml import built
 from report import ENVIRONMENT, Goal, as_data, machine, options, shown
 
+from btq_lang.btcpp.document import write
+
 FILES, NODES_A_FILE = 1_000, 50
+OTHERS = 5_000  # XML files that are not the engine's
+PACKAGE = """<?xml version="1.0"?>
+<package format="3">
+  <name>robot_{0}</name>
+  <version>1.2.{0}</version>
+  <description>Drivers of the robot</description>
+  <maintainer email="robot@example.com">Robot</maintainer>
+  <license>MIT</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+</package>
+"""
+URDF = """<?xml version="1.0"?>
+<!-- made for measuring -->
+<robot name="robot_{0}">
+  <link name="base"/>
+  <joint name="wheel" type="continuous"><parent link="base"/><child link="wheel"/></joint>
+  <link name="wheel"/>
+</robot>
+"""
 
 
 @dataclass
@@ -68,6 +90,9 @@ def commands(folder: Path, btq: tuple[str, ...]) -> list[Command]:
         Command("btq --version", (*btq, "--version")),
         Command("btq check, 100 nodes", (*btq, "check", str(folder / "one" / "mission.btq"))),
         Command("btq check, 1 000 files", (*btq, "check", str(folder / "many")), many=True),
+        Command("btq check, 1 000 XML files, 1 job", (*btq, "check", "--jobs", "1", str(folder / "xml")), many=True),
+        Command("btq check, 1 file", (*btq, "check", str(folder / "alone")), many=True),
+        Command("btq check, 1 file and 5 000 of other XML", (*btq, "check", str(folder / "others")), many=True),
         Command("btq trace, 10 000 nodes, HTML", (*btq, "trace", "--format", "html", large), many=True),
         Command("btq graph, 10 000 nodes, SVG", (*btq, "graph", "--qualities", large), many=True),
     ]
@@ -141,9 +166,19 @@ def _write_missions(folder: Path, spelling: missions.Spelling) -> None:
         missions.mission(missions.NODES, missions.SEED, spelling), encoding="utf-8"
     )
     (folder / "many").mkdir()
+    (folder / "xml").mkdir()
     for number in range(FILES):
         text = missions.mission(NODES_A_FILE, number, spelling)
         (folder / "many" / f"mission{number:04}.btq").write_text(text, encoding="utf-8")
+        (folder / "xml" / f"mission{number:04}.xml").write_text(write(built(text)), encoding="utf-8")
+    for name in ("alone", "others"):
+        (folder / name).mkdir()
+        (folder / name / "mission.btq").write_text(text, encoding="utf-8")
+    for number in range(OTHERS):
+        package = folder / "others" / f"package{number // 50}"
+        package.mkdir(exist_ok=True)
+        text = (PACKAGE, URDF)[number % 2].format(number)
+        (package / f"robot{number}.xml").write_text(text, encoding="utf-8")
 
 
 def _btq() -> tuple[str, ...]:
@@ -180,6 +215,14 @@ def compare(measured: Sequence[Command]) -> list[Goal]:
     if one is not None:
         allowed = 5 if is_compiled() else 8
         goals.append(Goal(f"1 000 files of 50 nodes, one process: s <= {allowed}", one, one <= allowed))
+    cpu = {command.name: statistics.median(command.cpu) for command in measured if not command.failure}
+    xml = cpu.get("btq check, 1 000 XML files, 1 job")
+    if xml is not None:
+        goals.append(Goal("1 000 XML files of 50 nodes, one process: s of processor <= 8", xml, xml <= 8))
+    alone, others = cpu.get("btq check, 1 file"), cpu.get("btq check, 1 file and 5 000 of other XML")
+    if alone is not None and others is not None:
+        rate = OTHERS / (others - alone)
+        goals.append(Goal("other XML passed over: files a second of processor >= 5 000", rate, rate >= 5_000))
     if one is not None and two is not None:
         goals.append(Goal("the same, 2 jobs, in times of one <= 0.6", two / one, two / one <= 0.6))
     return goals
