@@ -97,10 +97,11 @@ def encoded(text: str, stretch: Stretch, known: Known, encoding: Encoding) -> En
     tokens: list[Token] = []
     at = 0
     for token in words.found:
-        if token[0] >= at:
-            tokens += _between(text, at, token[0])
+        start, end, _ = token
+        if start >= at:
+            tokens += _between(text, at, start)
             tokens.append(token)
-            at = token[1]
+            at = end
     tokens += _between(text, at, len(text))
     return _encoded(text, tokens, encoding)
 
@@ -126,17 +127,22 @@ class _Words(Listener):
         owner: Owner = None,
         pair: Pair | None = None,
     ) -> None:
-        if word is not None and word.raw:
+        if word is not None and (raw := word.raw):
             appearance = (DEFINED if defines else USED).get(what)
-            self._add(word, appearance or self._appearance(what, word, word.text, defines, owner))
+            if appearance is None:
+                appearance = self._appearance(what, word, word.text, defines, owner)
+            start = word.start + self.by
+            self.found.append((start, start + len(raw), appearance))
 
     def words(self, what: What, words: tuple[Word, ...], span: Span, node: Node | None = None) -> None:
         appearance = self._appearance(what, words[-1], ".".join([word.text for word in words]), False, None)
         for word in words:
-            self._add(word, appearance)
+            start = word.start + self.by
+            self.found.append((start, start + len(word.raw), appearance))
 
     def value(self, word: Word) -> None:
-        self._add(word, PLAIN.get(word.kind, TEXT))
+        start = word.start + self.by
+        self.found.append((start, start + len(word.raw), PLAIN.get(word.kind, TEXT)))
 
     def part(self, mention: Mention) -> None:
         """Split the word around a reference, if it was the previous one."""
@@ -157,10 +163,6 @@ class _Words(Listener):
         else:
             found.append((begin, end, appearance))
 
-    def _add(self, word: Word, appearance: str) -> None:
-        start = word.start + self.by
-        self.found.append((start, start + len(word.raw), appearance))
-
     def _appearance(self, what: What, word: Word, name: str, defines: bool, owner: Owner) -> str:
         """The appearance of a word that can be several things."""
         if what is What.NODE:
@@ -177,15 +179,28 @@ class _Words(Listener):
 
 
 def _between(text: str, start: int, end: int) -> list[Token]:
-    """The tokens between two words of a tree, before the first or after the last."""
-    found = _tokens_of(text[start:end])
-    return [(begin + start, stop + start, appearance) for begin, stop, appearance in found] if found else found
+    """The tokens between two words of a tree, before the first or after the last.
+
+    Comments do not get into the cache, for each is a different one.
+    """
+    between = text[start:end]
+    if "#" not in between and "//" not in between:
+        return _tokens_of(between, start)
+    found: list[Token] = []
+    while commented := _COMMENTED.match(text, start, end):
+        found += _tokens_of(commented[1], start)
+        found.append((*commented.span(2), PLAIN[COMMENT]))
+        start = commented.end()
+    return [*found, *_tokens_of(text[start:end], start)]
+
+
+def _tokens_of(text: str, by: int) -> list[Token]:
+    found = _lexed(text)
+    return [(start + by, end + by, appearance) for start, end, appearance in found] if found else found
 
 
 @lru_cache(2_000)
-def _tokens_of(text: str) -> list[Token]:
-    if commented := _COMMENTED.fullmatch(text):  # items are often preceded by comments, each a different one
-        return [*_tokens_of(commented[1]), (*commented.span(2), PLAIN[COMMENT])]
+def _lexed(text: str) -> list[Token]:
     found: list[Token] = []
     before = ""
     for kind, start, raw in pieces(text):
@@ -205,19 +220,23 @@ def _encoded(text: str, tokens: list[Token], encoding: Encoding) -> Encoded:
     line = column = 0  # of the last token
     at = begin = 0  # the line where the next one is looked for, and its start
     end = _next_line(text, 0, has_returns)
-    for first, last, appearance in tokens:
-        while end <= first:
+    waiting = tokens[::-1]
+    while waiting:
+        start, stop, appearance = waiting.pop()
+        while end <= start:
             begin, end, at = end, _next_line(text, end, has_returns), at + 1
-        pieces = ((first, last),) if last < end else _lines(text, first, last)
-        for start, stop in pieces:
-            while end <= start:
-                begin, end, at = end, _next_line(text, end, has_returns), at + 1
-            if is_plain:
-                place, length = start - begin, stop - start
-            else:
-                place, length = width_of(text[begin:start], encoding), width_of(text[start:stop], encoding)
-            found.append(f"{at - line},{place - column if at == line else place},{length}{appearance}")
-            line, column = at, place
+        if stop >= end:
+            waiting += [(first, last, appearance) for first, last in reversed(_lines(text, start, stop))]
+            continue
+        if is_plain:
+            place, length = start - begin, stop - start
+        else:
+            place, length = width_of(text[begin:start], encoding), width_of(text[start:stop], encoding)
+        if at == line:
+            found.append(f"0,{place - column},{length}{appearance}")
+        else:
+            found.append(f"{at - line},{place},{length}{appearance}")
+        line, column = at, place
     return Encoded(found, line)
 
 
@@ -243,6 +262,6 @@ def _lines(text: str, start: int, end: int) -> list[tuple[int, int]]:
     return found
 
 
-# A comment on a line of its own, the last one.  Before it is nothing that may continue after a line end, or that a
-# comment must not follow.
-_COMMENTED: Final = re.compile(r"([^\"'=/\r#]*\n[ \t]*)(#[^\r\n]*)[ \t\n]*")
+# A comment to the end of its line.  Before it is nothing that may continue after a line end, or that a comment must not
+# follow.
+_COMMENTED: Final = re.compile(r"([^\"'={:/\r#]*(?<![^ \t\n]))((?:#|//)[^\r\n]*)(?![^\n])")

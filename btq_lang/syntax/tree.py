@@ -327,7 +327,7 @@ def walk(part: object) -> list[object]:
             stack += reversed(part)
         elif part is not None and not isinstance(part, (int, str)):
             found.append(part)
-            stack += [getattr(part, field) for field in reversed(fields_of(part))]
+            stack += [value for field in reversed(fields_of(part)) if (value := getattr(part, field))]
     return found
 
 

@@ -394,7 +394,12 @@ def _values(
 ) -> None:
     """The names and quantities in clauses, conditions and bounds."""
     for found in syntax.walk(part):
-        if isinstance(found, (syntax.Operand, syntax.Amount)):
+        if isinstance(found, syntax.Word):  # nearly half of them are
+            if found.kind == QUANTITY:
+                to.word(What.QUANTITY, found)
+            elif found.kind == NUMBER:
+                to.value(found)
+        elif isinstance(found, (syntax.Operand, syntax.Amount)):
             if found.word.kind == NAME and found.word.raw not in ("true", "false"):
                 to.word(What.VALUE, found.word, owner=owner)
         elif isinstance(found, syntax.Call):
@@ -405,11 +410,6 @@ def _values(
             _path(found, to)
         elif isinstance(found, syntax.Every):
             to.word(What.PLACE, found.name)
-        elif isinstance(found, syntax.Word):
-            if found.kind == QUANTITY:
-                to.word(What.QUANTITY, found)
-            elif found.kind == NUMBER:
-                to.value(found)
 
 
 def _quantities(part: object, to: Listener) -> None:
