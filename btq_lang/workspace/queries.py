@@ -108,6 +108,7 @@ class Store(Generic[State]):
         self._touched: set[Hashable] = set()  # the topics of inputs that may differ since the last question
         self._pinned: set[tuple[Any, ...]] = set()
         self._size = 0  # after the last sweep
+        self._is_edited = False  # since then
         self._dependencies: dict[_Answer, None] | None = None  # of the query that is being computed
         self._path: list[_Answer] = []  # the queries that are open, each asked by the one before it
         self._count = 0  # of numbers
@@ -184,8 +185,11 @@ class Store(Generic[State]):
         self._pinned.discard((query, *key))
 
     def sweep(self, *, always: bool = False) -> None:
-        """Forget what no pinned answer depends on, if that has become much, or always."""
-        if not always and len(self._answers) <= max(2 * self._size, _FEW):
+        """Forget what no pinned answer depends on, if that has become much, or always; what pinned answers have asked
+        for is all in use until the first edit.
+        """
+        is_in_use = self._pinned and not self._is_edited
+        if not always and (is_in_use or len(self._answers) <= max(2 * self._size, _FEW)):
             return
         waiting = [self._answers[key] for key in self._pinned if key in self._answers]
         used = set(waiting)
@@ -205,12 +209,14 @@ class Store(Generic[State]):
         kept = {topic: [each for each in inputs if each in used] for topic, inputs in self._inputs.items()}
         self._inputs = {topic: inputs for topic, inputs in kept.items() if inputs}
         self._size = len(self._answers)
+        self._is_edited = False
 
     # ---- how answers are settled ----
 
     def _read_again(self) -> None:
         """Read the inputs that may differ since the last question."""
         while self._touched:
+            self._is_edited = True
             topic = self._touched.pop()
             inputs = self._inputs.pop(topic, ())
             kept = [each for each in inputs if each.dependents]
