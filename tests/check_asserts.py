@@ -12,9 +12,12 @@ from collections.abc import Mapping, Sequence
 from textwrap import dedent
 
 from btq_lang.btcpp.opening import file_of
+from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.checks import check
+from btq_lang.commands.target import with_target
 from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.diagnostics.rules import RULES
+from btq_lang.util.record import replace
 from btq_lang.util.text import Edit, LineIndex, apply_edits
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
@@ -22,6 +25,10 @@ from btq_lang.workspace.workspace import Workspace
 MAIN = "main.btq"
 MARKER = re.compile(r"(?P<where>next-line |file )?(?P<severity>error|warning|info|hint): \[(?P<rule>[\w-]+)\]")
 COMMENT_WITH_MARKERS = re.compile(r"(?:#|<!--)\s*(?=(?:next-line |file )?(?:error|warning|info|hint): \[).*")
+
+MOVES = re.compile(
+    r'^# nodes = \["(?P<nodes>[\w-]+)"\] in btq.toml, and: btq check --target (?P<target>[\w-]+)$', re.MULTILINE
+)
 
 Announced = Counter[tuple[str, int, str, str]]  # (file, line, severity, rule)
 
@@ -57,6 +64,9 @@ def assert_marked(text: str, name: str = "main.btq") -> None:
     """
     files = split_files(text, name)
     workspace = workspace_of(files)
+    if moves := MOVES.search(text):
+        project = replace(workspace.project, node_files=(PACKAGED[moves["nodes"]],))
+        workspace = with_target(workspace.with_project(project), moves["target"])
     expected: Announced = Counter()
     found: Announced = Counter()
     for path, content in files.items():

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "tools")]  # MkDocs loads this file as a module without a folder
 
-from site_colours import register  # noqa: E402  # behind the path it is found on
+from moving_pages import moving_pages  # noqa: E402  # after the path it is found on
+from site_colours import register  # noqa: E402  # as above
 
 from btq_lang.catalog.kinds import NodeKind, PortKind  # noqa: E402
 from btq_lang.catalog.language import PHRASES, Phrase  # noqa: E402
@@ -47,6 +48,7 @@ _KINDS = {
 def pages() -> dict[str, str]:
     """Every generated page by its path below the site's root, in Markdown."""
     found = {"rules/index.md": _rules(), "nodes/index.md": _nodes(), "qualities.md": _qualities(), "words.md": _words()}
+    found |= moving_pages()
     found |= {f"rules/{rule.name}.md": _rule(rule) for rule in RULES.values()}
     found |= {f"nodes/{kind.tag}.md": _node(kind) for kind in BUILTINS.values()}
     folders = sorted(folder for folder in (ROOT / "examples").iterdir() if folder.is_dir())

@@ -10,6 +10,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     kinds.py, names.py, ports.py, children.py, trees.py, includes.py   what the engine would refuse
     literals.py, constants.py, strings.py, scripts.py, counts.py, empty.py, outputs.py   values
     entries.py, pointers.py, writers.py, misspelt.py, mixed_types.py   blackboard entries
+    moving.py   what another distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
     measures.py, clauses.py, conditions.py, bounds.py, limits.py, odds.py   requirements by themselves
     requirements.py, attached.py, qualities.py, repeated.py, prose.py, unused.py   names of requirements and qualities
@@ -38,6 +39,7 @@ from btq_lang.checks import (
     measures,
     misspelt,
     mixed_types,
+    moving,
     names,
     outputs,
     placeholders,
@@ -117,6 +119,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         kinds.duplicate_definition,
         requirements.conflicting_requirement,
         ports.duplicate_attribute,
+        moving.moving_include,
     ),
     Root: (trees.unknown_tree, empty.empty_text, ports.duplicate_attribute),
     Tree: (
@@ -168,6 +171,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         preconditions.while_skip_is_success,
         preconditions.skipped_condition,
         unreachable.unreachable_child,
+        moving.moving_on,
         measures.unresolved,
         demands.demands,
     ),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
-from btq_lang.catalog.nav2 import PACKAGED
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, PACKAGED
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
@@ -54,6 +54,16 @@ class Declaration(Record):
 
 
 # ---- a name: these depend only on the items that define it ----
+
+
+@of_name
+def ports_in_file(workspace: Workspace, path: str, kind: Kind, name: str) -> frozenset[str] | None:
+    """The names of the ports of a model in a file itself; None if it has no such model."""
+    found = workspace.files[path].names.found.get((kind, name))
+    model = found[0][1].target if found else None
+    if not isinstance(model, Model):
+        return None
+    return frozenset([port.name.text for port in model.ports if port.name is not None])
 
 
 @of_name
@@ -127,6 +137,13 @@ def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 
 
 # ---- the scope ----
+
+
+@of_viewpoint
+def distribution(workspace: Workspace, viewpoint: str) -> str | None:
+    """The distribution whose nodes of Nav2 are declared for a file."""
+    paths = workspace.scope(viewpoint).node_paths
+    return next((name for name in DISTRIBUTIONS if PACKAGED[f"nav2-{name}"] in paths), None)
 
 
 @of_viewpoint

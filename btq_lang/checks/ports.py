@@ -17,7 +17,7 @@ from btq_lang.checks.kinds import model_related, way_in
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Include, Meta, Pair, Port, Root, Tree, Word, models_in, written
+from btq_lang.syntax.tree import Entry, Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, written
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
@@ -343,9 +343,13 @@ def _passing_on(view: View, seen: ResolvedNode, missing: list[KnownPort]) -> tup
     """The fix that passes to a custom node or a SubTree the blackboard entries named as its ports."""
     if seen.kind is not None:
         return ()
-    node = seen.node
     pairs = " ".join(f"{written(port.name)} = {{=}}" for port in missing)
-    title = f"Pass on the entr{'y' if len(missing) == 1 else 'ies'} of the same name: `{pairs}`"
+    return adding_fix(view, seen.node, f"Pass on the entr{'y' if len(missing) == 1 else 'ies'} of the same name", pairs)
+
+
+def adding_fix(view: View, node: Node, title: str, pairs: str) -> tuple[Fix, ...]:
+    """The fix that gives a node more attributes, written as in a file; none if they have no place."""
+    title = f"{title}: `{pairs}`"
     if node.attributes:
         end = node.attributes[-1].span.end
         return (replace_fix(title, Span(end, end), f" {pairs}"),)

@@ -110,6 +110,14 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
         "--ignore", action="append", metavar="RULES", help="all rules except these, separated by commas"
     )
     parser.add_argument("--severity", choices=SEVERITIES, help="report this severity and worse; default: hint")
+    from btq_lang.catalog.nav2 import PACKAGED  # of the catalog, which not every reader of this module needs
+
+    parser.add_argument(
+        "--target",
+        choices=tuple(PACKAGED),
+        metavar="NODES",
+        help="also what this distribution of Nav2 changes for trees of an earlier one: nav2-iron … nav2-lyrical",
+    )
     parser.add_argument("--fix", action="store_true", help="apply the safe fixes")
     parser.add_argument(
         "--diff", action="store_true", help="write nothing, show what --fix would change; exit 1 if there is anything"

@@ -74,6 +74,13 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     groups, problems = files.groups(options.paths, options.stdin_filename, with_xml=True, for_checks=True)
     groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
     empty = no_mission_below(options.paths, groups, "no .btq file and no BehaviorTree.CPP XML")
+    if options.target is not None:
+        from btq_lang.commands.target import is_for_nav2
+
+        if not any(is_for_nav2(group.workspace) for group in groups):
+            what = 'write `nodes = ["nav2-jazzy"]` into btq.toml'
+            print(f"btq check: --target needs to know what the trees are for: {what}", file=sys.stderr)
+            return 2, _watched(groups)
     if options.since:
         from btq_lang.commands.git import GitTrouble
         from btq_lang.commands.since import affected
@@ -192,7 +199,11 @@ def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...
 
 
 def _configured(workspace: Workspace, options: CheckOptions) -> Workspace:
-    """The workspace with the command line's selection of rules on top of the project file's."""
+    """The workspace with the command line's selection of rules on top of the project file's, and with its target."""
+    if options.target is not None:
+        from btq_lang.commands.target import with_target
+
+        workspace = with_target(workspace, options.target)
     project: Project = workspace.project
     select, ignore = _rules(options.select), _rules(options.ignore)
     if not select and not ignore:

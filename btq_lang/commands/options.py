@@ -23,6 +23,7 @@ class CheckOptions:
     select: Sequence[str] = []
     ignore: Sequence[str] = []
     severity = "hint"
+    target: str | None = None
     since: str | None = None
     baseline: str | None = None
     update_baseline = False

@@ -68,6 +68,7 @@ class Project(Record):
         evidence: its table about logs, if it has one.
         factories: what each of its programs registers.
         node_files: files of btq whose models count in all files.
+        moves_to: the distribution of Nav2 that its trees are checked for besides their own.
     """
 
     root: str = "."
@@ -86,6 +87,7 @@ class Project(Record):
     evidence: Evidence | None = None
     factories: tuple[Factory, ...] = ()
     node_files: tuple[str, ...] = ()
+    moves_to: str | None = None
 
     def shown(self, path: str) -> str:
         """A path for display: relative to a working folder if it is inside one, else as it is."""

@@ -180,6 +180,8 @@ _TABLE = (
         "a precondition `_failureIf` or `_successIf` on a long-running node: it is checked only when the node starts",
     ),
     Rule("while-skip-is-success", _W, "`_while` halts the node and the parent continues as if it had succeeded"),
+    Rule("target-breaks", _E, "what the distribution of `--target` refuses"),
+    Rule("target-differs", _W, "what means something else in the distribution of `--target`"),
     Rule("skipped-condition", _W, "a condition of IfThenElse or WhileDoElse that may be skipped: the engine throws"),
     Rule("unreachable-child", _W, "a child that can never run"),
     Rule(

@@ -1,5 +1,5 @@
 // The documents that btq is for: missions, and XML that is BehaviorTree.CPP's.  There is much other XML.
-// One invariant: XML is told apart by its text alone, as the server does (btq_lang/btcpp/recognition.py).
+// One invariant: XML is recognized by its text alone, as the server does (btq_lang/btcpp/recognition.py).
 import * as vscode from "vscode";
 
 const SCHEMES = ["file", "untitled"];

@@ -55,7 +55,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     return (turn = turn.then(() => start(context, log, status)));
   };
   const again = async (): Promise<void> => (isWanted ? restart() : undefined);
-  // The first one of ours is enough: most XML is none, and starts nothing.
+  // The first document for btq is enough; other XML does not start the server.
   const begin = async (document: vscode.TextDocument): Promise<void> => {
     if (!isWanted && isOurs(document)) await restart();
   };

@@ -1,0 +1,240 @@
+"""What a release of Nav2 changes for trees that were written for an earlier one: one row a change.
+
+Nodes and ports that a release removes follow from the files of nodes beside this module; the rows here say what
+replaces them, and what a tree that still loads means from then on.  Determined in the sources of the branches and, for
+the nodes that need no ROS, by running them.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from btq_lang.util.record import Record
+
+ANY: Final = "*"  # every node
+
+
+class Change(Record):
+    """A change in what a node does.
+
+    Attributes:
+        since: the first distribution with it.
+        nodes: those that change.
+        what: the rest of a sentence that begins with a node's name.
+        instead: what to write, or look at.
+        port: on whose value the change depends; empty for none.
+        value: the whole value of the port that changes its meaning, as a regular expression; None if the change is for
+            nodes without a value of the port.
+        breaks: whether the tree is refused, and does not only mean something else.
+        keeps: the value of `port` that keeps the old meaning.
+    """
+
+    since: str
+    nodes: tuple[str, ...]
+    what: str
+    instead: str = ""
+    port: str = ""
+    value: str | None = ""
+    breaks: bool = False
+    keeps: str | None = None
+
+    def concerns(self, node: str) -> bool:
+        return self.nodes == (ANY,) or node in self.nodes
+
+    def matches(self, value: str | None) -> bool:
+        """Whether a node changes whose port has a value, or None."""
+        if not self.port:
+            return True
+        if self.value is None or value is None:
+            return self.value is value
+        return re.fullmatch(self.value, value) is not None
+
+
+# The names after a release that renamed a node, or a port of one.
+RENAMED: Final = {("lyrical", "IsPathValid"): "ValidatePath", ("lyrical", "IsStopped"): "CheckStopStatus"}
+RENAMED_PORTS: Final = {("lyrical", "TruncatePathLocal", "robot_frame"): "robot_base_frame"}
+# What to write instead of a node that a release does not have.
+INSTEAD: Final = {("kilted", "ClearCostmapAroundPose"): "ClearCostmapAroundRobot or ClearEntireCostmap"}
+
+_ENTRY: Final = r"\{.+\}"
+_FRAME: Final = "has the frame that bt_navigator is configured with, no longer `{}`"
+_MOVES: Final = ("AssistedTeleop", "BackUp", "DriveOnHeading", "Spin", "Wait")
+_CLEARS: Final = (
+    "ClearEntireCostmap",
+    "ClearCostmapExceptRegion",
+    "ClearCostmapAroundRobot",
+    "ClearCostmapAroundPose",
+)
+
+
+def _read_again(since: str, nodes: tuple[str, ...], *ports: str) -> tuple[Change, ...]:
+    what = "reads the entry in `{}` at each start, no longer only when the tree is created"
+    return tuple(Change(since, nodes, what.format(port), port=port, value=_ENTRY) for port in ports)
+
+
+CHANGES: Final = (
+    # Iron
+    Change(
+        "iron",
+        ("TransformAvailable",),
+        "without `child` is refused when the tree is created; Humble ended the process of bt_navigator",
+        "write both frames",
+        "child",
+        None,
+        breaks=True,
+    ),
+    Change(
+        "iron",
+        ("TransformAvailable",),
+        "without `parent` is refused when the tree is created; Humble ended the process of bt_navigator",
+        "write both frames",
+        "parent",
+        None,
+        breaks=True,
+    ),
+    # Jazzy: BehaviorTree.CPP 4
+    Change(
+        "jazzy",
+        ("RecoveryNode",),
+        "tries again once with a negative `number_of_retries`, and no longer without end",
+        "write a large number",
+        "number_of_retries",
+        r"-\d+",
+    ),
+    Change(
+        "jazzy",
+        ("Wait",),
+        "waits for parts of seconds too; before, it dropped them",
+        "write the time that is meant",
+        "wait_duration",
+        r"\d*\.\d*[1-9]\d*",
+    ),
+    *_read_again("jazzy", ("RateController",), "hz"),
+    *_read_again("jazzy", ("RecoveryNode",), "number_of_retries"),
+    *_read_again("jazzy", ("TimeExpired", "PathExpiringTimer"), "seconds"),
+    *_read_again("jazzy", ("DistanceTraveled",), "distance", "global_frame", "robot_base_frame"),
+    *_read_again("jazzy", _MOVES, "time_allowance", "is_recovery"),
+    *_read_again("jazzy", ("BackUp",), "backup_dist", "backup_speed"),
+    *_read_again("jazzy", ("DriveOnHeading",), "dist_to_travel", "speed"),
+    *_read_again("jazzy", ("Spin",), "spin_dist"),
+    *_read_again("jazzy", ("Wait",), "wait_duration"),
+    *_read_again("jazzy", ("TruncatePath",), "distance"),
+    *_read_again("jazzy", ("RemovePassedGoals",), "radius"),
+    *_read_again("jazzy", ("IsBatteryLow",), "min_battery", "battery_topic", "is_voltage"),
+    *_read_again("jazzy", ("TransformAvailable",), "child", "parent"),
+    *_read_again("jazzy", ("IsPathValid",), "server_timeout"),
+    Change(
+        "jazzy",
+        ("GoalReached", "RemovePassedGoals"),
+        "does not use `global_frame` any more: the frame of the goal counts",
+        "remove the port",
+        "global_frame",
+        ".*",
+    ),
+    Change(
+        "jazzy",
+        ("DistanceController", "DistanceTraveled"),
+        f"without `global_frame` {_FRAME.format('map')}",
+        port="global_frame",
+        value=None,
+        keeps="map",
+    ),
+    Change(
+        "jazzy",
+        ("DistanceController", "DistanceTraveled", "GoalReached", "RemovePassedGoals"),
+        f"without `robot_base_frame` {_FRAME.format('base_link')}",
+        port="robot_base_frame",
+        value=None,
+        keeps="base_link",
+    ),
+    Change(
+        "jazzy",
+        ("AreErrorCodesPresent",),
+        "reads the list of codes, from 1.3.6 on; before, it always failed",
+        port="error_codes_to_check",
+        value=r"[^{].*",
+    ),
+    # Kilted
+    *_read_again("kilted", ("IsBatteryCharging",), "battery_topic"),
+    *_read_again(
+        "kilted",
+        ("ControllerSelector", "PlannerSelector", "SmootherSelector", "GoalCheckerSelector", "ProgressCheckerSelector"),
+        "topic_name",
+    ),
+    *_read_again("kilted", (ANY,), "service_name"),
+    *(
+        Change(
+            "kilted",
+            (ANY,),
+            f"reads `{port}` in another form: each pose begins with `stamp;frame;`",
+            "pass an entry, or write the poses in the new form",
+            port,
+            r"[^{].*",
+            breaks=True,
+        )
+        for port in ("goals", "input_goals")
+    ),
+    Change(
+        "kilted",
+        ("RemovePassedGoals",),
+        "keeps the status of waypoints only if it gets it: without, they stay pending to the end",
+        "pass `{waypoint_statuses}` to `input_waypoint_statuses` and `output_waypoint_statuses`",
+        "input_waypoint_statuses",
+        None,
+    ),
+    Change(
+        "kilted",
+        (ANY,),
+        "writes its error where nobody collects it: results have only entries that end in `_error_code`",
+        "write an entry such as `{follow_path_error_code}`",
+        "error_code_id",
+        r"\{(?!.*_error_code\}).+\}",
+    ),
+    Change(
+        "kilted",
+        ("IsPathValid",),
+        "ends the goal with an exception if there is no answer in time; before, it failed",
+        "look at `server_timeout`",
+    ),
+    # Lyrical
+    Change(
+        "lyrical",
+        ("IsPathValid",),
+        "takes a cost up to 254 for free without `max_cost`, no longer up to 253",
+        port="max_cost",
+        value=None,
+        keeps="253",
+    ),
+    Change(
+        "lyrical",
+        ("RoundRobin",),
+        "does not begin again after its last child: it then fails, even if that child has succeeded",
+        "",
+        "wrap_around",
+        None,
+        keeps="true",
+    ),
+    Change(
+        "lyrical",
+        ("TruncatePathLocal",),
+        f"without a frame of the robot {_FRAME.format('base_link')}",
+        port="robot_frame",
+        value=None,
+    ),
+    Change(
+        "lyrical",
+        ("TruncatePathLocal",),
+        "takes a negative `distance_forward` for no limit",
+        port="distance_forward",
+        value=r"-.+",
+    ),
+    Change("lyrical", _CLEARS, "fails if the service answers that it has not succeeded; before, it succeeded"),
+    Change(
+        "lyrical",
+        (ANY,),
+        "finds an empty path in `{path}` at the start of each goal, no longer that of the last goal",
+        port="path",
+        value=r"\{path\}",
+    ),
+)

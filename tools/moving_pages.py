@@ -1,0 +1,83 @@
+"""The pages of the documentation site about moving on from one distribution of Nav2 to the next.
+
+One invariant: all that they say is in the tables by which `btq check --target` finds it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, PACKAGED
+from btq_lang.catalog.nav2.changes import ANY, CHANGES, INSTEAD, RENAMED, RENAMED_PORTS, Change
+from btq_lang.parser import parse
+from btq_lang.syntax.tree import Models, models_in
+
+
+def moving_pages() -> dict[str, str]:
+    """A page for each step, and their index, by the path below the site's root."""
+    steps = list(pairwise(DISTRIBUTIONS))
+    links = (f"* [{old.title()} to {new.title()}]({old}-{new}.md)" for old, new in steps)
+    index = ["# Moving on to another distribution", "", _HOW, "", *links, ""]
+    return {"moving/index.md": "\n".join(index)} | {
+        f"moving/{old}-{new}.md": "\n".join(_page(old, new)) for old, new in steps
+    }
+
+
+_HOW = (
+    "With `nodes` in btq.toml as the trees are today, `btq check --target nav2-lyrical` finds in them what these pages "
+    "say, for all steps on the way."
+)
+
+
+def _page(old: str, new: str) -> Iterator[str]:
+    before, after = _nodes(old), _nodes(new)
+    changes = [change for change in CHANGES if change.since == new]
+    yield f"# {old.title()} to {new.title()}\n"
+    yield from _section("Refused", (*_gone(before, after, new), *map(_said, (each for each in changes if each.breaks))))
+    yield from _section("Means something else", map(_said, (each for each in changes if not each.breaks)))
+    yield from _section("New", _added(before, after))
+
+
+def _section(title: str, lines: Iterable[str]) -> Iterator[str]:
+    found = [*lines]
+    if found:
+        yield f"## {title}\n"
+        yield from (f"* {line}" for line in found)
+        yield ""
+
+
+def _gone(before: dict[str, set[str]], after: dict[str, set[str]], new: str) -> Iterator[str]:
+    for node, ports in before.items():
+        name = node if node in after else RENAMED.get((new, node))
+        if name != node:
+            instead = name or INSTEAD.get((new, node))
+            yield f"`{node}` is not there" + (f": write {f'`{name}`' if name else instead}" if instead else "")
+        for port in sorted(ports - after[name]) if name else ():
+            called = RENAMED_PORTS.get((new, node, port))
+            yield f"`{node}` has no port `{port}`" + (f": write `{called}`" if called else "")
+
+
+def _said(change: Change) -> str:
+    nodes = "any node" if change.nodes == (ANY,) else ", ".join(f"`{node}`" for node in change.nodes)
+    keeps = f"`{change.port} = {change.keeps}` keeps the old meaning" if change.keeps else ""
+    return "; ".join(filter(None, (f"{nodes}: {change.what}", change.instead, keeps)))
+
+
+def _added(before: dict[str, set[str]], after: dict[str, set[str]]) -> Iterator[str]:
+    for node, ports in after.items():
+        new = sorted(ports - before[node]) if node in before else []
+        if node not in before:
+            yield f"`{node}`"
+        elif new:
+            yield f"`{node}`: " + ", ".join(f"`{port}`" for port in new)
+
+
+@cache
+def _nodes(distribution: str) -> dict[str, set[str]]:
+    """The ports of each node of a distribution."""
+    items = [entry.item for entry in parse(Path(PACKAGED[f"nav2-{distribution}"]).read_text(encoding="utf-8")).entries]
+    models = [model for item in items if isinstance(item, Models) for model in models_in(item)]
+    return {model.name.text: {port.name.text for port in model.ports if port.name} for model in models if model.name}
