@@ -35,7 +35,9 @@ SCRIPT_RANKS: Final = Change("4.7", "ranks the operators of scripts otherwise th
 BOOL_LISTS: Final = Change("4.7.3", "reads a list of bool from text")
 NAME_RULES: Final = Change("4.8", "refuses names of trees, nodes and ports with characters that it forbids")
 UNIQUE_SUBTREES: Final = Change("4.8", "refuses two SubTrees of one name in one tree")
-NEW_SCRIPTS: Final = Change("4.9", "reads scripts by a grammar of its own, in which every operator has a rank")
+NEW_SCRIPTS: Final = Change(
+    "4.9", 'reads scripts by a grammar of its own: every operator has a rank, and `"` no meaning'
+)
 STRICT_NUMBERS: Final = Change("4.9", "reads numbers as std::from_chars does: no blank, no `+`, no hexadecimal digits")
 JSON_LISTS: Final = Change("4.9", "reads a list from `json:[1, 2]`")
 TYPED_CONSTANTS: Final = Change("4.9.1", "keeps a number that a SubTree gives to a port as a number")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
+from btq_lang.catalog.versions import NEW_SCRIPTS
 from btq_lang.checks.strings import moved
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.util.record import replace
@@ -35,7 +36,10 @@ def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
                     pin = f'if you run {project.target}, set `engine = "{project.target}"` in btq.toml'
                     yield replace(found, notes=(*found.notes, pin))
                 else:
-                    yield found
+                    older: tuple[str, ...] = ()
+                    if problem.rule == "script-error" and _is_in_double_quotes(pair.value.text, problem):
+                        older = view.pin_note(lambda version: not NEW_SCRIPTS.holds(version))
+                    yield replace(found, notes=(*found.notes, *older)) if older else found
 
 
 def is_script(seen: ResolvedNode, pair: Pair) -> bool:
@@ -60,6 +64,12 @@ def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic,
 
     versions = view.project.engines
     return check_script(view.script(script), versions=versions, expects_value=expects_value)
+
+
+def _is_in_double_quotes(script: str, problem: Diagnostic) -> bool:
+    from btq_lang.syntax.script.check import is_in_double_quotes  # as above
+
+    return is_in_double_quotes(script, problem.span)
 
 
 def _empty(seen: ResolvedNode, key: str, value: Word, found: Diagnostic) -> Diagnostic:

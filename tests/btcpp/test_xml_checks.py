@@ -238,6 +238,20 @@ def test_what_only_newer_engines_refuse_says_how_to_name_an_older_one() -> None:
     ]
 
 
+def test_engines_before_4_9_take_strings_in_double_quotes() -> None:
+    text = '<root BTCPP_format="4"><BehaviorTree ID="Main"><Script code="x := &quot;a&quot;"/></BehaviorTree></root>'
+    workspace = workspace_of({"main.xml": text})
+    (found,) = check(workspace, "main.xml")
+    assert (found.rule, found.notes) == (
+        "script-error",
+        ('4.8 accepts it: if you run that, set `engine = "4.8"` in btq.toml',),
+    )
+    assert check(workspace.with_project(Project(engines=("4.6", "4.8"))), "main.xml") == ()
+    unclosed = workspace_of({"main.xml": text.replace("a&quot;", "a")})
+    (found,) = check(unclosed.with_project(Project(engines=("4.6",))), "main.xml")
+    assert (found.rule, found.notes) == ("script-error", ())
+
+
 def test_of_models_that_differ_no_port_is_unknown() -> None:
     assert_problems(
         """

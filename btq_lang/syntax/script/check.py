@@ -6,7 +6,7 @@ here, so other rules report those that are never written.
 
 from __future__ import annotations
 
-from btq_lang.catalog.versions import VERSIONS
+from btq_lang.catalog.versions import NEW_SCRIPTS, VERSIONS
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.script import mistakes
@@ -28,12 +28,18 @@ def check_script(
     Raises:
         ValueError: a version is not numbers separated by points.
     """
-    found = [*script.problems]
+    is_old = not any(NEW_SCRIPTS.holds(version) for version in versions)
+    found = [each for each in script.problems if not (is_old and is_in_double_quotes(script.text, each.span))]
     if script.complete:
         found += version_problems(script, versions)
         if expects_value and script.statements:
             found += _value_problems(script.statements[-1], script.text)
     return tuple(sorted(found, key=lambda problem: problem.span))
+
+
+def is_in_double_quotes(text: str, span: Span) -> bool:
+    """Whether a place in a script is a string in double quotes, which engines before 4.9 accept."""
+    return text[span.start : span.end].startswith('"') and text[span.start + 1 : span.end].endswith('"')
 
 
 def _value_problems(node: Expression, text: str) -> list[Diagnostic]:
