@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from btq_lang.btcpp.importing import Imported, import_xml
-    from btq_lang.btcpp.opening import open_workspace
     from btq_lang.checks import check
     from btq_lang.commands.building import Built, build
+    from btq_lang.commands.opening import open_workspace
     from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.diff.changes import Change
     from btq_lang.diff.comparison import diff_missions
@@ -84,7 +84,7 @@ _HOMES = {
     "draw_tree": "graph.missions",
     "format_text": "formatter",
     "import_xml": "btcpp.importing",
-    "open_workspace": "btcpp.opening",
+    "open_workspace": "commands.opening",
     "parse": "parser",
     "trace_table": "trace.missions",
     "verify_logs": "evidence.verifying",

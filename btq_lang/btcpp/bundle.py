@@ -1,4 +1,4 @@
-"""A mission and all that it includes as one document.
+"""A mission and all that is registered with it, by includes or by its factory, as one document.
 
 One invariant: each file is written as it would be by itself; only the includes between them are gone, and the models
 are in one place.
@@ -22,12 +22,12 @@ def bundle(
     target: str | None = None,
     verbatim: bool = False,
 ) -> Export:
-    """A file and all it includes, XML files too, as one document; included files come first.
+    """A file and all that is registered with it, XML files too, as one document; the others come first.
 
     Args:
         target, verbatim: as of `export`.
     """
-    paths = workspace.closure(path)
+    paths = workspace.registered_with(path)
     exports = [
         export(workspace, each, target=target, verbatim=verbatim, included_as=lambda _: _IN_BUNDLE, is_bundled=True)
         for each in paths

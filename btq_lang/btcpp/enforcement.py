@@ -156,7 +156,7 @@ def _begins(workspace: Workspace, found: Requirements, path: str, files: frozens
 
 def _written(workspace: Workspace, path: str, bundled: bool) -> frozenset[str]:
     """The files that are written into one document with this one."""
-    return frozenset(workspace.closure(path)) if bundled else frozenset((path,))
+    return frozenset(workspace.registered_with(path)) if bundled else frozenset((path,))
 
 
 # ---- what is done about each clause ----

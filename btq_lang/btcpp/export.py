@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Callable, Mapping
-from typing import Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.document import Attribute, Content, Document, Element, escape
@@ -17,6 +17,7 @@ from btq_lang.btcpp.source import Remark, Source
 from btq_lang.btcpp.spelling import spelt
 from btq_lang.btcpp.trees import Trees
 from btq_lang.btcpp.undeclared import suggested_model, undeclared
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax.tree import Entry, Include, Model, Root, Tree, Verbatim
 from btq_lang.syntax.tree import Models as ModelsItem
 from btq_lang.util.garbage import NotCollecting
@@ -24,6 +25,9 @@ from btq_lang.util.record import Record
 from btq_lang.workspace.comments import NO_COMMENTS
 from btq_lang.workspace.file import SUFFIXES, is_btq
 from btq_lang.workspace.workspace import Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.file import Definition
 
 IncludedAs: TypeAlias = Callable[[str], str]
 
@@ -188,11 +192,23 @@ def _root_attributes(source: Source, head: Entry | None) -> list[Attribute]:
         if root is not None and head is not None:
             source.repair(head, root, 'BTCPP_format="4" is added to the root')
         attributes.insert(0, _FORMAT)
-    main = source.workspace.main_tree(source.path)
-    is_here = main is not None and main.path in source.workspace.closure(source.path)  # else in another of the factory
-    if "main_tree_to_execute" not in given and main is not None and is_here:
+    main = _main_tree(source)
+    if "main_tree_to_execute" not in given and main is not None:
         attributes.append(Attribute("main_tree_to_execute", escape(source.tree_id(main.symbol.name))))
     return attributes
+
+
+def _main_tree(source: Source) -> Definition | None:
+    """The tree that runs when the engine loads the document; None if it is in a file that is registered beside it."""
+    workspace = source.workspace
+    own = workspace.closure(source.path)
+    main = workspace.main_tree(source.path)
+    if main is None or main.path in own:
+        return main
+    if not source.is_bundled or workspace.factory is None:
+        return None
+    mains = [source.scope.find(Kind.TREE, name) for name in workspace.factory.main]
+    return next((each for each in mains if each is not None and each.path in own), main)
 
 
 _FORMAT: Final = Attribute("BTCPP_format", "4")

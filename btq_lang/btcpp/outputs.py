@@ -14,6 +14,7 @@ from btq_lang.btcpp.enforcement import Enforcement, enforced
 from btq_lang.btcpp.export import Export, IncludedAs, export, is_mission, xml_name
 from btq_lang.btcpp.marks import generated_mark
 from btq_lang.btcpp.side_file import Built, side_file
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record
 from btq_lang.workspace.workspace import Workspace
@@ -68,11 +69,11 @@ def outputs(
     enforce: bool = True,
 ) -> tuple[Output, ...]:
     """What a build writes: an output for each given file and each file they include, or one for each mission with all
-    of it.
+    that is registered with it.
 
     Args:
         given: the files to build.
-        bundled: write all that a mission includes into its file.
+        bundled: write all that is registered with a mission into its file.
         verbatim: write exactly what is in the files, without side files.
         enforce: add the nodes that enforce requirements.
     """
@@ -131,9 +132,13 @@ def sources(workspace: Workspace, given: Sequence[str]) -> tuple[str, ...]:
 
 
 def missions(workspace: Workspace, given: Sequence[str]) -> tuple[str, ...]:
-    """The given files that no file includes; all given files, if there are none."""
+    """The given files that no file includes; of a factory with main trees, those that define one; all given files, if
+    there are none."""
     included = workspace.included_files
-    return tuple(path for path in given if path not in included) or tuple(given)
+    mains = workspace.factory.main if workspace.factory is not None else ()
+    found = [path for path in given if path not in included]
+    tops = [path for path in found if any(workspace.files[path].defines(Kind.TREE, name) for name in mains)]
+    return tuple(tops or found or given)
 
 
 def without_tree(workspace: Workspace, given: Sequence[str]) -> Iterator[str]:

@@ -74,8 +74,6 @@ def is_side_file(text: str) -> bool:
 def side_file(workspace: Workspace, built: Built) -> str | None:
     """The text of the side file; None if the mission says nothing beyond its XML."""
     paths = workspace.registered_with(built.path)
-    if len(built.documents) < len(paths):  # a bundle
-        paths = workspace.closure(built.path)
     if not any(_says_more(entry) for path in paths for entry in workspace.files[path].parsed.entries):
         return None
     import hashlib

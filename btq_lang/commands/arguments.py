@@ -175,7 +175,7 @@ def _add_build(commands: _SubParsersAction[Parser]) -> None:
     )
     _add_paths(parser)
     _add_folder(parser, "FOLDER", "where to write; default: beside the missions")
-    parser.add_argument("--bundle", action="store_true", help="each mission in one file with all its includes")
+    parser.add_argument("--bundle", action="store_true", help="each mission in one file with all that it needs")
     parser.add_argument("--target", choices=targets(), help="the engine's version; default: the project's newest")
     parser.add_argument(
         "--no-enforce", action="store_true", help="the plain tree, without the nodes that enforce requirements"

@@ -60,7 +60,7 @@ def build(
     Args:
         path: of the mission in the workspace.
         target: the version of the engine, such as "4.8"; None: the newest of the project.
-        bundle: one file with all that the mission includes.
+        bundle: one file with all that the mission includes, or that its factory registers.
         enforce: add the nodes that enforce requirements.
 
     Raises:
@@ -108,12 +108,13 @@ def errors(
 
     Args:
         given: the requested files.
-        bundled: a mission's includes are in its file.
+        bundled: what is registered with a mission is in its file.
         verbatim: only syntax errors count.
         replaces: the XML is written beside the missions, so that existing XML there does not count.
     """
     built = sources(workspace, given)
-    included = dict.fromkeys(each for path in built for each in workspace.closure(path) if each not in built)
+    with_it = workspace.registered_with if bundled else workspace.closure
+    included = dict.fromkeys(each for path in built for each in with_it(path) if each not in built)
     made = missions(workspace, given) if bundled else built
     replaced: Collection[str] = tuple(map(xml_name, made)) if replaces else ()
     reported = {*built, *included}

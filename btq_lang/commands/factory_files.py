@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Container, Iterable, Iterator
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable, Container, Iterable, Iterator
+from typing import TYPE_CHECKING, Final, Protocol
 
 from btq_lang.btcpp.recognition import included_in
 from btq_lang.catalog.nav2 import PACKAGED
@@ -14,18 +14,31 @@ from btq_lang.workspace.file import GROOT_SUFFIX, SUFFIXES
 from btq_lang.workspace.loader import absolute, matching, package_folder, read
 
 if TYPE_CHECKING:
-    from btq_lang.commands.xml_below import XmlBelow
+
+    class Known(Protocol):
+        """What is known of XML files."""
+
+        def is_mission(self, path: str) -> bool:
+            """Whether an XML file is the engine's."""
+
+        def source_of(self, path: str) -> str | None:
+            """The mission that an XML file was built of, if it is there."""
+
 
 PACKAGE: Final = "package://"
 
 
-def resolved(factory: Factory, root: str, xml: XmlBelow) -> Factory:
+def resolved(
+    factory: Factory, root: str, xml: Known, find: Callable[[str, str], tuple[str, ...]] = matching
+) -> Factory:
     """A factory with its files, and with the patterns that match none, as their package may not be here.
 
     XML that was built of a mission that is there counts as that mission; XML that is not the engine's is left out.
 
     Args:
         root: the folder that patterns are relative to.
+        xml: what is known of the XML files.
+        find: finds the files that match a pattern below a folder.
     """
     lost: dict[str, None] = {}
 
@@ -35,7 +48,7 @@ def resolved(factory: Factory, root: str, xml: XmlBelow) -> Factory:
                 yield PACKAGED[pattern]
                 continue
             folder, inside = _place(pattern, root)
-            found = matching(folder, inside) if folder is not None else ()
+            found = find(folder, inside) if folder is not None else ()
             if not found:
                 lost[pattern] = None
             for path in found:

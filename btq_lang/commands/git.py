@@ -8,16 +8,21 @@ from __future__ import annotations
 import os
 import posixpath
 import subprocess
-from typing import Final
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.btcpp.marks import is_built_of
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.recognition import is_mission
 from btq_lang.btcpp.side_file import SIDE_SUFFIX, xml_path
-from btq_lang.workspace.config import include_candidates
+from btq_lang.util.globs import glob_matcher
+from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import SUFFIXES, File
 from btq_lang.workspace.loader import absolute, find_project, read
 from btq_lang.workspace.workspace import Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.factories import Factory
 
 
 class GitTrouble(Exception):
@@ -38,6 +43,8 @@ class Revisions:
         self.names: Final = names
         self._root: Final = root
         self._missions: dict[str | None, frozenset[str]] = {}  # results of `_sources`
+        self._of_factories: dict[tuple[str, str], tuple[Workspace, ...]] = {}  # results of `_factories`
+        self._paths: dict[str, tuple[str, ...]] = {}  # results of `paths`
 
     def changed(self, folder: str) -> list[tuple[str | None, str | None]]:
         """The missions below a folder whose text changed: their old and new paths, None if absent.
@@ -72,15 +79,51 @@ class Revisions:
         return frozenset(self._outside(path) for path in words.split("\0") if path)
 
     def workspace(self, commit: str, path: str, known: dict[str, str] | None = None) -> Workspace | None:
-        """A file of a commit with all its includes there; None if the commit has no such file.
+        """A file of a commit with all its includes there, in the first factory of today's project file that registers
+        it; None if the commit has no such file.
 
         Args:
             known: texts that override those of the commit, by path.
         """
-        known = known or {}
         project = find_project(path).project
+        if known is None:  # else the file is built XML, restored in memory
+            of_factory = next((each for each in self._factories(commit, project) if path in each.registered), None)
+            if of_factory is not None:
+                return of_factory
+        workspace = self._read(commit, (path,), project, known or {})
+        return workspace if path in workspace.files else None
+
+    def _factories(self, commit: str, project: Project) -> tuple[Workspace, ...]:
+        """The workspaces of a project's factories in a commit."""
+        key = commit, project.root
+        if project.factories and key not in self._of_factories:
+            from btq_lang.commands.factory_files import resolved  # few projects have any
+
+            there = _Registered(self, commit)
+            found = [resolved(each, project.root, there, there.matching) for each in project.factories]
+            self._of_factories[key] = tuple(
+                self._read(commit, (*each.files, *each.node_files), project, {}, each) for each in found
+            )
+        return self._of_factories.get(key, ())
+
+    def paths(self, commit: str) -> tuple[str, ...]:
+        """All files of a commit, sorted."""
+        if commit not in self._paths:
+            words = _git(self._root, "ls-tree", "-r", "--name-only", "-z", commit).split("\0")
+            self._paths[commit] = tuple(sorted(self._outside(path) for path in words if path))
+        return self._paths[commit]
+
+    def _read(
+        self,
+        commit: str,
+        paths: Iterable[str],
+        project: Project,
+        known: Mapping[str, str],
+        factory: Factory | None = None,
+    ) -> Workspace:
+        """Files of a commit with all their includes there."""
         files: dict[str, File] = {}
-        waiting = [path]
+        waiting = [*paths]
         for each in waiting:
             text = known[each] if each in known else self.text(commit, each)
             if text is None or each in files:
@@ -90,7 +133,7 @@ class Revisions:
                 if include.path is not None:
                     found = include_candidates(project, each, include.path.text)
                     waiting += [one for one in found if one in known or self.has(commit, one)][:1]
-        return Workspace(files, project) if path in files else None
+        return Workspace(files, project, factory)
 
     def had_folder(self, path: str) -> bool:
         """Whether a path is a folder in one of the revisions, even if it has been removed."""
@@ -141,6 +184,30 @@ class Revisions:
     def _outside(self, path: str) -> str:
         """A path of git's, relative to the current folder, even if that is reached through links."""
         return absolute(os.path.relpath(f"{self._root}/{path}", os.path.realpath(".")))
+
+
+class _Registered:
+    """What a factory needs to know of the files of a commit."""
+
+    def __init__(self, known: Revisions, commit: str) -> None:
+        self._known: Final = known
+        self._commit: Final = commit
+
+    def matching(self, folder: str, pattern: str) -> tuple[str, ...]:
+        """The files that a pattern below a folder matches, sorted."""
+        matcher = glob_matcher((f"{folder}/{pattern}",))
+        return tuple(path for path in self._known.paths(self._commit) if matcher and matcher.fullmatch(path.strip("/")))
+
+    def is_mission(self, path: str) -> bool:
+        """Whether an XML file is the engine's."""
+        return is_mission(self._known.text(self._commit, path) or "")
+
+    def source_of(self, path: str) -> str | None:
+        """The mission beside an XML file that was built of it."""
+        text = self._known.text(self._commit, path) or ""
+        beside = (f"{posixpath.splitext(path)[0]}{suffix}" for suffix in SUFFIXES)
+        named = (each for each in beside if is_built_of(text, (posixpath.basename(each),)))
+        return next((each for each in named if self._known.has(self._commit, each)), None)
 
 
 class Commit:

@@ -9,9 +9,9 @@ import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems, split_files, workspace_of
 from kept_checks import Kept
 
-from btq_lang.btcpp.opening import open_workspace
 from btq_lang.checks import CHECKS, check
 from btq_lang.checks.view import View
+from btq_lang.commands.opening import open_workspace
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Entry, Tree

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import csv
+import io
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from evidence_logs import as_logged, btlog
+from evidence_logs import rows as transitions
 from in_process import run_btq
+
+from btq_lang.checks import check as check_file
+from btq_lang.commands.opening import open_workspace
+from btq_lang.workspace.workspace import Workspace
 
 Write = Callable[..., None]
 
@@ -156,3 +165,111 @@ def test_the_project_file_counts_before_a_project_of_groot(tmp_path: Path, write
     write("btq.toml", '[[factory]]\nname = "nav"\nload = ["*.btproj"]\nmain = "Dock"\n')
     unused = "unused tree `Main`: nothing refers to it, and the main tree is `Dock`"
     assert check(tmp_path) == [f"trees/main.xml:1:42: warning[unused-tree] {unused}"]
+
+
+FACTORY = '[[factory]]\nname = "nav"\nload = ["*.btq", "lib/**/*.xml"]\nmain = ["Main", "Park"]\n'
+DEMANDED = """\
+QualityReq quick : time-behaviour
+    takes at most 3 s
+    on violation fail
+
+BehaviorTree Main
+    SubTree Dock satisfies quick
+"""
+PARK = '<root BTCPP_format="4"><BehaviorTree ID="Park"><SubTree ID="Dock"/></BehaviorTree></root>\n'
+
+
+@pytest.fixture
+def nav(tmp_path: Path, write: Write) -> Path:
+    write("btq.toml", FACTORY)
+    write("main.btq", DEMANDED)
+    write("dock.btq", "BehaviorTree Dock\n    Grip satisfies quick\n\nAction Grip\n")
+    write("lib/deep/park.xml", PARK)
+    return tmp_path
+
+
+def test_a_bundle_holds_all_that_its_factory_registers(nav: Path) -> None:
+    assert run_btq("build", "--bundle", "-o", "out", cwd=nav)[1] == "wrote out/main.xml\nwrote out/main.qreq.json\n"
+    xml = (nav / "out" / "main.xml").read_text()
+    assert [line.split('"')[1] for line in xml.splitlines() if "<BehaviorTree" in line] == ["Dock", "Park", "Main"]
+    assert '<root BTCPP_format="4" main_tree_to_execute="Main">' in xml
+    assert xml.count('_btq="quick"') == 2  # of `Grip` too, in the other file
+    assert run_btq("build", "dock.btq", "--bundle", "-o", "other", cwd=nav)[0] == 0
+    assert 'main_tree_to_execute="Main"' in (nav / "other" / "dock.xml").read_text()  # its own tree is no main tree
+    (nav / "lib" / "deep" / "park.xml").write_text(PARK.replace('"Dock"', '"Duck"'))
+    code, out, _ = run_btq("build", "--bundle", "-o", "out", cwd=nav)
+    assert (code, out.splitlines()[0]) == (1, "error[unknown-tree]: unknown tree `Duck`; did you mean `Dock`?")
+
+
+def test_a_bundle_begins_with_the_main_tree_of_its_own_file(tmp_path: Path, write: Write) -> None:
+    write("btq.toml", FACTORY)
+    write("main.btq", "BehaviorTree Main\n    SubTree Park\n")
+    write("park.btq", "BehaviorTree Park\n    AlwaysSuccess\n")
+    assert run_btq("build", "--bundle", "-o", "out", cwd=tmp_path)[1] == "wrote out/main.xml\nwrote out/park.xml\n"
+    roots = [(tmp_path / "out" / name).read_text().splitlines()[2] for name in ("main.xml", "park.xml")]
+    assert roots == [f'<root BTCPP_format="4" main_tree_to_execute="{name}">' for name in ("Main", "Park")]
+
+
+def rows(folder: Path, *arguments: str) -> list[dict[str, str]]:
+    table = run_btq("trace", "main.btq", "--format", "csv", *arguments, cwd=folder)[1]
+    return list(csv.DictReader(io.StringIO(table)))
+
+
+def test_the_other_commands_look_at_factories(nav: Path) -> None:
+    held = [[row["how"] for row in rows(nav, *arguments) if row["how"]] for arguments in ((), ("--bundle",))]
+    assert held == [["monitored", "enforced"], ["enforced", "enforced"]]
+    assert "Dock" in run_btq("graph", "lib/deep/park.xml", "--format", "mermaid", cwd=nav)[1]
+
+
+def test_revisions_are_compared_in_the_same_factory(nav: Path) -> None:
+    git = ("git", "-c", "user.name=a", "-c", "user.email=a@b")
+    for words in (("init", "-q"), ("add", "-A"), ("commit", "-qm", "first")):
+        subprocess.run([*git, *words], cwd=nav, check=True)
+    (nav / "lib" / "deep" / "park.xml").write_text(PARK.replace('"Dock"', '"Main"'))
+    (nav / "dock.btq").write_text("BehaviorTree Dock\n    Grab satisfies quick\n\nAction Grab\n")
+    code, out, err = run_btq("diff", "--git", "HEAD", cwd=nav)
+    assert (code, err) == (1, "")
+    assert [line for line in out.splitlines() if line.startswith("~")] == [
+        "~ node model Grip renamed to Grab  dock.btq:4",
+        "~ node Park/SubTree Main changed  lib/deep/park.xml:1",
+    ]
+
+
+def test_a_workspace_in_python_is_that_of_the_factory(nav: Path, write: Write) -> None:
+    def found(workspace: Workspace, path: str) -> list[str]:
+        return [each.message for each in check_file(workspace, f"{nav.as_posix()}/{path}")]
+
+    workspace = open_workspace(str(nav / "main.btq"))
+    assert workspace.factory is not None
+    assert workspace.factory.name == "nav"
+    assert (found(workspace, "main.btq"), found(workspace, "lib/deep/park.xml")) == ([], [])
+    write("more/other.btq", "BehaviorTree Other\n    SubTree Dock\n")
+    other = open_workspace(str(nav / "more"))
+    assert (other.factory, [*other.files]) == (None, [f"{nav.as_posix()}/more/other.btq"])
+    assert found(other, "more/other.btq") == [ELSEWHERE]
+    assert open_workspace(str(nav)).factory is None  # some are in no factory
+    assert found(open_workspace(str(nav), factory="nav"), "main.btq") == []
+    with pytest.raises(ValueError, match=r"^no factory `nix` registers any of these files$"):
+        open_workspace(str(nav), factory="nix")
+
+
+def test_a_workspace_in_python_has_the_pool_of_its_xml(tmp_path: Path, write: Write) -> None:
+    write("package.xml", "<package/>\n")
+    write("trees/main.xml", MAIN)
+    path = f"{tmp_path.as_posix()}/trees/main.xml"
+    nowhere = "unknown tree `Dock`; no file of the project defines it"
+    assert [each.message for each in check_file(open_workspace(path), path)] == [nowhere]
+    write("lib/dock.xml", DOCK)
+    assert check_file(open_workspace(path), path) == ()
+    assert check_file(open_workspace(str(tmp_path)), path) == ()
+
+
+def test_verdicts_join_the_nodes_of_all_files(nav: Path, write: Write) -> None:
+    trees = {"Main": '<SubTree ID="Dock"/>', "Dock": '<Action ID="Grip"/>'}
+    text = "".join(f'<BehaviorTree ID="{name}">{root}</BehaviorTree>' for name, root in trees.items())
+    xml = as_logged(f'<root BTCPP_format="4" main_tree_to_execute="Main">{text}</root>')
+    log = btlog(xml, transitions("0 1R 2R 5000 2S 1S 2I 1I"))
+    (nav / "run.btlog").write_bytes(log)
+    code, out, err = run_btq("verify", "run.btlog", "--mission", "main.btq", "--format", "csv", cwd=nav)
+    assert (code, err) == (1, "")
+    assert [row["verdict"] for row in csv.DictReader(io.StringIO(out))] == ["violated"] * 2

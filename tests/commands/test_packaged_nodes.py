@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from in_process import run_btq
 
-from btq_lang.btcpp.opening import open_workspace
 from btq_lang.catalog.nav2 import PACKAGED
+from btq_lang.commands.opening import open_workspace
 from btq_lang.ide.completion import complete
 from btq_lang.ide.hover import hover
 from btq_lang.ide.navigation import find_references, goto_definition

@@ -15,12 +15,12 @@ from missions import mission
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export, xml_name
 from btq_lang.btcpp.instances import instances
-from btq_lang.btcpp.opening import open_workspace
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import xml_tag
 from btq_lang.checks import check
 from btq_lang.cli import main
+from btq_lang.commands.opening import open_workspace
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Node as Written
 from btq_lang.syntax.tree import Tree

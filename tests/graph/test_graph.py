@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from btq_lang.btcpp.opening import open_workspace
 from btq_lang.cli import main
+from btq_lang.commands.opening import open_workspace
 from btq_lang.graph import DIRECTIONS, FORMATS, draw
 from btq_lang.graph.folding import foldable
 from btq_lang.graph.layout import Size, layout

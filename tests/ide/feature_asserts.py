@@ -16,8 +16,8 @@ from textwrap import dedent
 
 from check_asserts import COMMENT_WITH_MARKERS, split_files, workspace_of
 
-from btq_lang.btcpp.opening import open_workspace
 from btq_lang.checks import check
+from btq_lang.commands.opening import open_workspace
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.ide.actions import Action, code_actions

@@ -15,7 +15,7 @@ from feature_asserts import (
 )
 from rule_pages import blocks
 
-from btq_lang.btcpp.opening import open_workspace
+from btq_lang.commands.opening import open_workspace
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.ide.actions import code_actions
 from btq_lang.util.text import Span

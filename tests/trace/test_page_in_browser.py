@@ -19,7 +19,7 @@ import pytest
 from chromium import ARTIFACTS, CHROMIUM, FLAGS
 from missions import mission
 
-from btq_lang.btcpp.opening import open_workspace
+from btq_lang.commands.opening import open_workspace
 from btq_lang.graph import DIRECTIONS, draw
 from btq_lang.graph.missions import figures
 from btq_lang.trace import write

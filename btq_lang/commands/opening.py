@@ -1,0 +1,56 @@
+"""Files from the disk as a workspace, as the commands see them."""
+
+from __future__ import annotations
+
+from btq_lang.commands.files import Files
+from btq_lang.util.record import replace
+from btq_lang.workspace.workspace import Workspace
+
+
+def open_workspace(*paths: str, factory: str | None = None) -> Workspace:
+    """The workspace of files and folders, with all that they include, in the project of the first path.
+
+    XML finds what it lacks in the files of its project, as in `btq check`; these are in the workspace too. Paths in it
+    are absolute, with `/` between names.
+
+        >>> from btq_lang import open_workspace
+        >>> workspace = open_workspace("examples/laboratory")
+        >>> [path.rpartition("/")[2] for path in workspace.files]
+        ['mission.btq']
+
+    Args:
+        paths: files, and folders for all missions below them, .btq files and the engine's XML; without any, the current
+            folder.
+        factory: the `[[factory]]` of the project file in which the files are looked at, with all that it registers;
+            None: the one that registers all of these files, if there is one, else each file is one of its own.
+
+    Raises:
+        OSError: a file or folder cannot be read, or is not UTF-8; the message names it.
+        ValueError: there is no such factory, or it registers none of these files.
+    """
+    groups, problems = Files().groups(paths or (".",), with_xml=True, for_checks=True)
+    for problem in problems:
+        raise OSError(str(problem))
+    requested = {path for group in groups for path in group.given}
+    for group in groups:
+        of = group.workspace.factory
+        if of is not None and (of.name == factory if factory is not None else requested.issubset(group.given)):
+            return _shown_from_root(group.workspace)
+    if factory is not None:
+        raise ValueError(f"no factory `{factory}` registers any of these files")
+    if len(groups) == 1 and not groups[0].workspace.project.factories:
+        return _shown_from_root(groups[0].workspace)
+    wholes = [group.workspace for group in groups]
+    files = {
+        path: whole.files[path]
+        for group, whole in zip(groups, wholes, strict=True)
+        for given in (*group.given, *sorted(group.pooled), *whole.project.node_files)
+        for path in whole.closure(given)
+    }
+    pools = dict.fromkeys(pool for whole in wholes for pool in whole.project.pools)
+    return _shown_from_root(Workspace(files, replace(wholes[0].project, pools=tuple(pools))))
+
+
+def _shown_from_root(workspace: Workspace) -> Workspace:
+    """The workspace with paths in messages relative to its project, whatever the current folder."""
+    return workspace.with_project(replace(workspace.project, folders=()))
