@@ -14,7 +14,7 @@ all features and the checks that they use takes a third of that time.
     rename.py, moves.py    edits in every file that names a thing
     actions.py             with refactor, block, short_form and unused
     on_type.py, structure.py, outline.py, hints.py   edits while typing, folding, outline, inlay hints and lenses
-    semantic_tokens.py     with colours, stretches, appearance and legend
+    semantic_tokens.py     with colours, stretches, appearance and legend; xml_colours: the same of scripts in XML
     readiness.py           computes results before they are requested
 """
 
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from btq_lang.ide.semantic_tokens import encoded_within
     from btq_lang.ide.signature import signature_help
     from btq_lang.ide.structure import document_links, folding_ranges, selection_range
+    from btq_lang.ide.xml_colours import colours_in_xml, encoded_in_xml
 
 __all__ = [
     "Call",
@@ -56,11 +57,13 @@ __all__ = [
     "code_actions",
     "code_lenses",
     "colours",
+    "colours_in_xml",
     "complete",
     "delta",
     "document_links",
     "document_symbols",
     "documented",
+    "encoded_in_xml",
     "encoded_within",
     "explain",
     "find_references",
@@ -104,6 +107,7 @@ _HOMES = {
     "semantic_tokens": ("encoded_within",),
     "signature": ("signature_help",),
     "structure": ("document_links", "folding_ranges", "selection_range"),
+    "xml_colours": ("colours_in_xml", "encoded_in_xml"),
 }
 # A module of this package has the function's own name.
 _CALLED = {

@@ -13,7 +13,7 @@ from operator import is_, is_not, ne
 from typing import TypeVar
 
 from btq_lang.ide.semantic_tokens import groups, known_of, stretch_of
-from btq_lang.ide.stretches import Known, Stretch, encoded
+from btq_lang.ide.stretches import Encoded, Known, Stretch, encoded
 from btq_lang.syntax.tree import Entry
 from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Encoding
@@ -146,7 +146,11 @@ def _made(whole: str, stretch: Stretch, known: Known, encoding: Encoding) -> Par
     known.asked = set()
     text = whole[stretch.start : stretch.end]
     lines = len(LINE_END.findall(text)) if "\r" in text else text.count("\n")
-    made = encoded(text, stretch, known, encoding)
+    return part_of(encoded(text, stretch, known, encoding), lines)
+
+
+def part_of(made: Encoded, lines: int) -> Part:
+    """The part of encoded tokens, in a text of so many lines."""
     if not made.tokens:
         return Part(0, 0, "", lines)
     first = made.tokens[0].partition(",")[0]

@@ -103,7 +103,7 @@ def encoded(text: str, stretch: Stretch, known: Known, encoding: Encoding) -> En
             tokens.append(token)
             at = end
     tokens += _between(text, at, len(text))
-    return _encoded(text, tokens, encoding)
+    return encode(text, tokens, encoding)
 
 
 class _Words(Listener):
@@ -212,7 +212,7 @@ def _lexed(text: str) -> list[Token]:
     return found
 
 
-def _encoded(text: str, tokens: list[Token], encoding: Encoding) -> Encoded:
+def encode(text: str, tokens: list[Token], encoding: Encoding) -> Encoded:
     """The tokens, which are in the order of the text; one that crosses a line end becomes one on each line."""
     is_plain = encoding == "code-points" or text.isascii()
     has_returns = "\r" in text

@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 import asyncio
+from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
 from btq_lang import ide as features
 from btq_lang.ide.legend import MODIFIERS, TYPES
-from btq_lang.lsp.editor import Server
+from btq_lang.lsp.editor import Refused, Server
 from btq_lang.lsp.protocol import Json, Plain
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.workspace import Workspace
 
 
 def register(server: Server) -> None:
     convert = server.convert
 
     def colours(document: types.TextDocumentIdentifier) -> tuple[str, features.Colours] | None:
-        place = server.at(document)
+        place = server.at(document, reads=True)
         if place is None:
             return None
+        _raise_if_unread(*place)
+        make = features.colours if place[0].files[place[1]].origin is None else features.colours_in_xml
         server.count += 1
-        found = server.tokens[place[1]] = str(server.count), features.colours(*place, convert.encoding)
+        found = server.tokens[place[1]] = str(server.count), make(*place, convert.encoding)
         return found
 
     async def made(document: types.TextDocumentIdentifier) -> None:
@@ -64,9 +70,24 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, legend)
     def part(params: types.SemanticTokensRangeParams) -> Plain:
-        place = server.at(params.text_document)
+        place = server.at(params.text_document, reads=True)
         if place is None:
             return {"data": []}
         workspace, path = place
+        _raise_if_unread(workspace, path)
         within = convert.span(workspace, path, params.range)
-        return {"data": features.encoded_within(workspace, path, within, convert.encoding)}
+        make = features.encoded_within if workspace.files[path].origin is None else features.encoded_in_xml
+        return {"data": make(workspace, path, within, convert.encoding)}
+
+
+class Later(Refused):
+    """A request that has no answer now: an editor keeps the last one."""
+
+    CODE = -32802  # ServerCancelled
+
+
+def _raise_if_unread(workspace: Workspace, path: str) -> None:
+    """Keep the colours of XML while a key has made it unreadable."""
+    origin = workspace.files[path].origin
+    if origin is not None and not origin.is_complete:
+        raise Later("this XML cannot be read")

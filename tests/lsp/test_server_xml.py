@@ -245,6 +245,20 @@ def test_what_stands_in_xml_is_explained_and_found(foreign: Editor) -> None:
     assert [lens["command"]["title"] for lens in lenses] == ["1 call", "1 call"]
 
 
+def test_entries_in_xml_are_coloured(foreign: Editor) -> None:
+    """Nothing else is; while the XML cannot be read, the editor keeps what it has."""
+    asked = foreign.document("dock.xml")
+    tokens = foreign.request("textDocument/semanticTokens/full", **asked)
+    assert tokens["data"][:3] == [7, 29, 5]
+    assert len(tokens["data"]) == 5
+    foreign.change("dock.xml", DOCK[:-9])
+    refused = foreign.ask("textDocument/semanticTokens/full/delta", **asked, previousResultId=tokens["resultId"])
+    assert refused["error"] == {"code": -32802, "message": "this XML cannot be read"}
+    foreign.change("dock.xml", DOCK.replace("<root", "\n<root"))
+    moved = foreign.request("textDocument/semanticTokens/full/delta", **asked, previousResultId=tokens["resultId"])
+    assert moved["edits"] == [{"start": 0, "deleteCount": 5, "data": [8, *tokens["data"][1:]]}]
+
+
 def test_commands_for_xml(foreign: Editor) -> None:
     """A path, the picture with places in the XML, the overview, and the conversion of what is saved."""
 
