@@ -7,7 +7,7 @@ nowhere in it, and what the code does without a port is said only where the plac
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.cpp_classes import ENGINE
@@ -143,26 +143,17 @@ def _kept(declared: Node) -> str:
         value = None if value == declared else value
         return _in_condition(condition, value is not None and text_of(value).startswith("!"), False)
     function = enclosing(declared, ("function_definition", "lambda_expression"))
-    found = []
-    for node in _after(function, declared):
-        if node.type == "identifier" and text_of(node) == name:
-            found.append(_without(node))
-    if not found:
-        return _IGNORES
-    known = [each for each in found if each in ("fails", "goes on")]
-    return known[0] if known else ""
-
-
-def _after(function: Node | None, node: Node) -> Iterator[Node]:
-    for each in walk(function) if function is not None else ():
-        if each.start_byte >= node.end_byte:
-            yield each
+    for node in walk(function) if function is not None else ():  # the first use shows what is expected
+        if node.start_byte >= declared.end_byte and node.type == "identifier" and text_of(node) == name:
+            what = _without(node)
+            return "" if what == _IGNORES else what
+    return _IGNORES
 
 
 def _fails(branch: Node) -> bool:
-    """Whether a branch throws, or returns FAILURE."""
+    """Whether a branch throws, ends the program, or returns FAILURE."""
     for each in walk(branch, _FUNCTIONS):
-        if each.type == "throw_statement":
+        if each.type == "throw_statement" or (each.type == "call_expression" and callee(each)[1] in _ENDS):
             return True
         if each.type == "return_statement" and text_of(each).rstrip("; ").endswith("NodeStatus::FAILURE"):
             return True
@@ -176,4 +167,5 @@ def _leaves(branch: Node) -> bool:
 _IGNORES: Final = "ignores"
 _PROVIDES: Final = re.compile(r"provided\w*Ports").fullmatch
 _FALLS_BACK: Final = re.compile(r"get\w*Or[A-Z]\w*").fullmatch
+_ENDS: Final = ("exit", "abort", "terminate")
 _FUNCTIONS: Final = frozenset(("lambda_expression",))

@@ -441,6 +441,8 @@ WITHOUT = {
     'if (getInput("p", p)) { use(p); } else { throw 1; }': "fails",
     'use(getInput<int>("p").value_or(3));': "goes on",
     'BT::getInputOrBlackboard("p", p);': "goes on",
+    'auto r = getInput<int>("p"); if (r) { return use(r.value()); } return later();': "",
+    'if (!getInput("p", p)) { exit(-1); }': "fails",
     'getInput("p", p);': "ignores",
     '[[maybe_unused]] auto r = getInput("p", p);': "ignores",
     'if (flag && !getInput("p", p)) { throw 1; }': "",
