@@ -143,11 +143,14 @@ def _findings(
 ) -> tuple[list[Finding], tuple[str, ...]]:
     """What is wrong with the requested files, and these files; a file of several factories is checked in each."""
     of_file: dict[str, list[tuple[Factory | None, tuple[Diagnostic, ...]]]] = {}
+    groups = tuple(groups)
     for group in groups:
         for path, found in _found(group, options.jobs):
             if path in group.damaged:  # the bytes that cannot be decoded are already reported
                 found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
             of_file.setdefault(path, []).append((group.workspace.factory, found))
+    if len(groups) > 1:  # projects and factories
+        of_file = {path: of_file[path] for path in sorted(of_file)}
     findings = [
         Finding(path, texts[path], each)
         for path, found_in_each in of_file.items()

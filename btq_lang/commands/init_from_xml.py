@@ -26,6 +26,9 @@ _HEAD = f"""\
 # What holds for all missions of this project
 engine = {json.dumps(VERSIONS)}  # the versions of BehaviorTree.CPP that must load them
 """
+_EXCLUDED = """\
+exclude = {}  # converted; delete the line when `btq build` writes these files
+"""
 
 
 def run(options: Namespace) -> int:
@@ -40,15 +43,19 @@ def run(options: Namespace) -> int:
         print(f"btq init: no BehaviorTree.CPP XML below {options.folder}; nothing was written", file=sys.stderr)
         return 2
     factories = [*_factories(workspace, folder)]
+    excluded: list[str] = []
     if options.convert:
         from btq_lang.commands.import_xml import run as convert
 
         files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
         if code := convert(Namespace(files=files, output=None, force=False, keep_v3=False)):
             return code
+        trees = [path for path, file in workspace.files.items() if file.of_type(Tree)]
+        excluded = [f"/{each}.xml" for each in _patterns(workspace, trees, folder)]
     ending = ".btq" if options.convert else ".xml"
     try:
-        write_whole(target, "\n".join((_HEAD, *(each.written(ending) for each in factories))))
+        head = _HEAD + (_EXCLUDED.format(json.dumps(excluded, ensure_ascii=False)) if excluded else "")
+        write_whole(target, "\n".join((head, *(each.written(ending) for each in factories))))
     except OSError as error:
         print(f"btq init: {shown(target)}: {error.strerror}", file=sys.stderr)
         return 2

@@ -2,7 +2,7 @@
 
 A file depends on itself; on the project file; on what it includes, directly or not, also where an included file is not
 there any more; in a factory on all files of it; and XML on the files of its pool that define the trees and nodes it
-uses, or on all of them if a tree is nowhere.
+uses, or did so at the revision.
 
 One invariant: a file that is left out has the findings that it had at the revision, as far as they depend on files.
 """
@@ -13,13 +13,16 @@ import posixpath
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
+from btq_lang.btcpp.recognition import defined_in
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.commands.git import GitTrouble, revisions
 from btq_lang.util.record import replace
 from btq_lang.workspace.config import include_candidates
+from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
 
 if TYPE_CHECKING:
     from btq_lang.commands.files import Group
+    from btq_lang.commands.git import Revisions
     from btq_lang.workspace.workspace import Workspace
 
 
@@ -31,16 +34,17 @@ def affected(groups: Iterable[Group], revision: str) -> tuple[Group, ...]:
     """
     if ".." in revision:
         raise GitTrouble(f"expected one revision, which the files are compared with, not `{revision}`")
-    of_folder: dict[str, frozenset[str]] = {}
+    of_folder: dict[str, tuple[Revisions, frozenset[str]]] = {}
     done: list[Group] = []
     for group in groups:
         for path in group.given[:1]:
             folder = posixpath.dirname(path)
             if folder not in of_folder:
-                of_folder[folder] = revisions(revision, folder).changed_paths()
-            changed = of_folder[folder]
-            concerned = _Concerned(group.workspace, changed)
+                known = revisions(revision, folder)
+                of_folder[folder] = known, known.changed_paths()
+            known, changed = of_folder[folder]
             if group.project_file not in changed:
+                concerned = _Concerned(group.workspace, changed, known)
                 group = replace(group, given=tuple(filter(concerned, group.given)))
         done.append(group)
     return tuple(done)
@@ -49,9 +53,11 @@ def affected(groups: Iterable[Group], revision: str) -> tuple[Group, ...]:
 class _Concerned:
     """Whether a change of some files concerns a file of a workspace."""
 
-    def __init__(self, workspace: Workspace, changed: frozenset[str]) -> None:
+    def __init__(self, workspace: Workspace, changed: frozenset[str], known: Revisions) -> None:
         self._workspace = workspace
         self._changed = changed
+        self._known = known
+        self._defined_before: dict[str, frozenset[str]] = {}
 
     def __call__(self, path: str) -> bool:
         seen: set[str] = set()
@@ -75,8 +81,17 @@ class _Concerned:
         pool = workspace.project.pool_of(path) if workspace.files[path].origin else None
         if pool is None:
             return
+        changed = [each for each in self._changed if each.startswith(pool)]
         for kind, name in workspace.files[path].used_names:
-            found = workspace.pooled(path, kind, name) if kind in (Kind.TREE, Kind.MODEL) else ()
-            yield from (each.path for each in found)
-            if kind is Kind.TREE and workspace.find(path, kind, name) is None:
-                yield from (each for each in self._changed if each.startswith(pool) and each.endswith(".xml"))
+            if kind in (Kind.TREE, Kind.MODEL) and not workspace.scope(path).defines(kind, name):
+                yield from (each.path for each in workspace.pooled(path, kind, name))
+                yield from (each for each in changed if self._defined(each, name))
+
+    def _defined(self, path: str, name: str) -> bool:
+        """Whether a changed file may have defined a tree or a node at the revision."""
+        if path.endswith(SUFFIXES):
+            return name in (self._known.text(self._known.old, path) or "")
+        if path not in self._defined_before:
+            text = self._known.text(self._known.old, path) if path.endswith(XML_SUFFIXES) else None
+            self._defined_before[path] = defined_in(text or "")
+        return name in self._defined_before[path]

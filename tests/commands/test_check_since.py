@@ -134,3 +134,22 @@ def test_what_since_cannot_do(folder: Path) -> None:
     message = "btq check: --update-baseline needs all findings; leave out --since\n"
     options = ("--since", "HEAD", "--baseline", "a.json", "--update-baseline")
     assert run_btq("check", *options, cwd=folder) == (2, "", message)
+
+
+def test_xml_depends_on_what_its_pool_has_lost(tmp_path: Path) -> None:
+    def xml(content: str) -> str:
+        return f'<root BTCPP_format="4">{content}</root>'
+
+    odd = xml('<BehaviorTree ID="Main"><Sequence><Go goal="1"/><Dock/></Sequence></BehaviorTree>')
+    (tmp_path / "main.xml").write_text(odd.replace("<Dock/>", "<Sequnce/>"))
+    (tmp_path / "other.xml").write_text(odd.replace("Go", "Stay").replace("<Dock/>", "<Sequnce/>"))
+    models = tmp_path / "lib" / "models.xml"
+    models.parent.mkdir()
+    models.write_text(xml('<TreeNodesModel><Action ID="Go"><input_port name="goal"/></Action></TreeNodesModel>'))
+    git(tmp_path, "init", "-q", "-b", "main")
+    commit(tmp_path)
+    assert found(tmp_path) == []
+    models.write_text(xml("<TreeNodesModel/>"))
+    assert found(tmp_path) == ["main.xml"]
+    models.unlink()
+    assert found(tmp_path) == ["main.xml"]

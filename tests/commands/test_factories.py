@@ -273,3 +273,11 @@ def test_verdicts_join_the_nodes_of_all_files(nav: Path, write: Write) -> None:
     code, out, err = run_btq("verify", "run.btlog", "--mission", "main.btq", "--format", "csv", cwd=nav)
     assert (code, err) == (1, "")
     assert [row["verdict"] for row in csv.DictReader(io.StringIO(out))] == ["violated"] * 2
+
+
+def test_findings_of_several_factories_are_in_the_order_of_files(tmp_path: Path, write: Write) -> None:
+    write("btq.toml", '[[factory]]\nname = "a"\nload = ["c.btq"]\n[[factory]]\nname = "b"\nload = ["a.btq"]\n')
+    for name in "abc":
+        write(f"{name}.btq", f"BehaviorTree {name.upper()}\n    Sequnce\n        Dock\n        Retry\n            Go\n")
+    places = [line.split(": ")[0] for line in check(tmp_path)]
+    assert places == ["a.btq:2:5", "a.btq:4:9", "b.btq:2:5", "b.btq:4:9", "c.btq:2:5", "c.btq:4:9"]

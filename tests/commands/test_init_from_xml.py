@@ -78,7 +78,12 @@ def test_xml_is_converted_and_what_changes_is_said(tmp_path: Path, write: Write)
     assert 'dock.xml:1:2: BTCPP_format="4" is added\n' in err
     assert (tmp_path / "btq.toml").read_text().endswith('load = ["*.btq"]\nmain = "Main"\n')
     assert sorted(path.name for path in tmp_path.glob("*.btq")) == ["dock.btq", "main.btq"]
-    assert run_btq("check", "main.btq", "dock.btq", cwd=tmp_path)[:2] == (0, "No problems found in 2 files\n")
+    assert 'exclude = ["/*.xml"]  # converted; delete' in (tmp_path / "btq.toml").read_text()
+    assert run_btq("check", cwd=tmp_path)[:2] == (0, "No problems found in 2 files\n")
+    assert run_btq("build", "--force", cwd=tmp_path)[0] == 0
+    toml = (tmp_path / "btq.toml").read_text()
+    (tmp_path / "btq.toml").write_text("".join(line for line in toml.splitlines(True) if "exclude" not in line))
+    assert run_btq("check", cwd=tmp_path)[:2] == (0, "No problems found in 2 files\n")
 
 
 def test_nothing_to_start_from(tmp_path: Path) -> None:
