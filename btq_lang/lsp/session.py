@@ -16,6 +16,7 @@ from btq_lang.diagnostics.rules import RULES, Severity
 from btq_lang.util.record import replace
 from btq_lang.util.text import LineIndex
 from btq_lang.workspace.findings import Findings
+from btq_lang.workspace.overrides import Override
 
 if TYPE_CHECKING:  # imported on use: the server must start fast
     from btq_lang.commands.files import Files
@@ -131,7 +132,8 @@ class Session:
             workspace = group.workspace
             if severities:
                 project = workspace.project
-                workspace = workspace.with_project(replace(project, severities=(*project.severities, *severities)))
+                overrides = (*project.overrides, Override(("*",), severities))  # for all files, and the last
+                workspace = workspace.with_project(replace(project, overrides=overrides))
             known = before.pop((workspace.factory, *workspace.files), None)
             if known is not None and known is not workspace:
                 advance(known, workspace)

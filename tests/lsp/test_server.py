@@ -238,6 +238,14 @@ def test_settings_change_live(tmp_path: Path) -> None:
     assert editor.close() == ""
 
 
+def test_a_severity_of_the_editor_counts_before_the_projects_overrides(tmp_path: Path) -> None:
+    (tmp_path / "btq.toml").write_text('[[overrides]]\ninclude = ["*"]\nignore = ["unknown-node"]\n')
+    editor = Editor(tmp_path, initializationOptions={"rules": {"unknown-node": "error"}})
+    editor.open("main.btq", WRONG)
+    assert [each["severity"] for each in editor.published("main.btq")["diagnostics"]] == [1]
+    assert editor.close() == ""
+
+
 def test_settings_are_asked_for_where_the_editor_has_them(tmp_path: Path) -> None:
     (tmp_path / "main.btq").write_text(WRONG, encoding="utf-8")
     editor = Editor(tmp_path, capabilities={"workspace": {"configuration": True}})
