@@ -201,7 +201,7 @@ def _changes_meaning(
     for changed, made in edits.items():
         after = with_source(after, changed, apply_edits(workspace.files[changed].source, made))
         if why := _is_kept(after.files[changed]):
-            return f"`{name}` cannot stand in {workspace.project.shown(changed)}, {why} then"
+            return f"`{name}` cannot be written in {workspace.project.shown(changed)}, {why} then"
     moved = after.files[path].from_disk(_after(_start(workspace, found), edits[path]))
     now = at(after, path, moved) if moved is not None else None
     if now is None or not _is_called(now.mention, name):

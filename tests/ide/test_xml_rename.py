@@ -115,7 +115,7 @@ def test_a_name_is_renamed_in_xml_from_a_mission() -> None:
         ("<Seq|uence", "Dock", "cannot rename `Sequence`: the engine defines it"),
         ('ID="D|ock"', "Main", "`Main` is already in use: trees.xml, line 1"),
         ('ID="D|ock"', "Sequence", "`Sequence` is a built-in node"),
-        ("<P|ick", "1Pick", "`1Pick` cannot stand in trees.xml, which cannot be read then"),
+        ("<P|ick", "1Pick", "`1Pick` cannot be written in trees.xml, which cannot be read then"),
         ("{she|lf}", "far away", "the name of an entry must not contain braces, quotes, spaces, `@` or `=`"),
         ("{she|lf}", "ok", "`ok` is already in use: trees.xml, line 7"),
     ],

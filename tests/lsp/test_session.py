@@ -481,12 +481,12 @@ def test_xml_that_can_be_read_again_is_checked_only_where_it_differs(
             checked.append(answer.key[2].item.name.text)
         return compute(store, answer)
 
-    trees = [tree(name, "") for name in ("One", "Two", "Three")]
-    assert found(*trees) == [("missing-port", 2), ("missing-port", 5), ("missing-port", 8)]
+    trees = [tree(name, 'to="1"') for name in ("One", "Two", "Three")]
+    assert found(*trees) == [("unknown-port", 2), ("unknown-port", 5), ("unknown-port", 8)]
     monkeypatch.setattr(Store, "_compute", counted)
     for end in ("</root", "</roo", "<Pick></root>", "</root"):
         assert [rule for rule, _ in found(*trees, end=end)] == ["xml-syntax"]
-    assert found(trees[0], tree("Two", 'from="1"'), trees[2]) == [("missing-port", 2), ("missing-port", 8)]
+    assert found(trees[0], tree("Two", 'from="1"'), trees[2]) == [("unknown-port", 2), ("unknown-port", 8)]
     assert checked == ["Two"]
 
 
