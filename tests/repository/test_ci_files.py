@@ -51,6 +51,24 @@ def test_a_hook_runs(hook: str, text: str, code: int, tmp_path: Path, programs: 
     assert run.returncode == code, run.stdout + run.stderr
 
 
+@pytest.mark.skipif(os.name == "nt", reason="the steps are for a POSIX shell")
+def test_the_hook_and_the_action_check_projects_of_xml(tmp_path: Path, programs: dict[str, str]) -> None:
+    (tmp_path / "trees").mkdir()
+    for name, child in (("main", '<SubTree ID="Dock"/>'), ("dock", '<Timeout mesc="3"><Go/></Timeout>')):
+        tree = f'<BehaviorTree ID="{name.capitalize()}">{child}</BehaviorTree>'
+        (tmp_path / "trees" / f"{name}.xml").write_text(f'<root BTCPP_format="4">\n{tree}\n</root>\n')
+    (tmp_path / "package.xml").write_text("<package/>\n")
+    (entry,) = (each for each in read(".pre-commit-hooks.yaml") if each["id"] == "btq-check")
+    run = subprocess.run(entry["entry"].split(), cwd=tmp_path, env=programs, capture_output=True, text=True)
+    assert (run.returncode, run.stdout.splitlines()[-1]) == (1, "Found 1 error")
+    (step,) = (each for each in read("action.yml")["runs"]["steps"] if each.get("name") == "Check")
+    inputs = {"BTQ_PATHS": ".", "BTQ_SEVERITY": "warning"}
+    run = subprocess.run([*BASH, step["run"]], cwd=tmp_path, env={**programs, **inputs}, capture_output=True, text=True)
+    assert run.returncode == 1
+    (line,) = run.stdout.splitlines()
+    assert line.startswith("::error file=trees/dock.xml,line=2,")
+
+
 @pytest.mark.parametrize("hook", ["btq-check", "btq-build"])
 def test_a_hook_looks_at_all_missions_whatever_is_committed(hook: str) -> None:
     """A model, a project file, or a mission that is taken away breaks others; XML may be edited by hand."""
