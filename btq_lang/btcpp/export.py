@@ -23,7 +23,7 @@ from btq_lang.syntax.tree import Models as ModelsItem
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import Record
 from btq_lang.workspace.comments import NO_COMMENTS
-from btq_lang.workspace.file import SUFFIXES, is_btq
+from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def xml_path(workspace: Workspace, path: str, included: str) -> str:
 
 def is_mission(workspace: Workspace, path: str) -> bool:
     """Whether a file is written in this language, and not in XML."""
-    return workspace.files[path].origin is None and is_btq(path)
+    return workspace.files[path].is_btq
 
 
 def xml_name(path: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btq_lang.workspace.file import SUFFIXES, File, Origin
+from btq_lang.workspace.file import File, Origin, is_xml
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -15,12 +15,8 @@ def with_source(workspace: Workspace, path: str, text: str) -> Workspace:
 
 
 def file_of(path: str, text: str) -> File:
-    """The file for a path and its text; XML is imported without changing it, whatever its version.
-
-    XML is what is called .xml, and what begins with `<` under an unknown suffix: some projects call trees for Groot
-    .tree or .bt.
-    """
-    if path.endswith(SUFFIXES) or not (path.endswith(".xml") or text.lstrip().startswith("<")):
+    """The file for a path and its text; XML is imported without changing it, whatever its version."""
+    if not is_xml(path, text):
         return File(path, text)
     from btq_lang.btcpp.importing import import_xml  # needs lxml, which most missions do without
 

@@ -35,7 +35,7 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Edit, LineIndex, Span, apply_edits
-from btq_lang.workspace.file import is_btq
+from btq_lang.workspace.file import is_xml
 from btq_lang.workspace.node_names import tag_of
 from btq_lang.workspace.placeholders import is_placeholder
 
@@ -102,7 +102,7 @@ def restored(xml: str, imported: str, side: str) -> Restored | None:
         return None
     if hashlib.sha256(xml.encode("utf-8", "replace")).hexdigest() == built:
         return Restored(mission, True, place, others=others)
-    sources = ((None, mission), *((file, text) for file, text in others if is_btq(file)))
+    sources = ((None, mission), *((file, text) for file, text in others if not is_xml(file, text)))
     merged = _merged(parse(imported), [(file, parse(text)) for file, text in sources], place)
     document = read(xml).document if guards else None
     return merged if document is None else replace(merged, manual_edits=manual_edits(document.root, guards))

@@ -11,7 +11,7 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.syntax.tree import Entry, Include, quote
 from btq_lang.util.text import Span, counted
-from btq_lang.workspace.file import is_btq, is_of_package
+from btq_lang.workspace.file import is_of_package
 
 if TYPE_CHECKING:
     from btq_lang.workspace.queries import Store
@@ -83,7 +83,7 @@ def include_with_errors(view: View, entry: Entry, errors_in: ErrorsIn) -> Iterat
         shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
         which = f"`{shown}`" if path == target else f"`{shown}`, which that file includes,"
         notes: tuple[str, ...] = ("`btq build` refuses every file that includes it",)
-        if len(errors) > 1 and not is_btq(path):  # XML in a folder is checked only if it is named
+        if len(errors) > 1 and lookups.is_xml(view.store, path):  # XML in a folder is checked only if it is named
             notes += (f"run `btq check {shown}` to see all of them",)
         yield Diagnostic(
             "include-with-errors",

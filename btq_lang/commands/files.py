@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.util.record import Record, replace
-from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES, File
+from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES, File, is_xml
 from btq_lang.workspace.loader import (
     Found,
     LoadProblem,
@@ -189,7 +189,7 @@ class Files:
 
     def _may_be_xml(self, path: str) -> bool:
         text = self.overlay.get(path)
-        return not path.endswith(SUFFIXES) and (text is None or text.lstrip().startswith("<"))
+        return not path.endswith(SUFFIXES) if text is None else is_xml(path, text)
 
     def _pools(self, tops: Mapping[str, str], home: Found) -> dict[str, tuple[str, ...]]:
         """The pools of XML files, each with all files in it that may be missions."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from btq_lang.btcpp.enforcement import ClauseEnforcement, clause_enforcements, unasked
 from btq_lang.requirements.definitions import requirement
 from btq_lang.syntax.tree import Claim, Requirement
-from btq_lang.workspace.file import Definition, is_btq
+from btq_lang.workspace.file import Definition
 from btq_lang.workspace.inputs import everything
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
@@ -56,8 +56,9 @@ def _missions(workspace: Workspace, path: str, found: Definition) -> tuple[str, 
 def missions_of(workspace: Workspace, path: str) -> tuple[str, ...]:
     """The file itself, or the missions that it is a part of."""
     if path not in workspace.included_files:
-        return (path,) if is_btq(path) else ()
-    missions = (other for other in workspace.files if other not in workspace.included_files and is_btq(other))
+        return (path,) if workspace.files[path].is_btq else ()
+    tops = (other for other in workspace.files.values() if other.path not in workspace.included_files)
+    missions = (other.path for other in tops if other.is_btq)
     return tuple(one for one in missions if path in workspace.closure(one))
 
 

@@ -21,7 +21,7 @@ from btq_lang.ide.meaning import ENGINE, STANDARD, Found, Subject, at, definitio
 from btq_lang.syntax.tree import is_name, quote
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, Span, apply_edits
-from btq_lang.workspace.file import File, is_btq
+from btq_lang.workspace.file import File
 from btq_lang.workspace.references import Mention, What
 from btq_lang.workspace.workspace import Workspace
 
@@ -99,7 +99,7 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
 def _is_kept(file: File) -> str:
     """Why a file cannot be edited; empty if it can: missions and XML can."""
     if file.origin is None:
-        return "" if is_btq(file.path) else "which is not a .btq file"
+        return "" if file.is_btq else "which is not a .btq file"
     if is_generated(file.origin.text):
         return "which a build wrote"
     return "" if file.origin.is_complete else "which cannot be read"

@@ -111,7 +111,12 @@ class File:
     @property
     def _is_read(self) -> bool:
         """Whether its text is in this language."""
-        return self.origin is not None or is_btq(self.path)
+        return self.origin is not None or self.is_btq
+
+    @property
+    def is_btq(self) -> bool:
+        """Whether it is written in this language; an XML file may be included too."""
+        return self.origin is None and not is_xml(self.path, self.text)
 
     @property
     def source(self) -> str:
@@ -129,7 +134,7 @@ class File:
     @property
     def is_understood(self) -> bool:
         """Whether a name that is not in this file's tree is not in the file."""
-        return self.origin.is_complete if self.origin else is_btq(self.path)
+        return self.origin.is_complete if self.origin else self.is_btq
 
     @cached_property
     def facts(self) -> dict[int, Facts]:
@@ -414,9 +419,10 @@ class Origin(Record):
     defines: frozenset[str] = frozenset()
 
 
-def is_btq(path: str) -> bool:
-    """Whether a file is in this language; an XML file may be included too."""
-    return not path.endswith(".xml")
+def is_xml(path: str, text: str) -> bool:
+    """Whether a file is XML: it is called .xml, or begins with `<` under an unknown suffix; some projects call trees for
+    Groot .tree or .bt."""
+    return not path.endswith(SUFFIXES) and (path.endswith(".xml") or text.lstrip().startswith("<"))
 
 
 def is_of_package(include: Include) -> bool:

@@ -170,3 +170,16 @@ def test_an_empty_text_in_an_editor_counts_instead_of_the_file(tmp_path: Path) -
     files.overlay[str(tmp_path / "b.xml")] = ""
     ((group,), problems) = files.groups([str(tmp_path / "a.xml")], for_checks=True)
     assert (problems, group.workspace.files[str(tmp_path / "b.xml")].source) == ((), "")
+
+
+def test_xml_of_any_name_is_xml_to_every_command(tmp_path: Path) -> None:
+    (tmp_path / "dock.tree").write_text('<root BTCPP_format="4"><BehaviorTree ID="Dock"><Go/></BehaviorTree></root>\n')
+    (tmp_path / "main.btq").write_text('include "dock.tree"\n\nBehaviorTree Main\n    SubTree Dock\n')
+    assert run_btq("check", "main.btq", "dock.tree", cwd=tmp_path)[:2] == (0, "No problems found in 2 files\n")
+    assert run_btq("build", cwd=tmp_path)[1] == "wrote main.xml\n"
+    assert '<include path="dock.tree"/>' in (tmp_path / "main.xml").read_text()
+    assert run_btq("build", "dock.tree", cwd=tmp_path) == (2, "", "btq: dock.tree: is XML already\n")
+    assert run_btq("build", "--bundle", "-o", "out", cwd=tmp_path)[0] == 0
+    (tmp_path / "dock.tree").write_text("<root><Go>")
+    broken = "error[include-with-errors] `dock.tree` has"
+    assert broken in run_btq("check", "main.btq", "--output-format", "concise", cwd=tmp_path)[1]
