@@ -85,7 +85,7 @@ def requirement_line(
 def _lines(source: Source, entry: Entry, clause: NodeClause) -> Iterator[str]:
     if isinstance(clause, Satisfices):
         for quality in clause.qualities:
-            yield f"satisfices {'.'.join(name.text for name in quality.path.names)}"
+            yield f"satisfices {quality.path.text}"
             for requirement in quality.requirements:
                 yield _requirement(source, entry, requirement, quality.path)
     elif isinstance(clause, Satisfies):

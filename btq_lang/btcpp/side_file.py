@@ -244,7 +244,7 @@ def _concerns(workspace: Workspace, paths: tuple[str, ...], nodes: Nodes, runnin
             parts += [(nodes.of(node), node.clauses) for node in entry.item.walk() if node.clauses]
             for node, clauses in parts:
                 qualities: list[Json] = [
-                    ".".join(name.text for name in quality.path.names)
+                    quality.path.text
                     for clause in clauses
                     if isinstance(clause, Satisfices)
                     for quality in clause.qualities

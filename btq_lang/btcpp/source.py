@@ -6,7 +6,7 @@ One invariant: only `repair` and `problem` change it; they keep one remark for a
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import Final
 
 from btq_lang.btcpp.constants import types_below
 from btq_lang.btcpp.document import Comment, Content, Raw, escape
@@ -16,21 +16,11 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.syntax.tree import Entry, Verbatim, Word
 from btq_lang.util.record import Record
-from btq_lang.util.text import Span
+from btq_lang.util.text import Placed, Span
 from btq_lang.workspace.comments import NO_COMMENTS, Comments, comments
 from btq_lang.workspace.comments import Comment as SourceComment
 from btq_lang.workspace.file import File
 from btq_lang.workspace.workspace import Scope, Workspace
-
-if TYPE_CHECKING:
-
-    class Part(Protocol):
-        """A part of the tree that has a place."""
-
-        @property
-        def start(self) -> int: ...
-        @property
-        def end(self) -> int: ...
 
 
 class Remark(Record):
@@ -66,11 +56,11 @@ class Source:
         self._types: dict[tuple[str, str], tuple[str, ...]] = {}
         self._changed_comments: list[SourceComment] = []
 
-    def repair(self, entry: Entry, part: Part, message: str) -> None:
+    def repair(self, entry: Entry, part: Placed, message: str) -> None:
         """Record a change that was made because the engine would refuse the file otherwise."""
         self.repairs[Remark(self.path, Span(part.start, part.end).shifted(entry.start), message)] = None
 
-    def problem(self, entry: Entry, part: Part, message: str) -> None:
+    def problem(self, entry: Entry, part: Placed, message: str) -> None:
         """Record what cannot be written."""
         self.problems[Remark(self.path, Span(part.start, part.end).shifted(entry.start), message)] = None
 
@@ -92,7 +82,7 @@ class Source:
         tree_id = self.tree_id(name.text)
         return spelt(name) if tree_id == name.text else escape(tree_id)
 
-    def around(self, entry: Entry, part: Part) -> Comments:
+    def around(self, entry: Entry, part: Placed) -> Comments:
         """The comments of an element."""
         return self.comments.get(entry.start + part.start, NO_COMMENTS)
 
@@ -103,7 +93,7 @@ class Source:
             known = self._types[tree, port] = types_below(self.scope, self.target, tree, port)
         return known
 
-    def respelt(self, entry: Entry, part: Part, said: str, written: str) -> None:
+    def respelt(self, entry: Entry, part: Placed, said: str, written: str) -> None:
         """Record that a constant of a subtree's port is spelt as another type."""
         why = "4.9.1 and later would read it as another type than the node below expects"
         self.repair(entry, part, f"`{said}` is written as `{written}`: {why}")

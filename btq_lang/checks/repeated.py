@@ -90,7 +90,7 @@ def _of_clause(view: View, clause: NodeClause) -> Iterator[_Named]:
         words = [_of_requirement(use) for use in clause.uses if use.name is not None]
     elif isinstance(clause, Satisfices):
         for quality in clause.qualities:
-            name = ".".join(word.text for word in quality.path.names)
+            name = quality.path.text
             match = view.quality(name)
             same = match.quality.id if match is not None and match.quality is not None else name
             # A quality that encloses requirements may be here for their sake.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Final, Protocol, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS
@@ -20,21 +20,12 @@ from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import COMMENT, NUMBER, QUANTITY
 from btq_lang.util.record import Record
-from btq_lang.util.text import Span
+from btq_lang.util.text import Placed, Span
 from btq_lang.workspace.file import File
 from btq_lang.workspace.node_names import tag_of
 from btq_lang.workspace.placeholders import is_placeholder
 from btq_lang.workspace.symbols import requirements_at
 from btq_lang.workspace.workspace import Workspace
-
-if TYPE_CHECKING:
-
-    class _HasPlace(Protocol):
-        @property
-        def start(self) -> int: ...
-        @property
-        def end(self) -> int: ...
-
 
 SUBTREE: Final = "SubTree"
 TREE: Final = "<tree>"  # no node has such a kind
@@ -327,7 +318,7 @@ class _Reader:
             for port in ports
         }
 
-    def _item(self, thing: str, name: syntax.Word | None, values: Values, part: _HasPlace) -> Item:
+    def _item(self, thing: str, name: syntax.Word | None, values: Values, part: Placed) -> Item:
         return Item(thing, name.text if name is not None else "", values, self._place(part.start, part.end))
 
     # ---- words and places ----
@@ -335,10 +326,10 @@ class _Reader:
     def _quality(self, path: syntax.QualityPath) -> str:
         words = tuple(name.text for name in path.names)
         match = find(words, self._edition)
-        return match.quality.id if match.quality is not None else ".".join(words)
+        return match.quality.id if match.quality is not None else path.text
 
     def _quality_value(self, path: syntax.QualityPath) -> Value:
-        return Value(self._quality(path), ".".join(name.text for name in path.names))
+        return Value(self._quality(path), path.text)
 
     def _text(self, part: object) -> str:
         """A part of the tree as it is written, on one line."""

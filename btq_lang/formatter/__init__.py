@@ -42,7 +42,7 @@ from btq_lang.formatter.lines import Line, Remark, logical_lines
 from btq_lang.formatter.marks import Marks, marks_of
 from btq_lang.parser import Parsed, parse
 from btq_lang.util.record import Record, replace
-from btq_lang.util.text import LINE_END, Edit, Span, apply_edits
+from btq_lang.util.text import LINE_END, Edit, Span, alike, apply_edits
 
 __all__ = ["DEFAULTS", "FormatOptions", "Formatted", "format_range", "format_text"]
 
@@ -255,8 +255,7 @@ def _edits(text: str, stretches: Iterable[_Stretch]) -> tuple[Edit, ...]:
 
 def _edit(at: int, old: str, new: str) -> Edit:
     """Replace the one text by the other, but for what both begin with."""
-    pairs = enumerate(zip(old, new, strict=False))
-    same = next((index for index, (one, other) in pairs if one != other), min(len(old), len(new)))
+    same = alike(old, new)
     return Edit(Span(at + same, at + len(old)), new[same:])
 
 

@@ -122,7 +122,7 @@ def concerns(node: ResolvedNode) -> Iterator[tuple[str, QualityPath]]:
     for clause in clauses_of(node):
         if isinstance(clause, Satisfices):
             for quality in clause.qualities:
-                yield ".".join(name.text for name in quality.path.names), quality.path
+                yield quality.path.text, quality.path
 
 
 def clauses_of(node: ResolvedNode) -> tuple[NodeClause, ...]:

@@ -81,5 +81,4 @@ def _tree_of(workspace: Workspace, found: Found) -> Definition | None:
 
 
 def _item(place: Definition) -> TreeItem:
-    item = place.symbol.target
-    return TreeItem(place.symbol.name, place.path, Span(item.start, item.end).shifted(place.entry.start), place.span)
+    return TreeItem(place.symbol.name, place.path, place.whole, place.span)

@@ -32,11 +32,10 @@ def enforcement_lines(workspace: Workspace, path: str, found: Definition, *, is_
     resolved, _ = workspace.store.ask(requirement, found.path, found.symbol.name)
     known = unasked(resolved) if resolved is not None and not resolved.classic else None
     if known is not None:  # and for a large mission that takes long
-        text = workspace.files[found.path].text
+        file = workspace.files[found.path]
         for claim in item.clauses:
             if isinstance(claim, Claim) and (is_attached or claim.subject is not None):
-                typed = text[found.entry.start + claim.start : found.entry.start + claim.end]
-                ways[" ".join(typed.split())] = {known: {}}
+                ways[file.on_one_line(found.entry, claim)] = {known: {}}
         return _lines(ways)
     for mission in _missions(workspace, path, found):
         for each in workspace.store.ask(_plan, mission):

@@ -7,19 +7,15 @@ the number of lines before them changes.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
-from itertools import compress, count
-from operator import is_, is_not, ne
-from typing import TypeVar
+from collections.abc import Iterator, Sequence
+from operator import is_, is_not
 
 from btq_lang.ide.semantic_tokens import groups, known_of, stretch_of
 from btq_lang.ide.stretches import Encoded, Known, Stretch, encoded
 from btq_lang.syntax.tree import Entry
 from btq_lang.util.record import Record
-from btq_lang.util.text import LINE_END, Encoding
+from btq_lang.util.text import LINE_END, Encoding, alike
 from btq_lang.workspace.workspace import Workspace
-
-T = TypeVar("T")
 
 
 class Part(Record):
@@ -188,25 +184,20 @@ def delta(before: Colours, after: Colours) -> list[Change]:
 
 def _same(first: Colours, start: int, second: Colours, other_start: int) -> int:
     """The number of parts that are the same from two of them on, with as many lines before them."""
-    parts = _alike(first.parts[start:], second.parts[other_start:], is_not)
-    return min(parts, _alike(first.firsts[start:], second.firsts[other_start:], ne))
+    parts = alike(first.parts[start:], second.parts[other_start:], is_not)
+    return min(parts, alike(first.firsts[start:], second.firsts[other_start:]))
 
 
 def difference(before: Sequence[int], after: Sequence[int]) -> Change | None:
     """The one change that turns the first into the second, in whole tokens; None if they are equal."""
     shorter = min(len(before), len(after))
-    start = _alike(before, after, ne)
+    start = alike(before, after)
     if start == len(before) == len(after):
         return None
     start -= start % 5
-    end = min(_alike(before[::-1], after[::-1], ne), shorter - start)
+    end = min(alike(before[::-1], after[::-1]), shorter - start)
     end -= end % 5
     return Change(start, len(before) - end - start, list(after[start : len(after) - end]))
-
-
-def _alike(first: Sequence[T], second: Sequence[T], differ: Callable[[T, T], bool]) -> int:
-    """The length of the common prefix."""
-    return next(compress(count(), map(differ, first, second)), min(len(first), len(second)))
 
 
 def _size(colours: Colours, start: int, end: int) -> int:

@@ -24,7 +24,7 @@ from btq_lang.ide.measures import Measured, measured_at
 from btq_lang.ide.place import Place, item_tokens, open_brace, place_at, word_text
 from btq_lang.ide.ports import ports_of_kind, ports_of_tree
 from btq_lang.ide.proposals import Proposal
-from btq_lang.ide.snippets import item_snippets, model_snippets, node_snippets
+from btq_lang.ide.snippets import snippets_for
 from btq_lang.ide.xml_completion import complete_in_xml
 from btq_lang.syntax.tokens import (
     CATEGORIES,
@@ -254,10 +254,10 @@ def _line_heads(workspace: Workspace, path: str, place: Place) -> Iterator[Propo
     """What a line may begin with."""
     if place.block == "items":
         yield from offer.item_words(workspace, path)
-        yield from item_snippets()
+        yield from snippets_for(place.block)
     elif place.block == "models":
         yield from offer.category_words()
-        yield from model_snippets()
+        yield from snippets_for(place.block)
     elif place.block == "ports":
         yield from offer.port_heads()
     elif place.block == "clauses":
@@ -267,7 +267,7 @@ def _line_heads(workspace: Workspace, path: str, place: Place) -> Iterator[Propo
         yield from offer.node_clause_words()
         if place.block == "tree":
             yield from offer.port_heads()
-        yield from node_snippets()
+        yield from snippets_for(place.block)
 
 
 def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Iterator[Proposal]:

@@ -22,7 +22,7 @@ from btq_lang.ide.meaning import (
 from btq_lang.ide.outline import clauses_detail
 from btq_lang.ide.ports import NodePort, ports_of_kind, ports_of_tree
 from btq_lang.syntax.quantities import parse_quantity
-from btq_lang.syntax.tree import Apply, Context, Model, Node, QualityDecl, Requirement, Signal, Tree, Word, walk
+from btq_lang.syntax.tree import Apply, Context, Model, QualityDecl, Requirement, Signal, Tree, Word, walk
 from btq_lang.util.text import Span, counted
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.references import What
@@ -94,7 +94,7 @@ def requirement(workspace: Workspace, path: str, found: Definition) -> str:
     lines = [f"**{found.symbol.name}**{_parameters(workspace, found, item)}"]
     quality = quality_of(found)
     if quality is not None:
-        lines[0] += f" · {'.'.join(name.text for name in quality.names)}"
+        lines[0] += f" · {quality.text}"
     if item.text is not None:
         lines.append(" ".join(item.text.text.split()))
     if item.clauses:
@@ -114,18 +114,18 @@ def requirement(workspace: Workspace, path: str, found: Definition) -> str:
 
 def _parameters(workspace: Workspace, found: Definition, item: Requirement) -> str:
     """`` `(limit : m/s = 0.25 m/s)` ``, as it is written; empty if it has none."""
-    text = workspace.files[found.path].text
+    file = workspace.files[found.path]
     shown = []
     for one in item.parameters:
         end = max(word.end for word in walk(one) if isinstance(word, Word))
-        shown.append(" ".join(text[slice(*Span(one.name.start, end).shifted(found.entry.start))].split()))
+        shown.append(file.on_one_line(found.entry, Span(one.name.start, end)))
     return f" `({', '.join(shown)})`" if shown else ""
 
 
 def _clause(workspace: Workspace, found: Definition, span: Span) -> str:
     """A clause on one line, and a comment with its quantities in SI units if they are written in others."""
     file = workspace.files[found.path]
-    text = " ".join(file.text[slice(*span.shifted(found.entry.start))].split())
+    text = file.on_one_line(found.entry, span)
     typed = [one.name for one in file.mentions_of(found.entry) if one.what is What.QUANTITY and span.contains(one.span)]
     converted = [
         f"{one} = {said}" for one in dict.fromkeys(typed) if (said := in_si(one)) and said.split() != one.split()
@@ -147,17 +147,12 @@ def place_of(workspace: Workspace, found: Found) -> str:
     node = found.mention.node
     item = found.entry.item if found.entry is not None else None
     if isinstance(item, Apply) and found.entry is not None:
-        text = workspace.files[found.path].text[found.entry.start + item.start : found.entry.start + item.end]
-        return f"`{' '.join(text.split())}` ({workspace.project.shown(found.path)})"
+        text = workspace.files[found.path].on_one_line(found.entry, item)
+        return f"`{text}` ({workspace.project.shown(found.path)})"
     name = item.name.text if isinstance(item, Tree | Requirement | Signal | Context) and item.name else ""
-    where = f"`{called(node)}`" + (f" in `{name}`" if name else "") if node is not None else f"`{name}`" if name else ""
+    where = f"`{node.called}`" + (f" in `{name}`" if name else "") if node is not None else f"`{name}`" if name else ""
     path = workspace.project.shown(found.path)
     return f"{where} ({path})" if where else path
-
-
-def called(node: Node) -> str:
-    """A node's kind and instance name."""
-    return node.head.text if node.name is None else f"{node.head.text} {node.name.text}"
 
 
 def quality(workspace: Workspace, path: str, found: Quality, explanation: str = "") -> str:
@@ -178,7 +173,7 @@ def own_quality(workspace: Workspace, found: Definition) -> str:
     """A quality that a file declares."""
     item = found.symbol.target
     assert isinstance(item, QualityDecl), "a quality's symbol declares one"
-    parent = f" · {'.'.join(name.text for name in item.parent.names)}" if item.parent else ""
+    parent = f" · {item.parent.text}" if item.parent else ""
     text = item.text.text if item.text else ""
     return "\n\n".join(
         filter(None, (f"**{found.symbol.name}**{parent}", text, f"_declared in {workspace.project.shown(found.path)}_"))
@@ -187,8 +182,7 @@ def own_quality(workspace: Workspace, found: Definition) -> str:
 
 def declared(workspace: Workspace, found: Definition) -> str:
     """A signal or a context, as it is written."""
-    item = found.symbol.target
-    text = workspace.files[found.path].text[found.entry.start + item.start : found.entry.start + item.end]
+    text = workspace.files[found.path].text[slice(*found.whole)]
     return f"```btq\n{text}\n```\n\n_{workspace.project.shown(found.path)}_"
 
 

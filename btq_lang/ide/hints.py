@@ -7,7 +7,7 @@ from btq_lang.ide import describe
 from btq_lang.ide.clause_enforcement import missions_of
 from btq_lang.ide.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
 from btq_lang.ide.outline import requirement_detail
-from btq_lang.ide.ports import ports_of
+from btq_lang.ide.ports import port_of
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Claim, Entry, Requirement, Root
 from btq_lang.util.record import Record
@@ -56,8 +56,8 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
                 if isinstance(item, Requirement) and quality is not None:
                     found.append(Hint(span.end, f": {quality.names[-1].text}", requirement_detail(item)))
             elif mention.what is What.QUANTITY and mention.node is not None and mention.pair is not None:
-                key = mention.pair.key.text
-                unit = next((port.unit for port in ports_of(workspace, path, mention.node) if port.name == key), None)
+                port = port_of(workspace, path, mention.node, mention.pair.key.text)
+                unit = port.unit if port is not None else None
                 number = describe.in_unit(mention.name, unit)
                 if number is not None and mention.name.split() != [number, unit]:
                     found.append(Hint(span.end, f"= {number}", describe.quantity(mention.name, unit) or ""))

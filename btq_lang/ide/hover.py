@@ -8,7 +8,7 @@ from btq_lang.ide import describe
 from btq_lang.ide.meaning import Found, Subject, at, definition, everywhere, quality_match, subject
 from btq_lang.ide.navigation import writes
 from btq_lang.ide.place import item_tokens
-from btq_lang.ide.ports import ports_of
+from btq_lang.ide.ports import port_of
 from btq_lang.syntax.tokens import NAME
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
@@ -70,9 +70,8 @@ def _explained(workspace: Workspace, found: Found, wanted: Subject) -> str | Non
         kind = RESERVED_ATTRIBUTES.get(wanted.name)
         return f"`{kind.name}`: {kind.doc}" if kind is not None else None
     if wanted.what is What.QUANTITY:
-        port = mention.pair.key.text if mention.pair is not None else None
-        ports = ports_of(workspace, path, node) if node is not None else ()
-        return describe.quantity(mention.name, next((one.unit for one in ports if one.name == port), None))
+        port = port_of(workspace, path, node, mention.pair.key.text) if node and mention.pair else None
+        return describe.quantity(mention.name, port.unit if port is not None else None)
     if wanted.what is What.UNIT:
         return describe.unit(mention.name)
     if wanted.what is What.RULE:
@@ -103,7 +102,5 @@ def _key(workspace: Workspace, wanted: Subject) -> str:
 
 def _port(workspace: Workspace, found: Found) -> str | None:
     node = found.mention.node
-    if node is None:
-        return None
-    port = next((one for one in ports_of(workspace, found.path, node) if one.name == found.mention.name), None)
+    port = port_of(workspace, found.path, node, found.mention.name) if node is not None else None
     return describe.port(port) if port is not None else None

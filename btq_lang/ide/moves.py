@@ -31,7 +31,7 @@ def moved_files(workspace: Workspace, moves: Mapping[str, str]) -> dict[str, tup
                 continue
             if new[target] in include_candidates(workspace.project, new[path], include.path.text)[:1]:
                 continue
-            shown = _shown(workspace, new[path], new[target])
+            shown = include_name(workspace, new[path], new[target])
             if shown != include.path.text:
                 edit = Edit(include.path.span.shifted(entry.start), quote(shown))
                 edits[path] = (*edits.get(path, ()), edit)
@@ -46,7 +46,7 @@ def _after(path: str, moves: Mapping[str, str]) -> str:
     return path
 
 
-def _shown(workspace: Workspace, path: str, target: str) -> str:
+def include_name(workspace: Workspace, path: str, target: str) -> str:
     """A file as an include in another one names it: relative to an include path if one leads there."""
     ways = [posixpath.relpath(target, posixpath.dirname(path) or ".")]
     ways += [posixpath.relpath(target, folder) for folder in workspace.project.include_paths]

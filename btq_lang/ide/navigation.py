@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btq_lang.ide.meaning import Found, at, definition, everywhere, subject
-from btq_lang.syntax.tree import Node
+from btq_lang.ide.ports import port_of
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.references import What
@@ -46,9 +46,7 @@ def goto_definition(workspace: Workspace, path: str, offset: int) -> tuple[Targe
         return (Target(target, Span(0, 0), Span(0, 0), found.span),) if target in workspace.files else ()
     place = definition(workspace, path, wanted)
     if place is not None:
-        item = place.symbol.target
-        whole = Span(item.start, item.end).shifted(place.entry.start)
-        return (Target(place.path, whole, place.span, found.span),)
+        return (Target(place.path, place.whole, place.span, found.span),)
     if wanted.what in (What.KEY, What.PORT, What.PARAMETER, What.INSTANCE):
         places = list(everywhere(workspace, wanted))
         first = next((one for one in places if one.mention.defines), None)
@@ -98,14 +96,8 @@ def writes(workspace: Workspace, found: Found) -> bool:
     node, pair = mention.node, mention.pair
     if node is None or pair is None or pair.key.text.startswith("_"):
         return False
-    return direction(workspace, found.path, node, pair.key.text) in ("output", "inout")
-
-
-def direction(workspace: Workspace, path: str, node: Node, port: str) -> str | None:
-    """The direction of a node's port; None if it is unknown."""
-    from btq_lang.ide.ports import ports_of
-
-    return next((one.direction for one in ports_of(workspace, path, node) if one.name == port), None)
+    port = port_of(workspace, found.path, node, pair.key.text)
+    return port is not None and port.direction != "input"
 
 
 _WITHOUT_REFERENCES = frozenset((What.QUANTITY, What.UNIT, What.ATTRIBUTE, What.EDITION, What.RULE))

@@ -6,9 +6,9 @@ from bisect import bisect_left
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
-from btq_lang.ide.block import deeper
+from btq_lang.ide.block import blanks_before, deeper, line_start
 from btq_lang.ide.meaning import at, everywhere, subject
-from btq_lang.ide.place import item_tokens, line_blanks, place_at, word_text, words_before
+from btq_lang.ide.place import item_tokens, place_at, word_text, words_before
 from btq_lang.syntax.tokens import CATEGORIES, CLOSE, NAME, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token
 from btq_lang.syntax.tree import Model
 from btq_lang.util.text import Edit, Span
@@ -27,7 +27,7 @@ def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[E
     as the line that opened the brackets.
     """
     text = workspace.files[path].text
-    start = max(text.rfind("\n", 0, offset), text.rfind("\r", 0, offset)) + 1
+    start = line_start(text, offset)
     place = place_at(workspace, path, offset)
     if place.inside != "code":
         return ()
@@ -39,14 +39,14 @@ def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[E
     elif typed == ")":
         if text[start:offset].strip() != ")" or not place.words:
             return ()
-        wanted = line_blanks(text, place.words[0].start)
+        wanted = blanks_before(text, place.words[0].start)
     elif place.words and place.depth:
-        wanted = deeper(text, line_blanks(text, place.words[0].start))
+        wanted = deeper(text, blanks_before(text, place.words[0].start))
     else:
         above = _line_above(workspace, path, start)
         if not above:
             return ()
-        wanted = line_blanks(text, above[0].start)
+        wanted = blanks_before(text, above[0].start)
         if _opens(workspace, path, above):
             wanted = deeper(text, wanted)
     return (Edit(Span(start, start + len(blanks)), wanted),) if blanks != wanted else ()
@@ -96,7 +96,7 @@ def _opens(workspace: Workspace, path: str, words: tuple[Token, ...]) -> bool:
     if first.kind == NAME and (first.text in _OPENERS or first.text in NODE_CLAUSES):
         return first.text in _OPENERS
     if first.kind == NAME and first.text in CATEGORIES:
-        is_model = not line_blanks(workspace.files[path].text, first.start)
+        is_model = not blanks_before(workspace.files[path].text, first.start)
         return is_model or first.text in ("Control", "Decorator")
     kind = lookup(word_text(first), first.kind == STRING)
     if kind is not None:

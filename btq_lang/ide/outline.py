@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
@@ -78,7 +77,8 @@ def workspace_symbols(workspace: Workspace, query: str, limit: int = 500) -> tup
             if not _contains(folded, wanted):
                 continue
             rank = (not folded.startswith(wanted), len(folded), folded, path, definition.span.start)
-            found.append((rank, Match(symbol.name, _KIND_WORDS[symbol.kind], path, definition.span, path)))
+            kind = symbol.kind.value.removeprefix("node ")
+            found.append((rank, Match(symbol.name, kind, path, definition.span, path)))
         for entry in workspace.files[path].parsed.entries:
             if isinstance(entry.item, syntax.Tree):
                 tree = entry.item.name.text if entry.item.name else ""
@@ -101,16 +101,12 @@ def _item(workspace: Workspace, path: str, entry: syntax.Entry) -> Iterator[Outl
     item = entry.item
     by = entry.start
     if isinstance(item, syntax.Tree):
-        end = max([item.end, *(child.block_end for child in item.children if isinstance(child, syntax.Node))])
-        ports = tuple(
-            _named(port.name, "port", _ports_detail(port.direction, port.type), port, by) for port in item.ports
-        )
+        ports = _ports(item.ports, by)
         nodes = tuple(_node(workspace, path, child, by) for child in item.children if isinstance(child, syntax.Node))
         name = item.name.text if item.name else "BehaviorTree"
         name_span = _placed(item.name, Span(item.start, item.end), by)
-        yield Outline(
-            name, "tree", clauses_detail(item.clauses), Span(item.start, end).shifted(by), name_span, (*ports, *nodes)
-        )
+        span = Span(item.start, item.block_end).shifted(by)
+        yield Outline(name, "tree", clauses_detail(item.clauses), span, name_span, (*ports, *nodes))
     elif isinstance(item, syntax.Model):
         yield _model(item, by)
     elif isinstance(item, syntax.Models):
@@ -124,7 +120,7 @@ def _item(workspace: Workspace, path: str, entry: syntax.Entry) -> Iterator[Outl
     elif isinstance(item, syntax.Context):
         yield _named(item.name, "context", "", item, by)
     elif isinstance(item, syntax.QualityDecl):
-        parent = ".".join(name.text for name in item.parent.names) if item.parent else ""
+        parent = item.parent.text if item.parent else ""
         yield _named(item.name, "quality", parent, item, by)
     elif isinstance(item, syntax.Root):
         yield _named(item.name, "mission", "", item, by)
@@ -137,11 +133,10 @@ def _item(workspace: Workspace, path: str, entry: syntax.Entry) -> Iterator[Outl
 
 
 def _node(workspace: Workspace, path: str, node: syntax.Node, by: int) -> Outline:
-    name = node.head.text if node.name is None else f"{node.head.text} {node.name.text}"
     children = tuple(_node(workspace, path, child, by) for child in node.nodes)
     span = Span(node.start, node.block_end).shifted(by)
     kind = _category(workspace, path, node)
-    return Outline(name, kind, clauses_detail(node.clauses), span, node.head.span.shifted(by), children)
+    return Outline(node.called, kind, clauses_detail(node.clauses), span, node.head.span.shifted(by), children)
 
 
 def _category(workspace: Workspace, path: str, node: syntax.Node) -> str:
@@ -155,7 +150,7 @@ def clauses_detail(clauses: tuple[syntax.NodeClause, ...]) -> str:
     tags: list[str] = []
     for clause in clauses:
         if isinstance(clause, syntax.Satisfices):
-            qualities += (".".join(word.text for word in quality.path.names) for quality in clause.qualities)
+            qualities += (quality.path.text for quality in clause.qualities)
         elif isinstance(clause, syntax.Tags):
             tags += (name.text for name in clause.names)
     requirements = [one.name.text for one in requirements_at(clauses) if one.name is not None]
@@ -165,22 +160,23 @@ def clauses_detail(clauses: tuple[syntax.NodeClause, ...]) -> str:
 
 def requirement_detail(requirement: syntax.Requirement) -> str:
     """A requirement's quality and text, on one line."""
-    quality = ".".join(name.text for name in requirement.quality.names) if requirement.quality else ""
+    quality = requirement.quality.text if requirement.quality else ""
     text = " ".join(requirement.text.text.split()) if requirement.text else ""
     return ": ".join(filter(None, (quality, text)))
 
 
 def _model(model: syntax.Model, by: int) -> Outline:
-    ports = tuple(_named(port.name, "port", _ports_detail(port.direction, port.type), port, by) for port in model.ports)
     ends = [model.end, *(part.end for part in model.body)]
     name = model.name.text if model.name else model.category.text
+    detail = model.text.text if model.text else ""
     span = Span(model.start, max(ends)).shifted(by)
     name_span = _placed(model.name, model.category.span, by)
-    return Outline(name, model.category.raw.lower(), model.text.text if model.text else "", span, name_span, ports)
+    return Outline(name, model.category.raw.lower(), detail, span, name_span, _ports(model.ports, by))
 
 
-def _ports_detail(direction: syntax.Word, type_: syntax.Word | None) -> str:
-    return f"{direction.text} : {type_.text}" if type_ is not None else direction.text
+def _ports(ports: tuple[syntax.Port, ...], by: int) -> tuple[Outline, ...]:
+    details = [f"{port.direction.text} : {port.type.text}" if port.type else port.direction.text for port in ports]
+    return tuple(_named(port.name, "port", detail, port, by) for port, detail in zip(ports, details, strict=True))
 
 
 def _named(word: syntax.Word | None, kind: str, detail: str, item: object, by: int) -> Outline:
@@ -194,13 +190,3 @@ def _named(word: syntax.Word | None, kind: str, detail: str, item: object, by: i
 
 def _placed(word: syntax.Word | None, otherwise: Span, by: int) -> Span:
     return (word.span if word is not None else Span(otherwise.start, otherwise.start)).shifted(by)
-
-
-_KIND_WORDS = {
-    Kind.TREE: "tree",
-    Kind.MODEL: "model",
-    Kind.REQUIREMENT: "requirement",
-    Kind.SIGNAL: "signal",
-    Kind.CONTEXT: "context",
-    Kind.QUALITY: "quality",
-}

@@ -10,6 +10,7 @@ import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
+from btq_lang.ide.block import blanks_before
 from btq_lang.ide.clause_words import opens_condition
 from btq_lang.lexer import tokens as tokens_of
 from btq_lang.syntax.scan import line_start
@@ -151,7 +152,7 @@ def place_at(workspace: Workspace, path: str, offset: int) -> Place:
             index -= 1
     words = words_before(tokens, index)
     group, depth = _innermost(words)
-    blanks = line_blanks(file.text, words[0].start if words else span.start)
+    blanks = blanks_before(file.text, words[0].start if words else span.start)
     parents = _parents(file.text, tokens, words[0].start if words else span.start, blanks)
     block, parent = _block(parents)
     node = _node(words) if block in ("node", "tree") else None
@@ -248,13 +249,6 @@ def _is_clause_word(word: Token) -> bool:
     return word.kind == NAME and word.text in NODE_CLAUSES
 
 
-def line_blanks(text: str, start: int) -> str:
-    """The indentation of a line."""
-    begin = max(text.rfind("\n", 0, start), text.rfind("\r", 0, start)) + 1
-    line = text[begin:start]
-    return line[: len(line) - len(line.lstrip(" \t"))]
-
-
 def _parents(text: str, tokens: Sequence[Token], start: int, blanks: str) -> list[tuple[Token, ...]]:
     """The lines in whose blocks a line is, the nearest first."""
     found: list[tuple[Token, ...]] = []
@@ -266,7 +260,7 @@ def _parents(text: str, tokens: Sequence[Token], start: int, blanks: str) -> lis
             index -= 1
         index -= 1
         if line:
-            column = len(line_blanks(text, line[0].start).expandtabs(4))
+            column = len(blanks_before(text, line[0].start).expandtabs(4))
             if column < width:
                 found.append(line)
                 width = column

@@ -48,6 +48,11 @@ def ports_of(workspace: Workspace, path: str, node: Node) -> tuple[NodePort, ...
     return _ports(workspace, path, meaning.kind, node.id.text) if node.id is not None else ()
 
 
+def port_of(workspace: Workspace, path: str, node: Node, name: str) -> NodePort | None:
+    """A port of a node, by its name; None if it is unknown."""
+    return next((port for port in ports_of(workspace, path, node) if port.name == name), None)
+
+
 def ports_of_kind(
     workspace: Workspace, path: str, name: str, quoted: bool = False, child_count: int | None = None
 ) -> tuple[NodePort, ...]:

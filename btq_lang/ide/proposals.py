@@ -3,7 +3,6 @@ engine's nodes, qualities and units."""
 
 from __future__ import annotations
 
-import posixpath
 import re
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
@@ -21,6 +20,7 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.ide.meaning import Found, is_main, match_of, subject
 from btq_lang.ide.measures import Measured, parameters_at
+from btq_lang.ide.moves import include_name
 from btq_lang.ide.outline import requirement_detail
 from btq_lang.ide.place import LineNode, Place, word_text
 from btq_lang.ide.ports import NodePort, declared_ports, ports_of_kind, ports_of_tree
@@ -177,7 +177,7 @@ def undeclared(workspace: Workspace, path: str, kind: Kind, what: What) -> Itera
             found.update(one.name for one in named if not subject(workspace, Found(other, entry, one)).home)
     for name in sorted(found):
         if is_name(name) and not workspace.defined_anywhere(kind, name):
-            yield Proposal(name, _KIND_NAMES[kind], "not declared yet", name)
+            yield Proposal(name, kind.value, "not declared yet", name)
 
 
 def signals(workspace: Workspace, path: str) -> Iterator[Proposal]:
@@ -192,9 +192,7 @@ def _contexts(workspace: Workspace, path: str) -> Iterator[Proposal]:
         item = found.symbol.target
         shown = ""
         if isinstance(item, Context) and item.condition is not None:
-            start = found.entry.start
-            text = workspace.files[found.path].text[start + item.condition.start : start + item.condition.end]
-            shown = " ".join(text.split())
+            shown = workspace.files[found.path].on_one_line(found.entry, item.condition)
         yield Proposal(found.symbol.name, "context", shown, found.symbol.name, None, "", found.symbol.name, include)
 
 
@@ -287,13 +285,11 @@ def _keys_of_root(workspace: Workspace, path: str) -> list[str]:
 
 
 def includes(workspace: Workspace, path: str, quoted: bool) -> Iterator[Proposal]:
-    """The project's other files, as an include names them: relative to an include path if one leads there."""
-    folder = posixpath.dirname(path) or "."
+    """The project's other files, as an include names them."""
     for other in sorted(workspace.files):
         if other == path:
             continue
-        ways = [posixpath.relpath(other, one) for one in (folder, *workspace.project.include_paths)]
-        shown = min(ways, key=lambda way: (way.startswith(".."), len(way)))
+        shown = include_name(workspace, path, other)
         if workspace.included(path, shown) == other:
             yield Proposal(shown, "file", "", quote(shown) if quoted else shown)
 
@@ -600,13 +596,6 @@ def hole(index: int, port: NodePort, in_xml: bool = False) -> str:
 
 
 SAME_ENTRY = Proposal("=", "key", "the entry with the name of the port", "=")
-_KIND_NAMES = {
-    Kind.TREE: "tree",
-    Kind.REQUIREMENT: "requirement",
-    Kind.SIGNAL: "signal",
-    Kind.CONTEXT: "context",
-    Kind.QUALITY: "quality",
-}
 _STATUSES = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
 _NUMBERS = ("int", "unsigned int", "double", "float", "int64_t", "uint64_t")
 _TYPES = (

@@ -13,14 +13,13 @@ from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
 from btq_lang.checks.lookups import taken_names
 from btq_lang.ide.block import STEP, Standing, blanks_before, block_of, deeper, moved, node_at, shifts
 from btq_lang.ide.meaning import entry_at
-from btq_lang.ide.navigation import direction
+from btq_lang.ide.ports import port_of
 from btq_lang.requirements.model import Span as Time
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tokens import BRACED, NODE_CLAUSES
 from btq_lang.syntax.tree import (
     Between,
     Claim,
-    Clause,
     Entry,
     Node,
     Quality,
@@ -34,7 +33,7 @@ from btq_lang.syntax.tree import (
     written,
 )
 from btq_lang.util.record import Record
-from btq_lang.util.text import Edit, Position, Span
+from btq_lang.util.text import Edit, Position, Span, apply_edits
 from btq_lang.workspace.file import File
 from btq_lang.workspace.placeholders import is_placeholder
 from btq_lang.workspace.references import Mention, What
@@ -110,9 +109,10 @@ def _way(workspace: Workspace, path: str, mention: Mention) -> str:
         return "inout" if mention.updates else "output"
     if mention.node is None or mention.pair is None or mention.pair.key.text.startswith("_"):
         return "input"
-    way = direction(workspace, path, mention.node, mention.pair.key.text)
-    # A script reads what it does not assign; an undeclared port may do both.
-    return way or ("input" if mention.word.kind != BRACED else "inout")
+    port = port_of(workspace, path, mention.node, mention.pair.key.text)
+    if port is not None:
+        return port.direction
+    return "input" if mention.word.kind != BRACED else "inout"  # a script reads what it does not assign
 
 
 def _free_name(workspace: Workspace, path: str, node: Node) -> str:
@@ -165,8 +165,7 @@ def _item_end(file: File, entry: Entry) -> int:
     """Where the last line of a tree ends."""
     tree = entry.item
     assert isinstance(tree, Tree), "only trees have nodes"
-    end = max([tree.end, *(child.block_end for child in tree.children if isinstance(child, Node))])
-    line = file.lines.position(entry.start + end).line
+    line = file.lines.position(entry.start + tree.block_end).line
     return file.lines.offset(Position(line, len(file.lines.line(line))))
 
 
@@ -214,18 +213,12 @@ def _inline(workspace: Workspace, path: str, standing: Standing) -> Iterator[Ref
         else:
             edits.append(Edit(mention.word.span.shifted(start), value.raw))
     block = block_of(source, found.entry, top)
-    after = File(found.path, _applied(source.text, edits))
+    after = File(found.path, apply_edits(source.text, edits))
     grown = len(after.text) - len(source.text)
     changed = type(block)(Span(block.span.start, block.span.end + grown), block.blanks)
     inlined = moved(after, changed, block_of(workspace.files[path], entry, node).blanks)
     made = (Edit(node.span.shifted(entry.start), inlined),)
     yield Refactoring(f"Inline the tree `{found.symbol.name}`", "refactor.inline", {path: made})
-
-
-def _applied(text: str, edits: list[Edit]) -> str:
-    for edit in sorted(edits, key=lambda edit: edit.span, reverse=True):
-        text = text[: edit.span.start] + edit.text + text[edit.span.end :]
-    return text
 
 
 # ---- wrap and unwrap a node ----
@@ -321,9 +314,5 @@ def _item(file: File, entry: Entry, requirement: Requirement, quality: QualityPa
     text = f" {quote(' '.join(requirement.text.text.split()))}" if requirement.text is not None else ""
     lines = [f"QualityReq {written(requirement.name.text)}{parameters}{shown}{text}"]
     blanks = deeper(file.text, margin)
-    lines += [f"{blanks}{_clause(file, entry, clause)}" for clause in requirement.clauses]
+    lines += [f"{blanks}{file.on_one_line(entry, clause)}" for clause in requirement.clauses]
     return "\n".join(lines)
-
-
-def _clause(file: File, entry: Entry, clause: Clause) -> str:
-    return " ".join(file.text[entry.start + clause.start : entry.start + clause.end].split())

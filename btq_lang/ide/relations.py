@@ -44,5 +44,4 @@ def goto_type(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...
         place = own_quality(workspace, requirement.path, quality.names[-1].text) if quality is not None else None
     if place is None:
         return ()
-    item = place.symbol.target
-    return (Target(place.path, Span(item.start, item.end).shifted(place.entry.start), place.span, found.span),)
+    return (Target(place.path, place.whole, place.span, found.span),)

@@ -7,23 +7,9 @@ from collections.abc import Iterator
 from btq_lang.ide.proposals import Proposal
 
 
-def item_snippets() -> Iterator[Proposal]:
-    """Those that begin an item of a file."""
-    yield from _proposals(_ITEMS)
-
-
-def model_snippets() -> Iterator[Proposal]:
-    """Those that begin a model."""
-    yield from _proposals(_MODELS)
-
-
-def node_snippets() -> Iterator[Proposal]:
-    """Those that begin a node."""
-    yield from _proposals(_NODES)
-
-
-def _proposals(table: tuple[tuple[str, str, str], ...]) -> Iterator[Proposal]:
-    for label, detail, snippet in table:
+def snippets_for(block: str) -> Iterator[Proposal]:
+    """Those that begin a line of a block: an item, a model or a node."""
+    for label, detail, snippet in _SNIPPETS[block]:
         yield Proposal(label, "snippet", detail, label, snippet)
 
 
@@ -105,3 +91,4 @@ _NODES = (
         ")$0",
     ),
 )
+_SNIPPETS = {"items": _ITEMS, "models": _MODELS, "tree": _NODES, "node": _NODES}

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from btq_lang.ide.meaning import at, entry_at
 from btq_lang.syntax.tokens import BLANK, CLOSE, COMMENT, DEDENT, INDENT, NEWLINE, OPEN, STRING
-from btq_lang.syntax.tree import Include, Node, Tree
+from btq_lang.syntax.tree import Include, Tree
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.workspace import Workspace
@@ -99,8 +99,7 @@ def selection_range(workspace: Workspace, path: str, offset: int) -> tuple[Span,
         item = entry.item
         spans.add(Span(item.start, item.end).shifted(entry.start))
         if isinstance(item, Tree):
-            ends = [child.block_end for child in item.children if isinstance(child, Node)]
-            spans.add(Span(item.start, max([item.end, *ends])).shifted(entry.start))
+            spans.add(Span(item.start, item.block_end).shifted(entry.start))
             for node in item.walk():
                 spans.add(node.span.shifted(entry.start))
                 spans.add(Span(node.start, node.block_end).shifted(entry.start))

@@ -13,7 +13,7 @@ from btq_lang.render.cells import cut, printable
 from btq_lang.render.frame import Row
 from btq_lang.render.location import clamped, line_index, text_of
 from btq_lang.render.report import Finding, Report
-from btq_lang.util.text import Edit, LineIndex, Position, apply_edits
+from btq_lang.util.text import Edit, LineIndex, Position, alike, apply_edits
 
 _MOST = 12
 
@@ -63,8 +63,8 @@ def _hunks(text: str, edits: list[Edit], room: int) -> list[Row]:
         first, last = lines.position(hunk[0].span.start).line, lines.position(edit.span.end).line
         old = [lines.line(number) for number in range(first, last + 1)]
         new = _lines(_edited(text, lines, hunk, first, last))
-        same = _common(old, new)
-        rest = _common(old[same:][::-1], new[same:][::-1])
+        same = alike(old, new)
+        rest = alike(old[same:][::-1], new[same:][::-1])
         rows += _rows(old[same : len(old) - rest], first + same + 1, "-", room)
         rows += _rows(new[same : len(new) - rest], first + same + 1 + shift, "+", room)
         shift += len(new) - len(old)
@@ -82,11 +82,6 @@ def _edited(text: str, lines: LineIndex, edits: Iterable[Edit], first: int, last
 def _lines(text: str) -> list[str]:
     lines = LineIndex(text)
     return [lines.line(number) for number in range(lines.line_count)]
-
-
-def _common(old: list[str], new: list[str]) -> int:
-    """The length of the common prefix of two lists of lines."""
-    return next((at for at, (a, b) in enumerate(zip(old, new, strict=False)) if a != b), min(len(old), len(new)))
 
 
 def _rows(lines: list[str], number: int, bar: str, room: int) -> list[Row]:

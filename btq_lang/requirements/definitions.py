@@ -52,7 +52,7 @@ def _quality(
 ) -> str | None:
     """The quality that a requirement names, or that encloses it."""
     if written.quality is not None:
-        return ".".join(name.text for name in written.quality.names)
+        return written.quality.text
     if not isinstance(facts.item, Tree):
         return None
     return store.ask(tree_nodes, viewpoint, path, facts).qualities.get(id(written))

@@ -47,6 +47,11 @@ class QualityPath(_Part):
         self.names: Final = names
 
     @property
+    def text(self) -> str:
+        """Its names, joined by dots."""
+        return ".".join([name.text for name in self.names])
+
+    @property
     def span(self) -> Span:
         return Span(self.names[0].start, self.names[-1].end)
 

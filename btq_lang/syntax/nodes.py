@@ -92,6 +92,11 @@ class Node:
         """The instance name: the label, or the attribute `name`."""
         return self.label or self.attribute("name")
 
+    @property
+    def called(self) -> str:
+        """Its kind and its instance name."""
+        return self.head.text if self.name is None else f"{self.head.text} {self.name.text}"
+
     def attribute(self, key: str) -> Word | None:
         """The value of the first attribute with this key."""
         for pair in self.attributes:

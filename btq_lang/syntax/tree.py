@@ -218,6 +218,11 @@ class Tree(Record):
     def span(self) -> Span:
         return Span(self.start, self.end)
 
+    @property
+    def block_end(self) -> int:
+        """The end of the last line of its block."""
+        return max([self.end, *(child.block_end for child in self.children if isinstance(child, Node))])
+
     def walk(self) -> Iterator[Node]:
         """All its nodes, depth first, in document order."""
         return chain.from_iterable([child.walk() for child in self.children if isinstance(child, Node)])

@@ -50,7 +50,7 @@ class Meanings:
         declared = self._own.get(fold(name.rpartition(".")[2]))
         while declared is not None and declared not in own:
             own.append(declared)
-            name = ".".join(word.text for word in declared.parent.names) if declared.parent is not None else ""
+            name = declared.parent.text if declared.parent is not None else ""
             declared = self._own.get(fold(name.rpartition(".")[2]))
         ids = [each.name.text for each in own if each.name is not None]
         known = self._in_model(name) if name and declared is None else None

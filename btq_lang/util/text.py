@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Iterator
-from itertools import accumulate
-from typing import Literal, NamedTuple, TypeAlias
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import accumulate, compress, count
+from operator import ne
+from typing import Literal, NamedTuple, Protocol, TypeAlias, TypeVar
 
 from btq_lang.util.record import Record
 
+T = TypeVar("T")
 Encoding: TypeAlias = "Literal['code-points', 'utf-8', 'utf-16']"
 
 # Only these end a line: str.splitlines would also cut at form feeds and U+2028.
@@ -36,6 +38,15 @@ class Span(NamedTuple):
     def touches(self, other: Span) -> bool:
         """Whether they overlap or one ends where the other begins."""
         return self.start <= other.end and other.start <= self.end
+
+
+class Placed(Protocol):
+    """What has a place, as a part of a tree has."""
+
+    @property
+    def start(self) -> int: ...
+    @property
+    def end(self) -> int: ...
 
 
 class Position(NamedTuple):
@@ -66,6 +77,11 @@ def apply_edits(text: str, edits: Iterable[Edit]) -> str:
         pieces += (text[at : edit.span.start], edit.text)
         at = edit.span.end
     return "".join([*pieces, text[at:]])
+
+
+def alike(first: Sequence[T], second: Sequence[T], differ: Callable[[T, T], bool] = ne) -> int:
+    """The length of the common prefix."""
+    return next(compress(count(), map(differ, first, second)), min(len(first), len(second)))
 
 
 def changed(before: str, after: str) -> Span | None:

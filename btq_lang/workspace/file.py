@@ -15,7 +15,7 @@ from btq_lang.grammar.item_words import may_include
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.syntax.tree import Entry, Include, Item
 from btq_lang.util.record import Record
-from btq_lang.util.text import LineIndex, Span, changed
+from btq_lang.util.text import LineIndex, Placed, Span, changed
 from btq_lang.workspace.item_index import Facts, Name, Names, Tally
 
 if TYPE_CHECKING:
@@ -310,6 +310,10 @@ class File:
         """The entry of one of the file's items."""
         return self._entries[id(item)]
 
+    def on_one_line(self, entry: Entry, part: Placed) -> str:
+        """A part of an item as it is written, on one line."""
+        return " ".join(self.text[entry.start + part.start : entry.start + part.end].split())
+
     def text_of(self, item: Item) -> str:
         """The text of one of the file's items, up to the next one."""
         entries, start = self.parsed.entries, self.start_of(item)
@@ -399,6 +403,11 @@ class Definition(Record):
     def span(self) -> Span:
         """The name, counted from the start of the file."""
         return self.symbol.span.shifted(self.entry.start)
+
+    @property
+    def whole(self) -> Span:
+        """All of what is defined, likewise."""
+        return Span(self.symbol.target.start, self.symbol.target.end).shifted(self.entry.start)
 
 
 class Origin(Record):

@@ -242,7 +242,7 @@ class ResolvedTree:
             elif isinstance(clause, Satisfices):
                 for quality in clause.qualities:
                     for requirement in quality.requirements:
-                        self.qualities[id(requirement)] = ".".join(name.text for name in quality.path.names)
+                        self.qualities[id(requirement)] = quality.path.text
 
     def _read(self, category_of_model: Callable[[str], str | None]) -> Iterator[ResolvedNode]:
         waiting: list[tuple[Node, ResolvedNode | None, int]] = []

@@ -223,8 +223,7 @@ class _Names:
 
     def _use_quality(self, path: syntax.QualityPath | None, node: syntax.Node | None) -> None:
         if path is not None:
-            name = ".".join([name.text for name in path.names])
-            self.uses.append(Use(Kind.QUALITY, name, path.span, node))
+            self.uses.append(Use(Kind.QUALITY, path.text, path.span, node))
 
     def _define(self, kind: Kind, name: syntax.Word | None, target: Target) -> None:
         if name is not None:

@@ -17,7 +17,7 @@ from feature_asserts import (
 )
 
 from btq_lang.ide.completion import complete
-from btq_lang.ide.snippets import item_snippets, node_snippets
+from btq_lang.ide.snippets import snippets_for
 from btq_lang.parser import parse
 from btq_lang.workspace.workspace import Workspace
 
@@ -522,7 +522,7 @@ def test_snippets_are_offered_where_their_construct_may_begin(
 
 @pytest.mark.parametrize("is_node", [False, True])
 def test_every_snippet_is_without_a_mistake_as_it_comes(is_node: bool) -> None:
-    for one in node_snippets() if is_node else item_snippets():
+    for one in snippets_for("node" if is_node else "items"):
         text = filled(one.snippet or "")
         if is_node:
             text = "BehaviorTree X\n    " + text.replace("\n", "\n    ")
