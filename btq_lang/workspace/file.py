@@ -429,8 +429,8 @@ class Origin(Record):
 
 
 def is_xml(path: str, text: str) -> bool:
-    """Whether a file is XML: it is called .xml, or begins with `<` under an unknown suffix; some projects call trees for
-    Groot .tree or .bt."""
+    """Whether a file is XML: it is called .xml, or begins with `<` under an unknown suffix; some projects call trees
+    for Groot .tree or .bt."""
     return not path.endswith(SUFFIXES) and (path.endswith(".xml") or text.lstrip().startswith("<"))
 
 
