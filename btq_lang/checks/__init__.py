@@ -143,6 +143,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         ports.unknown_attribute,
         ports.duplicate_attribute,
         *_OF_PORTS,
+        literals.old_entry,
         constants.number_for_text,
         mixed_types.entry_with_two_types,
         outputs.literal_for_output,

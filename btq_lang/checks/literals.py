@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.resolved import ResolvedNode
 
 _NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+_OLD_ENTRY = re.compile(r"\$\{[^{}\n]+\}")  # as version 3 of the engine has entries too
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")
 
 
@@ -44,6 +45,24 @@ class _Target(Record):
     is_output: bool = False
 
 
+def old_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """`${key}`, an entry of the blackboard to version 3 of the engine, and a text to version 4."""
+    pairs = [pair for seen in view.seen.given for pair in seen.node.attributes if is_port_name(pair.key.text)]
+    values = [pair.value for pair in pairs if pair.value is not None and _OLD_ENTRY.fullmatch(pair.value.text)]
+    typed = {value.span: target for target, value in _values(view, entry)} if values else {}
+    for value in values:
+        key, target = value.text[1:], typed.get(value.span)
+        refused = target is not None and check_literal(target.type, value.text, view.project.target) is not None
+        yield Diagnostic(
+            "old-entry",
+            value.span,
+            f"the engine reads `{value.text}` as a text, not as an entry",
+            notes=("version 3 of the engine read it as an entry",),
+            fixes=(replace_fix(f"Replace `{value.text}` with `{key}`", value.span, key),),
+            severity=Severity.ERROR if refused else None,
+        )
+
+
 def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A literal that the port's type refuses, or whose end the engine drops."""
     version = view.project.target
@@ -54,6 +73,8 @@ def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield from _converted(target, value, version)
             continue
         text = value.text
+        if _OLD_ENTRY.fullmatch(text):
+            continue  # which old_entry reports
         if target.port == "_autoremap" and is_pointer(text):
             note = "the engine reads this attribute before any entry exists: write `true`, or remove it"
             yield Diagnostic(

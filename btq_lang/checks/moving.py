@@ -70,9 +70,9 @@ def _node(view: View, seen: ResolvedNode, name: Word, steps: tuple[str, ...]) ->
     renamed = _first(RENAMED, ((step, name.text) for step in steps))
     if _ports(view, steps[-1], name.text) is None:
         yield _without_node(view, name, renamed, steps)
-    ports = _ports(view, steps[-1], renamed or name.text)
-    if ports is not None:
-        yield from _without_ports(seen, name.text, ports, steps)
+    before, ports = _ports(view, steps[0], name.text), _ports(view, steps[-1], renamed or name.text)
+    if before is not None and ports is not None:
+        yield from _without_ports(seen, name.text, before - ports, steps)
     is_forward = DISTRIBUTIONS.index(steps[-1]) > DISTRIBUTIONS.index(steps[0])
     for change in CHANGES:
         if is_forward and change.since in steps[1:] and change.concerns(name.text):
@@ -91,12 +91,10 @@ def _without_node(view: View, name: Word, renamed: str | None, steps: tuple[str,
     )
 
 
-def _without_ports(
-    seen: ResolvedNode, node: str, ports: frozenset[str], steps: tuple[str, ...]
-) -> Iterator[Diagnostic]:
+def _without_ports(seen: ResolvedNode, node: str, gone: frozenset[str], steps: tuple[str, ...]) -> Iterator[Diagnostic]:
     for pair in seen.node.attributes:
         port = pair.key.text
-        if not is_port_name(port) or port in ports or port in ("ID", "name"):
+        if port not in gone:
             continue
         renamed = _first(RENAMED_PORTS, ((step, node, port) for step in steps))
         yield Diagnostic(

@@ -212,7 +212,7 @@ def nothing_to_load(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "missing-include",
             entry.item.name.span if entry.item.name else Span(entry.item.start, entry.item.end),
-            f"no file matches `{pattern}`, which the factory `{name}` loads",
+            f"no file matches `{pattern}`, a pattern of the factory `{name}`",
             notes=(note,),
             severity=Severity.HINT,
         )

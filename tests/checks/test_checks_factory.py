@@ -122,8 +122,8 @@ def test_a_missing_main_tree_is_reported_once() -> None:
 def test_what_a_lost_package_defines_is_unknown() -> None:
     workspace = factory(MAIN, main=("Start",), lost=("package://docking/trees/*.xml", "gone/*.xml"))
     assert problems(workspace) == [
-        "a.xml: missing-include: no file matches `package://docking/trees/*.xml`, which the factory `nav` loads",
-        "a.xml: missing-include: no file matches `gone/*.xml`, which the factory `nav` loads",
+        "a.xml: missing-include: no file matches `package://docking/trees/*.xml`, a pattern of the factory `nav`",
+        "a.xml: missing-include: no file matches `gone/*.xml`, a pattern of the factory `nav`",
     ]
 
 

@@ -88,7 +88,7 @@ def test_what_is_not_there_is_unknown(tmp_path: Path, write: Write) -> None:
     write("btq.toml", '[[factory]]\nname = "nav"\nload = ["*.xml", "gone/*.xml"]\n')
     write("main.xml", MAIN)
     assert check(tmp_path) == [
-        "main.xml:1:42: hint[missing-include] no file matches `gone/*.xml`, which the factory `nav` loads"
+        "main.xml:1:42: hint[missing-include] no file matches `gone/*.xml`, a pattern of the factory `nav`"
     ]
     write("btq.toml", '[[factory]]\nname = "nav"\nload = ["gone/*.xml"]\n')
     assert "btq: btq.toml: the factory `nav` loads no file" in run_btq("check", cwd=tmp_path)[2]
@@ -100,7 +100,7 @@ def test_packages_of_the_workspace_come_before_installed_ones(
     monkeypatch.setenv("AMENT_PREFIX_PATH", f"{tmp_path}/opt/none:{tmp_path}/opt/ros")
     write("src/nav/btq.toml", '[[factory]]\nname = "nav"\nload = ["*.xml", "package://docking/trees/*.xml"]\n')
     write("src/nav/main.xml", MAIN)
-    lost = "no file matches `package://docking/trees/*.xml`, which the factory `nav` loads"
+    lost = "no file matches `package://docking/trees/*.xml`, a pattern of the factory `nav`"
     assert check(tmp_path, "src") == [f"src/nav/main.xml:1:42: hint[missing-include] {lost}"]
     write("opt/ros/share/docking/trees/dock.xml", DOCK)
     assert check(tmp_path, "src") == []
