@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+from btq_lang.btcpp.marks import described
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.ide import describe
 from btq_lang.ide.clause_enforcement import missions_of
@@ -12,7 +15,7 @@ from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Claim, Entry, Requirement, Root
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span, counted
-from btq_lang.workspace.file import Definition
+from btq_lang.workspace.file import Definition, File
 from btq_lang.workspace.inputs import everything
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.references import What
@@ -103,7 +106,18 @@ def code_lenses(workspace: Workspace, path: str) -> tuple[Lens, ...]:
             titles = [*(titles if uses or not nodes else ()), *holds]
         if uses or nodes or not is_in_place:
             found.append(Lens(place.span, ", ".join(titles), tuple(dict.fromkeys((*uses, *nodes)))))
-    return tuple(found)
+    return (*found, *_described(workspace.files[path]))
+
+
+def _described(file: File) -> Iterator[Lens]:
+    """How many requirements and qualities each element has that a build has described in the XML."""
+    for tag, lines in described(file.origin.text) if file.origin is not None else ():
+        qualities = sum(line.startswith("satisfices ") for line in lines)
+        counts = (counted(len(lines) - qualities, "requirement"), counted(qualities, "quality", "qualities"))
+        start = file.from_disk(tag)
+        if start is not None:
+            shown = ", ".join(each for each in counts if not each.startswith("0 "))
+            yield Lens(Span(start, start + 1), shown, ())
 
 
 def _is_root(entry: Entry | None) -> bool:

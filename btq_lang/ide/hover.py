@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from btq_lang.btcpp.marks import described
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import phrase_at
 from btq_lang.ide import describe
@@ -31,8 +32,20 @@ def hover(workspace: Workspace, path: str, offset: int) -> Hover | None:
     found = at(workspace, path, offset)
     if found is None:
         return _word_of_the_language(workspace.files[path], offset)
-    markdown = _explained(workspace, found, subject(workspace, found))
-    return Hover(found.span, markdown) if markdown else None
+    markdown = _explained(workspace, found, subject(workspace, found)) or ""
+    said = _described(workspace.files[path], found) if found.mention.what in (What.NODE, What.TREE) else ""
+    both = "\n\n".join(filter(None, (markdown, said)))
+    return Hover(found.span, both) if both else None
+
+
+def _described(file: File, found: Found) -> str:
+    """The requirements and qualities of an element that a build has described in the XML."""
+    if file.origin is None:
+        return ""
+    xml = file.origin.text
+    tag = xml.rfind("<", 0, file.on_disk(found.span).start) + 1
+    lines = next((lines for start, lines in described(xml) if start == tag), ())
+    return "\n".join(("Described by `btq build`:\n", *(f"* {line}" for line in lines))) if lines else ""
 
 
 def _explained(workspace: Workspace, found: Found, wanted: Subject) -> str | None:

@@ -245,6 +245,21 @@ def test_what_stands_in_xml_is_explained_and_found(foreign: Editor) -> None:
     assert [lens["command"]["title"] for lens in lenses] == ["1 call", "1 call"]
 
 
+def test_requirements_that_a_build_has_described(editor: Editor) -> None:
+    """In the hover of the node, and counted above it."""
+    text = (Path(__file__).parents[1] / "btcpp" / "golden" / "descriptions.xml").read_text("utf-8")
+    editor.open("built.xml", text)
+    lenses = editor.request("textDocument/codeLens", **editor.document("built.xml"))
+    assert [(lens["range"]["start"]["line"], lens["command"]["title"]) for lens in lenses] == [
+        *((3, "main tree"), (3, "1 quality"), (6, "3 requirements, 2 qualities")),
+        *((10, "2 requirements, 2 qualities"), (13, "1 requirement")),
+    ]
+    shown = editor.request("textDocument/hover", **editor.at("built.xml", 13, 8))["contents"]["value"]
+    assert shown.endswith("Described by `btq build`:\n\n* inline (energy): Little; takes at most 3 s")
+    other = editor.request("textDocument/hover", **editor.at("built.xml", 14, 8))["contents"]["value"]
+    assert "Described" not in other
+
+
 def test_entries_in_xml_are_coloured(foreign: Editor) -> None:
     """Nothing else is; while the XML cannot be read, the editor keeps what it has."""
     asked = foreign.document("dock.xml")
