@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from btq_lang.btcpp.exact_edits import declares_version_4, exact_edits
+from btq_lang.checks.suppressions import is_silenced_in_xml
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 from btq_lang.util.record import replace
 from btq_lang.util.text import Edit, Span
@@ -36,7 +37,9 @@ def shown_on_origins(workspace: Workspace, path: str, found: Iterable[Diagnostic
             )
         fixes = tuple(placed for fix in each.fixes if (placed := _placed(workspace, path, fix)) is not None)
         shown.append(replace(each, span=on_origin(each.span, path), related=related, fixes=fixes))
-    return shown if origin is None else [*origin.diagnostics, *shown]
+    if origin is None:
+        return shown
+    return [*(each for each in origin.diagnostics if not is_silenced_in_xml(origin.text, each)), *shown]
 
 
 def _placed(workspace: Workspace, path: str, fix: Fix) -> Fix | None:

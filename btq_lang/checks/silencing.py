@@ -6,6 +6,7 @@ comment has the effect is for `suppressions`, which reads it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -63,12 +64,27 @@ def before_element(file: File, line: int, rules: Sequence[str], reason: str = ""
     end = start + len(file.lines.line(line))
     begins = [piece[2] for piece in file.origin.places.pieces if start <= piece[0] < end]
     at = xml.rfind("<", 0, begins[0]) if begins else -1
-    if at < 0:
+    return _before(xml, at, rules, reason) if at >= 0 else None
+
+
+def before_tag(file: File, diagnostic: Diagnostic, reason: str = "") -> Edit | None:
+    """A comment before the tag, or the text, that a diagnostic of the XML itself is about; None for any other."""
+    origin, start = file.origin, diagnostic.span.start
+    if origin is None or diagnostic.rule in UNREADABLE or diagnostic not in origin.diagnostics:
         return None
+    tags = (tag.span() for tag in re.finditer(_TAG, origin.text, re.DOTALL))
+    at = next((begin for begin, end in tags if begin <= start < end), start)
+    return _before(origin.text, at, (diagnostic.rule,), reason)
+
+
+def _before(xml: str, at: int, rules: Sequence[str], reason: str) -> Edit:
     blanks = xml[xml.rfind("\n", 0, at) + 1 : at]
     above = "" if not blanks.strip() else _line_end(xml)  # else the comment would belong to what is before it
     after = _line_end(xml) + (blanks if not above else "")
     return Edit(Span(at, at), f"{above}<!-- {_directive(rules, reason)} -->{after}")
+
+
+_TAG = r"""<!--.*?-->|<(?:[^"'>]|"[^"]*"|'[^']*')*>"""
 
 
 def _directive(rules: Sequence[str], reason: str) -> str:

@@ -21,6 +21,24 @@ from btq_lang.workspace.file import File
 
 _IGNORE = r"btq:\s*ignore(?![\w-])(\s*\[([^\]]*)(\])?)?"  # few files have one, so it is compiled when it is used
 
+# What a comment in XML silences for the rules on the XML itself: the next tag, and the text before it.
+_UP_TO_TAG = r"""(?:[^<]|<!--.*?-->)*<(?:[^"'>]|"[^"]*"|'[^']*')*"""
+
+
+def is_silenced_in_xml(xml: str, diagnostic: Diagnostic) -> bool:
+    """Whether a comment in XML silences a diagnostic of the XML itself, which counts from its start."""
+    if diagnostic.rule in UNREADABLE or "btq:" not in xml:
+        return False
+    for comment in re.finditer(r"<!--.*?-->", xml[: diagnostic.span.start], re.DOTALL):
+        match = re.search(_IGNORE, comment[0])
+        if match is None or (match[1] and not match[3]):
+            continue
+        named = match[2] is None or diagnostic.rule in re.split(r"[\s,]+", match[2])
+        silenced = re.compile(_UP_TO_TAG, re.DOTALL).match(xml, comment.end()) if named else None
+        if silenced is not None and diagnostic.span.start <= silenced.end():
+            return True
+    return False
+
 
 class Suppressions:
     """The comments of a file that silence rules.

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.opening import with_source
 from btq_lang.checks import check
-from btq_lang.checks.silencing import above_line, at_line_end, before_element, line_to_silence
+from btq_lang.checks.silencing import above_line, at_line_end, before_element, before_tag, line_to_silence
 from btq_lang.util.text import apply_edits
 from btq_lang.workspace.loader import LoadProblem, write_whole
 
@@ -72,11 +72,16 @@ def ignore_problem(options: CheckOptions) -> str | None:
 
 def _added(file: File, found: Iterable[Diagnostic], reason: str) -> list[Added]:
     of_line: dict[int, list[Diagnostic]] = {}
+    added: list[Added] = []
     for each in found:
         if (line := line_to_silence(file, each)) is not None:
             of_line.setdefault(line, []).append(each)
+        elif (edit := before_tag(file, each, reason)) is not None:
+            same = [silenced for other, silenced in added if other == edit]
+            added += [] if same else [(edit, [each])]
+            for silenced in same:
+                silenced.append(each)
     places = (at_line_end, above_line) if file.origin is None else (before_element,)
-    added: list[Added] = []
     for line, here in of_line.items():
         rules = tuple(dict.fromkeys(each.rule for each in here))
         made = (edit for place in places if (edit := place(file, line, rules, reason)) is not None)

@@ -183,3 +183,19 @@ def test_comments_silence_published_trees(check: Check, tmp_path: Path, shared: 
 
 def without_blanks(text: str) -> str:
     return "".join(text.split())
+
+
+def test_what_is_wrong_with_the_xml_itself_is_silenced_too(check: Check, tmp_path: Path) -> None:
+    node = '<ScriptCondition code="a < 20"/>'
+    xml = (
+        '<root BTCPP_format="4">\n<BehaviorTree ID="M">\n  <Sequence>\n    {}Pick\n    {}' + node + "\n  </Sequence>\n"
+    )
+    xml += "</BehaviorTree>\n</root>\n"
+    (tmp_path / "a.xml").write_text(xml.format("", ""))
+    assert check("--add-ignore=old", "a.xml")[1:] == ("No problems found in 1 file\n", "Added 2 comments\n")
+    comments = [f"<!-- btq: ignore[{rule}] old -->\n    " for rule in ("xml-ignored", "xml-not-well-formed")]
+    assert (tmp_path / "a.xml").read_text() == xml.format(*comments)
+    (tmp_path / "a.xml").write_text(xml.format("<!-- btq: ignore[xml-ignored] -->", ""))
+    assert check("a.xml", "--output-format", "concise")[1].startswith("a.xml:5:30: warning[xml-not-well-formed]")
+    (tmp_path / "a.xml").write_text(xml.format("<!-- btq: ignore -->", ""))
+    assert check("a.xml")[1] == "No problems found in 1 file\n"  # up to the end of the next tag
