@@ -5,6 +5,7 @@ One window on a folder without missions: the tests follow each other, and the fi
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
 from collections.abc import Iterator
@@ -13,6 +14,13 @@ from pathlib import Path
 import pytest
 from installed import ROOT, STORE, there
 from workbench import Workbench, workbench
+
+from btq_lang.btcpp.opening import file_of
+from btq_lang.checks import check
+from btq_lang.diagnostics.rules import Severity
+from btq_lang.util.text import LineIndex
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.workspace import Workspace
 
 POM = '<?xml version="1.0"?>\n<project>\n  <root name="x"/>\n</project>\n'
 TREES = """\
@@ -101,3 +109,68 @@ def test_the_tree_is_shown_and_the_xml_converted(code: Workbench) -> None:
     code.see(".tab:has-text('trees.btq')")
     code.see(".tab:has-text('trees.xml')")
     assert (code.folder / "trees.btq").read_text(encoding="utf-8").startswith("Root (BTCPP_format = 4)\n")
+
+
+@pytest.mark.parametrize(("closing", "pause"), [("languageDefined", 0), ("never", 0), ("languageDefined", 300)])
+def test_the_xml_that_is_typed_is_saved(code: Workbench, shared: Path, closing: str, pause: int) -> None:
+    """The laboratory's, key by key, with and without quotes and braces that close by themselves; what is found at last
+    is what a check finds."""
+    text = (shared / "original" / "paper_example.xml").read_bytes().decode()
+    if pause:  # lists have the time to open
+        text = text[: text.index("</BehaviorTree>")].replace("mainTree", "PickPlace") + "</BehaviorTree>\n</root>\n"
+    set_closing(code, closing)
+    name = f"typed_{closing}_{pause}.xml"
+    path = code.write(name, "")
+    code.open(name)
+    typed = ""
+    for number, line in enumerate(text.split("\n")):
+        body = line.lstrip(" ")
+        if number:
+            code.keys("Enter")
+            if body:
+                while code.blanks() > len(line) - len(body):
+                    code.keys("Backspace")
+                code.type(" " * (len(line) - len(body) - code.blanks()))
+        for key in body:
+            if pause and key in ' ">/':
+                code.page.wait_for_timeout(pause)
+            code.type(key)
+            typed += key
+            if typed.endswith("<!--") and closing != "never":
+                code.keys(*["Delete"] * len("-->"))  # only single characters are typed over
+    code.save()
+    assert path.read_bytes().decode() == text
+    workspace = Workspace({name: file_of(name, text)}, Project())
+    lines = LineIndex(text)
+    found = [
+        f"btq {each.rule} [Ln {line + 1}, Col {column + 1}]"
+        for each in check(workspace, name)
+        if each.effective_severity is not Severity.HINT
+        for line, column in [lines.position(each.span.start, "utf-16")]
+    ]
+    rows = code.problems_of(name, len(found))
+    assert sorted(each for row in rows for each in re.findall(r"btq [\w-]+ \[Ln \d+, Col \d+\]", row)) == sorted(found)
+    code.close_all()
+    code.clean()
+
+
+def set_closing(code: Workbench, closing: str) -> None:
+    """Whether VS Code closes quotes and brackets by itself; the setting counts when a new file shows it."""
+    server = [str(code.programs / "btq-lsp")]
+    both = {
+        "editor.autoClosingBrackets": closing,
+        "editor.autoClosingQuotes": closing,
+        "editor.autoClosingComments": closing,
+    }
+    code.settings(**SETTINGS, **both, **{"btq.server.command": server})
+    path = code.write("probe.xml", "")
+    code.open("probe.xml")
+
+    def is_set() -> bool:
+        code.keys("Control+a", "Delete")
+        code.type('"')
+        code.save()
+        return path.read_text() == ('""' if closing == "languageDefined" else '"')
+
+    code.until(is_set, lambda: f"not {closing}: {path.read_text()}")
+    code.close_all()

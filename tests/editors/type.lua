@@ -1,9 +1,10 @@
 -- A person who types a text in another Neovim: `nvim --headless -l type.lua`, with what to do as JSON in BTQ_TYPE:
 -- `command` starts that Neovim with an empty file, `text` is typed there, and `pause` are the milliseconds of thinking
 -- before Enter, Tab, a blank and a quote that closes.  A person looks at what Enter has begun the line with, deletes what
--- does not belong there, and types what is missing.  It prints how many lists opened.
+-- does not belong there, and types what is missing.  It prints how many lists opened.  `level` is what Tab writes there,
+-- `findings` how many diagnostics there are at last.
 local todo = vim.json.decode(vim.env.BTQ_TYPE)
-local LEVEL = 4 -- blanks that Tab writes where a line begins
+local LEVEL = todo.level or 4 -- blanks that Tab writes where a line begins
 local other = vim.fn.jobstart(todo.command, { rpc = true, env = vim.empty_dict() })
 
 local function ask(method, ...)
@@ -21,9 +22,11 @@ local function press(key)
 end
 
 local served = "return #(vim.lsp.get_clients({ bufnr = 0 })) > 0 and vim.lsp.get_clients()[1].initialized or false"
-assert(vim.wait(20000, function()
-  return ask('exec_lua', served, {}) == true
-end, 50), 'no server')
+if not todo.findings then -- XML has no server until one has typed its root element
+  assert(vim.wait(20000, function()
+    return ask('exec_lua', served, {}) == true
+  end, 50), 'no server')
+end
 ask('exec_lua', [[
   btq_lists = 0
   vim.api.nvim_create_autocmd('CompleteChanged', { callback = function() btq_lists = btq_lists + 1 end })
@@ -59,6 +62,9 @@ for number, line in ipairs(vim.split(todo.text, '\n', { plain = true })) do
   end
 end
 press('<Esc>')
+assert(not todo.findings or vim.wait(20000, function()
+  return ask('exec_lua', 'return #vim.diagnostic.get(0)', {}) == todo.findings
+end, 50), 'other findings')
 io.stdout:write(tostring(ask('exec_lua', 'return btq_lists', {})) .. '\n')
 ask('command', 'write')
 ask('command', 'stopinsert')
