@@ -40,7 +40,8 @@ def shared() -> Path:
 # Files that take longest are begun first, so that at the end no core waits for one of them; those with a VS Code not at
 # once, for it takes a core by itself.
 LONGEST = (
-    *("test_typing", "test_damage", "test_compiled", "test_vscode", "test_server", "test_neovim", "test_damaged_logs"),
+    *("test_typing", "test_damage", "test_compiled", "test_vscode", "test_vscode_xml", "test_server", "test_neovim"),
+    *("test_damaged_logs", "test_server_xml_requests"),
     *("test_many_mistakes", "test_checks_kept", "test_documents", "test_requirements_kept", "test_cli"),
 )
 
