@@ -34,6 +34,7 @@ FILES_OF_THE_EXTENSION = {
     "walkthrough/project.md",
     "walkthrough/python.md",
 }
+ENDINGS = {"", ".btq", ".html", ".json", ".md", ".py", ".pyi", ".txt", ".typed"}
 
 
 @pytest.fixture(scope="session")
@@ -58,7 +59,7 @@ def test_there_is_what_belongs_there_and_no_more(unpacked: Path) -> None:
     files = {path.relative_to(unpacked).as_posix() for path in unpacked.rglob("*") if path.is_file()}
     python = {name for name in files if name.startswith(("python/libs/", "python/btq_lang/"))}
     assert files - python == FILES_OF_THE_EXTENSION
-    assert {Path(name).suffix for name in python} <= {".py", ".pyi", ".md", ".typed", ".txt", ".json", ".html", ""}
+    assert {Path(name).suffix for name in python} <= ENDINGS
     assert {name.split("/")[2] for name in python if "dist-info" not in name} >= {"pygls", "lsprotocol", "cattrs"}
 
 

@@ -109,8 +109,10 @@ def test_the_tree_is_shown_and_the_xml_converted(code: Workbench) -> None:
     code.see(".tab:has-text('trees.btq')")
     code.see(".tab:has-text('trees.xml')")
     assert (code.folder / "trees.btq").read_text(encoding="utf-8").startswith("Root (BTCPP_format = 4)\n")
+    code.close_all()  # the tree beside would be drawn again after each key of the next test
 
 
+@pytest.mark.flaky(reruns=1)  # as in test_typing: a busy machine shows some things late
 @pytest.mark.parametrize(("closing", "pause"), [("languageDefined", 0), ("never", 0), ("languageDefined", 300)])
 def test_the_xml_that_is_typed_is_saved(code: Workbench, shared: Path, closing: str, pause: int) -> None:
     """The laboratory's, key by key, with and without quotes and braces that close by themselves; what is found at last
