@@ -6,14 +6,11 @@ One invariant: all that they say is in the tables by which `btq check --target` 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from functools import cache
 from itertools import pairwise
-from pathlib import Path
 
-from btq_lang.catalog.nav2 import DISTRIBUTIONS, PACKAGED
+from btq_lang.catalog.nav2 import DISTRIBUTIONS
 from btq_lang.catalog.nav2.changes import ANY, CHANGES, INSTEAD, RENAMED, RENAMED_PORTS, Change
-from btq_lang.parser import parse
-from btq_lang.syntax.tree import Models, models_in
+from btq_lang.commands.explain_nav2 import models_of
 
 
 def moving_pages() -> dict[str, str]:
@@ -75,9 +72,7 @@ def _added(before: dict[str, set[str]], after: dict[str, set[str]]) -> Iterator[
             yield f"`{node}`: " + ", ".join(f"`{port}`" for port in new)
 
 
-@cache
 def _nodes(distribution: str) -> dict[str, set[str]]:
     """The ports of each node of a distribution."""
-    items = [entry.item for entry in parse(Path(PACKAGED[f"nav2-{distribution}"]).read_text(encoding="utf-8")).entries]
-    models = [model for item in items if isinstance(item, Models) for model in models_in(item)]
-    return {model.name.text: {port.name.text for port in model.ports if port.name} for model in models if model.name}
+    models = models_of(distribution).items()
+    return {name: {port.name.text for port in model.ports if port.name} for name, model in models}

@@ -15,15 +15,14 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from nav2_sources import DISTRIBUTIONS, sources  # noqa: E402  # beside this script
-from nav2_words import NODES, OF_MESSAGES, PORTS, REQUIRED, REQUIRED_IN  # noqa: E402
+from nav2_sources import sources  # noqa: E402  # beside this script
+from nav2_words import NODES, OF_MESSAGES, PORTS, REQUIRED, REQUIRED_IN  # noqa: E402  # as above
 
-from btq_lang.commands.node_writers import models_in_btq  # noqa: E402  # of this checkout
-from btq_lang.cpp.model import CppNode, CppPort  # noqa: E402
-from btq_lang.cpp.nodes import read_nodes  # noqa: E402
-from btq_lang.util.record import replace  # noqa: E402
-
-FOLDER = ROOT / "btq_lang" / "catalog" / "nav2"
+from btq_lang.catalog.nav2 import FILES  # noqa: E402  # of this checkout
+from btq_lang.commands.node_writers import models_in_btq  # noqa: E402  # as above
+from btq_lang.cpp.model import CppNode, CppPort  # noqa: E402  # as above
+from btq_lang.cpp.nodes import read_nodes  # noqa: E402  # as above
+from btq_lang.util.record import replace  # noqa: E402  # as above
 
 
 def model_file(clone: Path, distribution: str) -> str:
@@ -52,7 +51,6 @@ def _described_port(port: CppPort, is_required: bool) -> CppPort:
 
 
 if __name__ == "__main__":
-    for distribution in DISTRIBUTIONS:
-        path = FOLDER / f"{distribution}.btq"
-        path.write_text(model_file(Path(sys.argv[1]), distribution), encoding="utf-8")
+    for distribution, path in FILES.items():
+        Path(path).write_text(model_file(Path(sys.argv[1]), distribution), encoding="utf-8")
         print(path)

@@ -8,7 +8,6 @@ from pathlib import Path
 from subprocess import run
 from typing import Final
 
-DISTRIBUTIONS: Final = ("humble", "iron", "jazzy", "kilted", "lyrical")
 PALETTE: Final = "nav2_behavior_tree/nav2_tree_nodes.xml"  # Nav2's own list of its nodes
 
 

@@ -45,6 +45,13 @@ def is_built_of(xml: str, sources: Iterable[str]) -> bool:
     return found is not None and any(found[1] == generated_mark(source) for source in sources)
 
 
+def named_beside(xml: str, path: str, suffixes: Iterable[str]) -> Iterator[str]:
+    """The missions beside XML that its mark names: those that it can have been built of."""
+    folder, _, name = path.rpartition("/")
+    names = (f"{name.rpartition('.')[0]}{suffix}" for suffix in suffixes)
+    return (f"{folder}/{each}" for each in names if is_built_of(xml, (each,)))
+
+
 def marked_description(own: str | None, lines: Iterable[str]) -> str:
     """A `_description`, escaped: the user's own text (None: nothing), the mark, the lines of a build."""
     return "&#10;".join((*(() if own is None else (own,)), DESCRIPTION_MARK, *lines))

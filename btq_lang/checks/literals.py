@@ -47,8 +47,9 @@ class _Target(Record):
 
 def old_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`${key}`, an entry of the blackboard to version 3 of the engine, and a text to version 4."""
-    pairs = [pair for seen in view.seen.given for pair in seen.node.attributes if is_port_name(pair.key.text)]
-    values = [pair.value for pair in pairs if pair.value is not None and _OLD_ENTRY.fullmatch(pair.value.text)]
+    pairs = (pair for seen in view.seen.given for pair in seen.node.attributes)
+    begun = [(pair.key, pair.value) for pair in pairs if pair.value is not None and "${" in pair.value.raw[:3]]
+    values = [value for key, value in begun if _OLD_ENTRY.fullmatch(value.text) and is_port_name(key.text)]
     typed = {value.span: target for target, value in _values(view, entry)} if values else {}
     for value in values:
         key, target = value.text[1:], typed.get(value.span)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
-from btq_lang.catalog.nav2 import DISTRIBUTIONS, PACKAGED
+from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
@@ -143,14 +143,14 @@ def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 def distribution(workspace: Workspace, viewpoint: str) -> str | None:
     """The distribution whose nodes of Nav2 are declared for a file."""
     paths = workspace.scope(viewpoint).node_paths
-    return next((name for name in DISTRIBUTIONS if PACKAGED[f"nav2-{name}"] in paths), None)
+    return next((name for name, path in FILES.items() if path in paths), None)
 
 
 @of_viewpoint
 def has_palette(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file."""
     scope = workspace.scope(viewpoint)
-    for each in (*scope.paths, *(path for path in scope.node_paths if path not in PACKAGED.values())):
+    for each in (*scope.paths, *(path for path in scope.node_paths if path not in FILES.values())):
         for entry in workspace.files[each].parsed.entries:
             if isinstance(entry.item, Models) and any(_is_of_node(model) for model in entry.item.models):
                 return True

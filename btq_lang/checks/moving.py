@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
-from btq_lang.catalog.nav2 import DISTRIBUTIONS, PACKAGED
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, FILES
 from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_PORTS
 from btq_lang.checks import lookups
 from btq_lang.checks.pointers import remaps_all
@@ -62,7 +62,7 @@ def _steps(view: View) -> tuple[str, ...]:
 
 def _ports(view: View, distribution: str, node: str) -> frozenset[str] | None:
     """The names of the ports of a node in a distribution; None if it does not have the node."""
-    return lookups.ports_in_file(view.store, PACKAGED[f"nav2-{distribution}"], Kind.MODEL, node)
+    return lookups.ports_in_file(view.store, FILES[distribution], Kind.MODEL, node)
 
 
 def _node(view: View, seen: ResolvedNode, name: Word, steps: tuple[str, ...]) -> Iterator[Diagnostic]:

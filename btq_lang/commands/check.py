@@ -69,27 +69,20 @@ def _writing_problem(options: CheckOptions) -> str | None:
     return None
 
 
+class _Refused(Exception):
+    """What the options ask for cannot be done here; the message says why."""
+
+
 def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     """Check once; returns the exit code and the files that another run depends on."""
     groups, problems = files.groups(options.paths, options.stdin_filename, with_xml=True, for_checks=True)
     groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
     empty = no_mission_below(options.paths, groups, "no .btq file and no BehaviorTree.CPP XML")
-    if options.target is not None:
-        from btq_lang.commands.target import is_for_nav2
-
-        if not any(is_for_nav2(group.workspace) for group in groups):
-            what = 'write `nodes = ["nav2-jazzy"]` into btq.toml'
-            print(f"btq check: --target needs to know what the trees are for: {what}", file=sys.stderr)
-            return 2, _watched(groups)
-    if options.since:
-        from btq_lang.commands.git import GitTrouble
-        from btq_lang.commands.since import affected
-
-        try:
-            groups = affected(groups, options.since)
-        except GitTrouble as reason:
-            print(f"btq check: --since: {reason}", file=sys.stderr)
-            return 2, _watched(groups)
+    try:
+        groups = _chosen(groups, options)
+    except _Refused as reason:
+        print(f"btq check: {reason}", file=sys.stderr)
+        return 2, _watched(groups)
     mended = 0
     if options.diff:
         tell(problems)
@@ -105,28 +98,14 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     findings, checked = _findings(groups, texts, options)
     known = 0
-    has_baseline = options.baseline or any(group.workspace.project.baseline for group in groups)
-    if options.update_baseline and not has_baseline:
-        print("btq check: no baseline to update; name it with --baseline, or in btq.toml", file=sys.stderr)
-        return 2, _watched(groups)
-    if has_baseline:
+    if _has_baseline(groups, options):
         from btq_lang.commands.baseline import compared
 
         findings, known, trouble = compared(findings, groups, options, is_whole=not problems)
         tell(trouble)
         problems += trouble
     if options.add_ignore is not None:
-        from copy import copy  # as all here only where it is needed
-
-        from btq_lang.commands.ignoring import add_ignores
-
-        count, trouble = add_ignores(groups, findings, options.add_ignore)
-        tell(trouble)
-        print(f"Added {counted(count, 'comment')}", file=sys.stderr)
-        again = copy(options)
-        again.add_ignore = None
-        code, watched = _check(again, files)
-        return 2 if trouble else code, watched
+        return _add_ignores(groups, findings, options, files)
     why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)
     report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), why_empty, known)
     is_written = write_report(report, options, mended)
@@ -136,6 +115,53 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         return 2, _watched(groups)
     fails = any(finding.diagnostic.effective_severity in _FAILS for finding in findings)
     return int(fails and not options.exit_zero), _watched(groups)
+
+
+def _chosen(groups: tuple[Group, ...], options: CheckOptions) -> tuple[Group, ...]:
+    """The groups for the target, with only what has changed.
+
+    Raises:
+        _Refused: there is nothing to compare with.
+    """
+    if options.update_baseline and not _has_baseline(groups, options):
+        raise _Refused("no baseline to update; name it with --baseline, or in btq.toml")
+    if options.target is not None:
+        from btq_lang.commands.target import moving
+
+        groups = moving(groups, options.target)
+        if not groups:
+            what = 'write `nodes = ["nav2-jazzy"]` into btq.toml'
+            raise _Refused(f"--target needs to know what the trees are for: {what}")
+    if options.since:
+        from btq_lang.commands.git import GitTrouble
+        from btq_lang.commands.since import affected
+
+        try:
+            groups = affected(groups, options.since)
+        except GitTrouble as reason:
+            raise _Refused(f"--since: {reason}") from reason
+    return groups
+
+
+def _has_baseline(groups: tuple[Group, ...], options: CheckOptions) -> bool:
+    return options.baseline is not None or any(group.workspace.project.baseline for group in groups)
+
+
+def _add_ignores(
+    groups: tuple[Group, ...], findings: list[Finding], options: CheckOptions, files: Files
+) -> tuple[int, tuple[str, ...]]:
+    """`--add-ignore`: write the comments and check again."""
+    from copy import copy  # as all here only where it is needed
+
+    from btq_lang.commands.ignoring import add_ignores
+
+    count, trouble = add_ignores(groups, findings, options.add_ignore or "")
+    tell(trouble)
+    print(f"Added {counted(count, 'comment')}", file=sys.stderr)
+    again = copy(options)
+    again.add_ignore = None
+    code, watched = _check(again, files)
+    return 2 if trouble else code, watched
 
 
 def _findings(
@@ -202,11 +228,7 @@ def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...
 
 
 def _configured(workspace: Workspace, options: CheckOptions) -> Workspace:
-    """The workspace with the command line's selection of rules on top of the project file's, and with its target."""
-    if options.target is not None:
-        from btq_lang.commands.target import with_target
-
-        workspace = with_target(workspace, options.target)
+    """The workspace with the command line's selection of rules on top of the project file's."""
     project: Project = workspace.project
     select, ignore = _rules(options.select), _rules(options.ignore)
     if not select and not ignore:

@@ -6,20 +6,20 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Final
 
-from btq_lang.catalog.nav2 import DISTRIBUTIONS, PACKAGED
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, FILES
 from btq_lang.parser import parse
-from btq_lang.syntax.tree import Model, Models, Port
+from btq_lang.syntax.tree import Model, Port, models_in
 from btq_lang.workspace.loader import read
 
 
 def nav2_nodes() -> list[str]:
     """The names of all nodes of Nav2, in whatever distribution."""
-    return sorted({name for each in DISTRIBUTIONS for name in _models(each)})
+    return sorted({name for each in DISTRIBUTIONS for name in models_of(each)})
 
 
 def nav2_page(name: str) -> Iterator[str]:
     """The page of a node, if it is one."""
-    found = {each: _models(each)[name] for each in DISTRIBUTIONS if name in _models(each)}
+    found = {each: models_of(each)[name] for each in DISTRIBUTIONS if name in models_of(each)}
     if not found:
         return
     *_, newest = found.values()
@@ -53,10 +53,10 @@ def _declared(port: Port) -> str:
 
 
 @cache
-def _models(distribution: str) -> dict[str, Model]:
-    text, _ = read(PACKAGED[f"nav2-{distribution}"])
-    palettes = (entry.item for entry in parse(text or "").entries if isinstance(entry.item, Models))
-    models = (each for palette in palettes for each in palette.models if isinstance(each, Model))
+def models_of(distribution: str) -> dict[str, Model]:
+    """The models of a distribution's nodes, by name."""
+    text, _ = read(FILES[distribution])
+    models = (model for entry in parse(text or "").entries for model in models_in(entry.item))
     return {model.name.text: model for model in models if model.name is not None}
 
 

@@ -11,7 +11,7 @@ import subprocess
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.btcpp.marks import is_built_of
+from btq_lang.btcpp.marks import is_built_of, named_beside
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.recognition import is_mission
 from btq_lang.btcpp.side_file import SIDE_SUFFIX, xml_path
@@ -204,9 +204,7 @@ class _Registered:
 
     def source_of(self, path: str) -> str | None:
         """The mission beside an XML file that was built of it."""
-        text = self._known.text(self._commit, path) or ""
-        beside = (f"{posixpath.splitext(path)[0]}{suffix}" for suffix in SUFFIXES)
-        named = (each for each in beside if is_built_of(text, (posixpath.basename(each),)))
+        named = named_beside(self._known.text(self._commit, path) or "", path, SUFFIXES)
         return next((each for each in named if self._known.has(self._commit, each)), None)
 
 

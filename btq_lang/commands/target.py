@@ -2,28 +2,41 @@
 
 from __future__ import annotations
 
+from functools import cache
+from typing import TYPE_CHECKING
+
 from btq_lang.btcpp.opening import file_of
-from btq_lang.catalog.nav2 import PACKAGED
+from btq_lang.catalog.nav2 import FILES
+from btq_lang.checks.lookups import distribution
 from btq_lang.util.record import replace
+from btq_lang.workspace.file import File
 from btq_lang.workspace.loader import read
 from btq_lang.workspace.workspace import Workspace
 
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
-def with_target(workspace: Workspace, target: str) -> Workspace:
-    """The same files, to be checked for a distribution too.
+    from btq_lang.commands.files import Group
+
+
+def moving(groups: Iterable[Group], target: str) -> tuple[Group, ...]:
+    """The groups, to be checked for a distribution too; empty if none says for which one its trees were written.
 
     Args:
         target: as a project names its nodes, `nav2-lyrical`.
     """
-    files = dict(workspace.files)
-    for path in PACKAGED.values():
-        files.setdefault(path, file_of(path, read(path)[0] or ""))
+    groups = tuple(groups)
+    if all(distribution(group.workspace.store, path) is None for group in groups for path in group.given):
+        return ()
+    return tuple(replace(group, workspace=with_target(group.workspace, target)) for group in groups)
+
+
+def with_target(workspace: Workspace, target: str) -> Workspace:
+    """The same files, with the nodes of all distributions beside them."""
     project = replace(workspace.project, moves_to=target.removeprefix("nav2-"))
-    return Workspace(files, project, workspace.factory)
+    return Workspace({**_models(), **workspace.files}, project, workspace.factory)
 
 
-def is_for_nav2(workspace: Workspace) -> bool:
-    """Whether a project says for which distribution its trees were written."""
-    factory = workspace.factory
-    named = (*workspace.project.node_files, *(factory.node_files if factory is not None else ()))
-    return not set(named).isdisjoint(PACKAGED.values())
+@cache
+def _models() -> dict[str, File]:
+    return {path: file_of(path, read(path)[0] or "") for path in FILES.values()}

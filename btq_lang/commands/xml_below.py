@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Hashable, Iterable, Set
 
-from btq_lang.btcpp.marks import is_built_of, is_generated
+from btq_lang.btcpp.marks import is_built_of, is_generated, named_beside
 from btq_lang.btcpp.recognition import defined_in, is_mission, may_be_mission
 from btq_lang.commands.ignored import ignored
 from btq_lang.workspace.file import SUFFIXES
@@ -59,9 +59,7 @@ class XmlBelow:
         """The mission that an XML file was built of, if it is there: beside it, or where the side file says."""
         if not self._look(path)[1]:
             return None
-        text = read(path)[0] or ""
-        beside = (f"{os.path.splitext(path)[0]}{suffix}" for suffix in SUFFIXES)
-        named = (each for each in beside if is_built_of(text, (os.path.basename(each),)))
+        named = named_beside(read(path)[0] or "", path, SUFFIXES)
         return next((each for each in (*named, *_named_by_side_file(path)) if os.path.isfile(each)), None)
 
     def _look(self, path: str) -> tuple[frozenset[str] | None, bool]:

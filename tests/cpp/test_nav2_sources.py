@@ -5,34 +5,18 @@ That list is kept by hand and is wrong in some branches; where exactly is writte
 
 from __future__ import annotations
 
-import os
-import sys
 from collections import Counter
-from functools import cache
-from pathlib import Path
 
 import pytest
 from lxml import etree
+from nav2_clone import COUNTS, files, read
+from nav2_sources import PALETTE
+from nav2_words import OF_MESSAGES
 
 from btq_lang.catalog.kinds import CATEGORIES
-from btq_lang.cpp.model import CppNodes, CppPort
-from btq_lang.cpp.nodes import read_nodes
+from btq_lang.cpp.model import CppPort
 
-pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
-
-from nav2_sources import PALETTE, sources  # noqa: E402  # the tools are scripts, no package
-
-COUNTS = {  # actions, conditions, controls, decorators, ports
-    "humble": (32, 12, 3, 7, 170),
-    "iron": (30, 16, 3, 7, 163),
-    "jazzy": (38, 17, 3, 7, 234),
-    "kilted": (41, 19, 3, 7, 274),
-    "lyrical": (49, 19, 6, 7, 327),
-    "main": (49, 19, 6, 7, 327),
-}
+BRANCHES = (*COUNTS, "main")  # where the nodes are those of Lyrical
 SMOOTHER = ["SmoothPath.server_name", "SmoothPath.server_timeout"]
 OF_HUMBLE = [*SMOOTHER, "Spin.is_recovery", "TruncatePathLocal.input_path"]
 WOULD_HELP = [f"WouldA{server}RecoveryHelp.error_codes_to_check" for server in ("Controller", "Planner", "Smoother")]
@@ -63,28 +47,6 @@ UNREAD = {
     "jazzy": ["GoalReached.global_frame", "RemovePassedGoals.global_frame"],
     "kilted": ["Spin.disable_collision_checks"],
 }
-# Types of members of ROS messages, which the messages' own files say.
-OF_MESSAGES = {
-    "ActionResult::_error_code_type": "uint16",
-    "Action::Result::_error_code_type": "uint16",
-    "ActionResult::_num_retries_type": "uint16",
-    "ActionResult::_success_type": "bool",
-    "ActionResult::_route_type": "nav2_msgs::msg::Route",
-    "ActionResult::_total_elapsed_time_type": "builtin_interfaces::msg::Duration",
-}
-
-
-@cache
-def files(branch: str) -> dict[str, str]:
-    folder = os.environ.get("BTQ_NAV2")
-    if not folder:
-        pytest.skip("no clone of navigation2: set BTQ_NAV2 to one that has the branches humble to lyrical")
-    return sources(Path(folder), branch)
-
-
-@cache
-def read(branch: str) -> CppNodes:
-    return read_nodes({path: text for path, text in files(branch).items() if path != PALETTE})
 
 
 def listed(branch: str) -> dict[str, tuple[str, dict[str, etree._Element]]]:
@@ -96,19 +58,19 @@ def listed(branch: str) -> dict[str, tuple[str, dict[str, etree._Element]]]:
     }
 
 
-@pytest.mark.parametrize("branch", COUNTS)
+@pytest.mark.parametrize("branch", BRANCHES)
 def test_all_nodes_and_ports_are_seen(branch: str) -> None:
     found = read(branch)
     categories = Counter(node.category for node in found.nodes)
     counted = (*(categories[each] for each in CATEGORIES[:4]), sum(len(node.ports) for node in found.nodes))
-    assert counted == COUNTS[branch]
+    assert counted == COUNTS["lyrical" if branch == "main" else branch]
     assert found.unseen == ()
     assert [node.name for node in found.nodes if not node.complete or node.undeclared] == []
     unread = [f"{node.name}.{port.name}" for node in found.nodes for port in node.unread]
     assert unread == UNREAD.get(branch, [])
 
 
-@pytest.mark.parametrize("branch", COUNTS)
+@pytest.mark.parametrize("branch", BRANCHES)
 def test_names_categories_and_directions_are_those_of_the_list(branch: str) -> None:
     in_code = {node.name: node for node in read(branch).nodes}
     in_list = listed(branch)
@@ -129,7 +91,7 @@ def test_names_categories_and_directions_are_those_of_the_list(branch: str) -> N
     assert tuple(wrong) == WRONG_DIRECTIONS.get(branch, ())
 
 
-@pytest.mark.parametrize("branch", COUNTS)
+@pytest.mark.parametrize("branch", BRANCHES)
 def test_defaults_and_types_are_those_of_the_list(branch: str) -> None:
     in_list = listed(branch)
     pairs = [

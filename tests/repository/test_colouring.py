@@ -9,14 +9,12 @@ import sys
 from pathlib import Path
 
 import pytest
+import vocabulary
 from lxml import etree
 
+from btq_lang.catalog.nodes import BUILTINS, spellings
+
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
-
-import vocabulary  # noqa: E402  # the tools are scripts, no package
-
-from btq_lang.catalog.nodes import BUILTINS, spellings  # noqa: E402  # as above
 
 
 def test_generated_files_are_fresh() -> None:

@@ -12,5 +12,6 @@ from typing import Final
 DISTRIBUTIONS: Final = ("humble", "iron", "jazzy", "kilted", "lyrical")
 
 _FOLDER: Final = os.path.dirname(os.path.abspath(__file__)).replace(os.sep, "/")
-# The path of the file for each name that a project may use.
-PACKAGED: Final[Mapping[str, str]] = {f"nav2-{each}": f"{_FOLDER}/{each}.btq" for each in DISTRIBUTIONS}
+# The path of the file of each distribution, and the same by the name that a project uses.
+FILES: Final[Mapping[str, str]] = {each: f"{_FOLDER}/{each}.btq" for each in DISTRIBUTIONS}
+PACKAGED: Final[Mapping[str, str]] = {f"nav2-{each}": path for each, path in FILES.items()}
