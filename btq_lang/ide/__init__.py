@@ -7,7 +7,8 @@ Features that the server calls are imported at their first call: an editor waits
 all features and the checks that they use takes a third of that time.
 
     place.py, meaning.py   where the cursor is, and what the word there means: the features below use these two
-    completion.py          with completion_list, proposals, clause_words, measures, snippets, ports, documentation
+    completion.py          with completion_list, proposals, node_proposals, clause_words, measures, snippets,
+                           ports, documentation
     xml_completion.py      the same in XML, of the same proposals
     hover.py, signature.py   with describe and clause_enforcement
     navigation.py, relations.py, calls.py, node_path.py   from a name to its definition, its uses and its callers

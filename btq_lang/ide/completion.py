@@ -15,6 +15,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.ide import node_proposals as of_nodes
 from btq_lang.ide import proposals as offer
 from btq_lang.ide.block import line_start
 from btq_lang.ide.clause_words import Expected, expected, is_count, is_window
@@ -152,7 +153,7 @@ def _in_braces(workspace: Workspace, path: str, place: Place, text: str, offset:
     entry = entry_at(workspace, path, offset)
     keys = [] if entry is None else list(offer.keys(workspace, path, entry, begun.is_root))
     if not begun.is_root and place.node is not None:
-        keys.insert(0, offer.SAME_ENTRY)
+        keys.insert(0, of_nodes.SAME_ENTRY)
     return Completion(begun.span, tuple(replace(one, insert=f"{one.insert}{begun.closing}") for one in keys))
 
 
@@ -163,8 +164,8 @@ def _in_string(workspace: Workspace, path: str, place: Place, text: str, offset:
         return Completion(Span(offset - len(place.text), offset), tuple(offer.includes(workspace, path, quoted=False)))
     key = place.key
     entry = entry_at(workspace, path, offset)
-    if key is not None and entry is not None and offer.is_script(workspace, path, place.node, key):
-        typed, found = offer.in_script(workspace, path, entry, place.text)
+    if key is not None and entry is not None and of_nodes.is_script(workspace, path, place.node, key):
+        typed, found = of_nodes.in_script(workspace, path, entry, place.text)
         return Completion(Span(offset - typed, offset), found)
     whole = Span(offset - len(place.text) - 1, offset)
     if key in ("ID", "Quality", "main_tree_to_execute") or place.last in ("satisfies", "satisfices", ","):
@@ -198,7 +199,7 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
             if "=" in before[:-1]
             else place.key or (before[-2] if len(before) > 1 else "")
         )
-        unit = offer.port_unit(workspace, path, place.node, key)
+        unit = of_nodes.port_unit(workspace, path, place.node, key)
         wanted = Measured("s" if unit == "ms" else unit, is_certain=True)  # btq adds the milliseconds
         if begun[1] and wanted.unit is None:
             return None  # `num_attempts = 6 |`: the next attribute
@@ -263,7 +264,7 @@ def _line_heads(workspace: Workspace, path: str, place: Place) -> Iterator[Propo
     elif place.block == "clauses":
         yield from _clause_words(workspace, path, Expected(clause=True), place)
     elif place.block in ("tree", "node"):
-        yield from offer.nodes(workspace, path)
+        yield from of_nodes.nodes(workspace, path)
         yield from offer.node_clause_words()
         if place.block == "tree":
             yield from offer.port_heads()
@@ -286,13 +287,13 @@ def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Itera
         wanted = Expected(condition=True) if last == ":" else replace(expected(place.group), clause=False)
         yield from _others(_clause_words(workspace, path, wanted, place), place)
     elif first == "Root":
-        yield from offer.trees(workspace, path)
+        yield from of_nodes.trees(workspace, path)
     elif first == "QualityReq":
         yield from _in_requirement(workspace, path, place)
     elif first == "apply":
         yield from _in_apply(workspace, path, place)
     elif first in CATEGORIES and len(place.words) == 1:
-        yield from offer.unknown_nodes(workspace, path)
+        yield from of_nodes.unknown_nodes(workspace, path)
 
 
 def _others(found: Iterable[Proposal], place: Place) -> Iterator[Proposal]:
@@ -385,7 +386,7 @@ def _attached_requirement(place: Place) -> bool:
 
 def _in_node(workspace: Workspace, path: str, place: Place, first: str) -> Iterator[Proposal]:
     if place.depth == 0 and len(place.words) == 1 and first in CATEGORIES:
-        yield from offer.of_category(workspace, path, first)
+        yield from of_nodes.of_category(workspace, path, first)
         return
     list_word = _open_list(place)
     if list_word is not None:
@@ -402,18 +403,20 @@ def _in_node(workspace: Workspace, path: str, place: Place, first: str) -> Itera
     ports = ports or ports_of_kind(workspace, path, node.name, node.quoted)
     key = place.key
     if key is None:
-        yield from offer.ports(ports, place.given, node)
-        yield from offer.attributes(place.given, node)
+        yield from of_nodes.ports(ports, place.given, node)
+        yield from of_nodes.attributes(place.given, node)
         yield from offer.node_clause_words()
     elif key == "ID" and node.is_subtree:
-        yield from offer.trees(workspace, path)
+        yield from of_nodes.trees(workspace, path)
     elif key in RESERVED_ATTRIBUTES:
-        yield from offer.attribute_values(key)
+        yield from of_nodes.attribute_values(key)
     elif key in ("ID", "name"):
         return
     else:
         entry = entry_at(workspace, path, place.span.start)
-        yield from offer.port_values(workspace, path, entry, next((port for port in ports if port.name == key), None))
+        yield from of_nodes.port_values(
+            workspace, path, entry, next((port for port in ports if port.name == key), None)
+        )
 
 
 def _open_list(place: Place) -> str | None:

@@ -1,16 +1,13 @@
-"""What completion proposes, kind by kind: names of the file's scope and of the project, words of the language, the
-engine's nodes, qualities and units."""
+"""What completion proposes, kind by kind: names of the file's scope and of the project, words of the language,
+qualities and units; node_proposals.py has nodes and their ports."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
-from functools import lru_cache
 
-from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import beginning
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS, NodeKind, available, is_by_children, lookup
+from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.qualities import find as find_quality
 from btq_lang.catalog.qualities import parts as quality_parts
@@ -22,14 +19,12 @@ from btq_lang.ide.meaning import Found, is_main, match_of, subject
 from btq_lang.ide.measures import Measured, parameters_at
 from btq_lang.ide.moves import include_name
 from btq_lang.ide.outline import requirement_detail
-from btq_lang.ide.place import LineNode, Place, word_text
-from btq_lang.ide.ports import NodePort, declared_ports, ports_of_kind, ports_of_tree
+from btq_lang.ide.place import Place, word_text
 from btq_lang.requirements.nodes import nodes as nodes_in_scope
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import (
     Context,
     Entry,
-    Model,
     QualityDecl,
     Requirement,
     Signal,
@@ -39,7 +34,7 @@ from btq_lang.syntax.tree import (
     shape,
     written,
 )
-from btq_lang.util.record import Record, replace
+from btq_lang.util.record import Record
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.references import Mention, What
 from btq_lang.workspace.workspace import Workspace
@@ -141,7 +136,7 @@ def clauses(given: tuple[str, ...]) -> Iterator[Proposal]:
 
 def requirements(workspace: Workspace, path: str) -> Iterator[Proposal]:
     """Requirements of every file, those in scope first; one out of scope comes with its include."""
-    for found, include in _defined(workspace, path, Kind.REQUIREMENT):
+    for found, include in defined(workspace, path, Kind.REQUIREMENT):
         item = found.symbol.target
         text = requirement_detail(item) if isinstance(item, Requirement) else ""
         parameters = item.parameters if isinstance(item, Requirement) else ()
@@ -150,17 +145,6 @@ def requirements(workspace: Workspace, path: str) -> Iterator[Proposal]:
         fill = ", ".join(f"{key} = ${{{index}:{key}}}" for index, key in enumerate(needed, 1))
         snippet = f"{escaped(name)}({fill})" if needed else None
         yield Proposal(found.symbol.name, "requirement", text, name, snippet, "", found.symbol.name, include)
-
-
-def trees(workspace: Workspace, path: str) -> Iterator[Proposal]:
-    for found, include in _defined(workspace, path, Kind.TREE):
-        name = found.symbol.name
-        ports = declared_ports(found.symbol.target)
-        if not ports and workspace.scope(found.path).defines(Kind.MODEL, name):
-            ports = ports_of_tree(workspace, found.path, name)
-        head = written(name)
-        snippet = _with_ports(head, [port for port in ports if port.required]) if ports else None
-        yield Proposal(name, "tree", f"{len(ports)} ports" if ports else "", head, snippet, "", name, include)
 
 
 def undeclared(workspace: Workspace, path: str, kind: Kind, what: What) -> Iterator[Proposal]:
@@ -181,14 +165,14 @@ def undeclared(workspace: Workspace, path: str, kind: Kind, what: What) -> Itera
 
 
 def signals(workspace: Workspace, path: str) -> Iterator[Proposal]:
-    for found, include in _defined(workspace, path, Kind.SIGNAL):
+    for found, include in defined(workspace, path, Kind.SIGNAL):
         item = found.symbol.target
         unit = item.unit.text if isinstance(item, Signal) and item.unit else ""
         yield Proposal(found.symbol.name, "signal", unit, found.symbol.name, None, "", found.symbol.name, include)
 
 
 def _contexts(workspace: Workspace, path: str) -> Iterator[Proposal]:
-    for found, include in _defined(workspace, path, Kind.CONTEXT):
+    for found, include in defined(workspace, path, Kind.CONTEXT):
         item = found.symbol.target
         shown = ""
         if isinstance(item, Context) and item.condition is not None:
@@ -294,128 +278,6 @@ def includes(workspace: Workspace, path: str, quoted: bool) -> Iterator[Proposal
             yield Proposal(shown, "file", "", quote(shown) if quoted else shown)
 
 
-# ---- nodes ----
-
-
-def nodes(workspace: Workspace, path: str) -> Iterator[Proposal]:
-    """What a node may be: models, custom nodes in use, built-ins by symbol and name, SubTree."""
-    seen: set[str] = set()
-    for found, include in _defined(workspace, path, Kind.MODEL):
-        item = found.symbol.target
-        if isinstance(item, Model) and item.category.raw != "SubTree":
-            seen.add(found.symbol.name)
-            yield _model(workspace, found, item, include)
-    for name in _unknown(workspace, workspace.scope(path).paths):
-        if name not in seen:
-            yield Proposal(name, "node", "custom node", written(name), None, "", name)
-    yield from _builtins(workspace.project.target)
-    yield Proposal("SubTree", "keyword", "run another tree", "SubTree")
-    for category in ("Action", "Condition", "Decorator", "Control"):
-        yield Proposal(category, "keyword", "a custom node, with its category", category)
-
-
-def of_category(workspace: Workspace, path: str, category: str) -> Iterator[Proposal]:
-    """The IDs that may follow `SubTree`, `Action` …"""
-    if category == "SubTree":
-        yield from trees(workspace, path)
-        return
-    for found, include in _defined(workspace, path, Kind.MODEL):
-        item = found.symbol.target
-        if isinstance(item, Model) and item.category.raw == category:
-            yield _model(workspace, found, item, include)
-    scope = workspace.scope(path)
-    for name in _unknown(workspace, scope.paths):
-        if scope.find(Kind.MODEL, name) is None:
-            yield Proposal(name, "node", "custom node", written(name), None, "", name)
-
-
-def unknown_nodes(workspace: Workspace, path: str) -> Iterator[Proposal]:
-    """The custom nodes that no model declares yet."""
-    scope = workspace.scope(path)
-    for name in _unknown(workspace, workspace.files):
-        if scope.find(Kind.MODEL, name) is None:
-            yield Proposal(name, "node", "used here, not declared", written(name))
-
-
-def ports(known: tuple[NodePort, ...], given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
-    """The ports that have no value yet, those that need one first."""
-    for port in sorted((one for one in known if one.name not in given), key=lambda one: not one.required):
-        default = f" = {port.default}" if port.default else ""
-        detail = f"{port.direction}{f' : {port.type}' if port.type else ''}{default}"
-        snippet = f"{escaped(written(port.name))} = {hole(0, port)}"
-        insert = f"{written(port.name)} = "
-        documented = f"{node.category or ''} {node.name}".strip() + f"/{port.name}"
-        yield Proposal(port.name, "port", detail, insert, snippet, "", documented)
-
-
-def attributes(given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
-    """`name`, and the attributes that the engine reads at every node."""
-    if "name" not in given:
-        yield Proposal("name", "attribute", "instance name", "name = ", 'name = "$0"')
-    for kind in RESERVED_ATTRIBUTES.values():
-        if kind.group == "tool" or kind.name in given or (kind.name == "_autoremap" and not node.is_subtree):
-            continue
-        snippet = f'{kind.name} = "$0"' if kind.is_script else f"{kind.name} = ${{0:true}}"
-        yield Proposal(kind.name, "attribute", kind.doc, f"{kind.name} = ", snippet)
-
-
-def attribute_values(key: str) -> Iterator[Proposal]:
-    """The values of an attribute that is not a port; entries are not allowed there."""
-    if RESERVED_ATTRIBUTES[key].is_script:
-        yield from words(('""',), "keyword")
-    elif key == "_autoremap":
-        yield from words(("true", "false"), "enum")
-
-
-def port_values(workspace: Workspace, path: str, entry: Entry | None, port: NodePort | None) -> Iterator[Proposal]:
-    """The values of a port."""
-    if port is not None and port.content == "script":
-        yield from words(('""',), "keyword")
-        return
-    yield Proposal("{=}", "key", "the entry with the name of the port", "{=}")
-    for one in keys(workspace, path, entry, False) if entry is not None else ():
-        yield replace(one, label=f"{{{one.label}}}", insert=f"{{{one.insert}}}")
-    if port is not None and port.default:
-        yield Proposal(port.default, "enum", "default", port.default if is_plain(port.default) else quote(port.default))
-    if port is not None and port.type == "bool":
-        yield from words(("true", "false"), "enum")
-    if port is not None and port.type.endswith("NodeStatus"):
-        said = [word for word in port.doc.replace(",", " ").split() if word in _STATUSES]  # from the engine's table
-        yield from words(said if port.type.startswith("BT::") and said else _STATUSES, "enum")
-
-
-def in_script(workspace: Workspace, path: str, entry: Entry, before: str) -> tuple[int, tuple[Proposal, ...]]:
-    """What may follow in a script of an item, and how many characters before the cursor it replaces.
-
-    Args:
-        before: the part of the script before the cursor.
-    """
-    begun = re.search(r"@?\w*$", before)
-    word = begun[0] if begun else ""
-    others = () if word.startswith("@") else words(("true", "false"), "keyword")
-    return len(word), (*keys(workspace, path, entry, False), *others)
-
-
-def is_plain(value: str) -> bool:
-    """Whether a value needs no quotes."""
-    return is_name(value) or value.lstrip("-").replace(".", "", 1).isdecimal()
-
-
-def is_script(workspace: Workspace, path: str, node: LineNode | None, key: str) -> bool:
-    """Whether an attribute holds a script."""
-    attribute = RESERVED_ATTRIBUTES.get(key)
-    if attribute is not None:
-        return attribute.is_script
-    known = ports_of_kind(workspace, path, node.name, node.quoted) if node is not None else ()
-    return any(port.name == key and port.content == "script" for port in known)
-
-
-def port_unit(workspace: Workspace, path: str, node: LineNode, key: str) -> str | None:
-    """The unit of a number in a port."""
-    known = ports_of_kind(workspace, path, node.name, node.quoted)
-    return next((port.unit for port in known if port.name == key), None)
-
-
 # ---- knowledge ----
 
 
@@ -433,7 +295,7 @@ def qualities(workspace: Workspace, path: str, place: Place) -> Iterator[Proposa
             names = dict.fromkeys((part, part.replace("behaviour", "behavior"), one.name))
             yield Proposal(part, "quality", one.name, part, None, " ".join(names), one.id)
         return
-    for found, include in _defined(workspace, path, Kind.QUALITY):
+    for found, include in defined(workspace, path, Kind.QUALITY):
         item = found.symbol.target
         text = item.text.text if isinstance(item, QualityDecl) and item.text else ""
         yield Proposal(
@@ -484,7 +346,7 @@ def rules() -> Iterator[Proposal]:
 # ---- parts of the above ----
 
 
-def _defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Definition, str]]:
+def defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Definition, str]]:
     """Every definition of a kind: those in scope, then those of other files with the file to include, unless including
     it duplicates a definition or makes a circle."""
     scope = workspace.scope(path)
@@ -535,77 +397,16 @@ def _mentioned(workspace: Workspace, paths: Iterable[str], *kinds: What) -> Iter
             yield from [one for one in file.mentions_of(entry) if one.what is first or one.what is last]
 
 
-def _unknown(workspace: Workspace, paths: Iterable[str]) -> list[str]:
+def unknown(workspace: Workspace, paths: Iterable[str]) -> list[str]:
     """The custom nodes in use."""
     used = frozenset().union(*[workspace.files[path].kinds for path in paths])
     return sorted({name for name, quoted in used if name and lookup(name, quoted) is None})
 
 
-def _model(workspace: Workspace, found: Definition, item: Model, include: str) -> Proposal:
-    name = found.symbol.name
-    needed = [port for port in ports_of_kind(workspace, found.path, name) if port.required]
-    text = item.text.text if item.text else ""
-    detail = f"{item.category.raw}{f': {text}' if text else ''}"
-    return Proposal(name, "node", detail, written(name), _with_ports(written(name), needed), "", name, include)
-
-
-@lru_cache(2)  # a project has one version of the engine
-def _builtins(target: str) -> tuple[Proposal, ...]:
-    kinds = [kind for kind in BUILTINS.values() if available(kind, target)]
-    shared = {word: kind for kind in reversed(kinds) for word in kind.aliases if is_by_children(word)}
-    own = (one for kind in kinds if shared.keys().isdisjoint(kind.aliases) for one in _builtin(kind))
-    return (*own, *(_by_children(word, kind) for word, kind in shared.items()))
-
-
-def _builtin(kind: NodeKind) -> Iterator[Proposal]:
-    """A built-in by its symbol, if it has one, and by its shortest name."""
-    needed = [
-        NodePort(one.name, one.direction, one.type, one.default, True, one.doc, one.unit)
-        for one in kind.ports
-        if one.required
-    ]
-    below = "\n    $0" if kind.category in ("Control", "Decorator") else ""
-    for word in dict.fromkeys((*kind.symbols[:1], min((kind.tag, *kind.aliases), key=len), kind.tag)):
-        snippet = _with_ports(word, needed) or (escaped(word) if below else None)
-        named = f"{kind.tag} {word}" if word in kind.symbols else ""
-        yield Proposal(word, "node", kind.doc, word, f"{snippet}{below}" if snippet else None, named, kind.tag)
-
-
-def _by_children(word: str, smallest: NodeKind) -> Proposal:
-    """A word that several kinds share, in their place."""
-    snippet = f"{word} {_CASES}" if smallest.flow == "switch" else None
-    return Proposal(word, "node", smallest.doc, word, snippet, "", word)
-
-
-def _with_ports(head: str, needed: Iterable[NodePort]) -> str | None:
-    holes = [f"{escaped(written(port.name))} = {hole(index, port)}" for index, port in enumerate(needed, 1)]
-    return f"{escaped(head)} ({' '.join(holes)})" if holes else None
-
-
-def hole(index: int, port: NodePort, in_xml: bool = False) -> str:
-    """A snippet's placeholder for a value of the port; in XML it is in quotes already, and has no unit."""
-    if port.content == "script":
-        return f"${{{index}:true}}" if in_xml else f'"${{{index}:true}}"'
-    if port.unit == "ms":
-        return f"${{{index}:1000}}" if in_xml else f"${{{index}:1 s}}"
-    if port.direction != "input":
-        return f"{{${{{index}:{escaped(port.name)}}}\\}}"
-    if port.type in _NUMBERS:
-        return f"${{{index}:1}}"
-    return f"${{{index}:{{=\\}}}}"
-
-
-SAME_ENTRY = Proposal("=", "key", "the entry with the name of the port", "=")
-_STATUSES = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
-_NUMBERS = ("int", "unsigned int", "double", "float", "int64_t", "uint64_t")
 _TYPES = (
     *("string", "bool", "int", "double", "float", "int64_t", "uint64_t", "std::vector<double>", "std::vector<string>"),
 )
 _COMPOUNDS = ("m/s", "m/s^2", "rad/s", "deg/s", "1/s", "%/h", "kB/s")
-_CASES = (
-    '(variable = {${1:key}\\} case_1 = "${2:first}" case_2 = "${3:second}")\n    ${4:First}\n    ${5:Second}\n'
-    "    ${0:Otherwise}"
-)
 _ITEMS = (
     ("BehaviorTree", "BehaviorTree ${1:Name}\n    ->\n        $0"),
     ("QualityReq", 'QualityReq ${1:id} : ${2:quality} "${3:text}"\n    $0'),

@@ -16,6 +16,7 @@ from btq_lang.btcpp.typed_xml import TypedTag, typed_tag, without
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, lookup
+from btq_lang.ide import node_proposals as of_nodes
 from btq_lang.ide import proposals as offer
 from btq_lang.ide.place import LineNode, open_brace
 from btq_lang.ide.ports import NodePort, ports_of_kind, ports_of_tree
@@ -87,7 +88,7 @@ def _tags(workspace: Workspace, path: str, tag: TypedTag) -> Iterator[Proposal]:
         for name in ("input_port", "output_port", "inout_port"):
             yield Proposal(name, "keyword", "", name, f'{name} name="${{1:name}}" type="${{2:std::string}}"')
     elif "BehaviorTree" in tag.parents:
-        for one in offer.nodes(workspace, path):
+        for one in of_nodes.nodes(workspace, path):
             if _is_tag(one.label):
                 yield replace(one, insert=one.label, snippet=_with_ports(workspace, path, one.label))
 
@@ -106,7 +107,7 @@ def _with_ports(workspace: Workspace, path: str, name: str) -> str:
 
 
 def _given(port: NodePort, at: int) -> str:
-    return f'{offer.escaped(port.name)}="{offer.hole(at, port, in_xml=True)}"'
+    return f'{offer.escaped(port.name)}="{of_nodes.hole(at, port, in_xml=True)}"'
 
 
 # ---- attributes ----
@@ -122,7 +123,7 @@ def _attributes(workspace: Workspace, path: str, tag: TypedTag) -> Iterator[Prop
     node = _node(tag)
     ports = _ports(workspace, path, node)
     by_name = {port.name: port for port in ports}
-    for one in (*offer.ports(ports, given, node), *offer.attributes(given, node)):
+    for one in (*of_nodes.ports(ports, given, node), *of_nodes.attributes(given, node)):
         port = by_name.get(one.label)
         snippet = _given(port, 0) if port is not None else f'{one.label}="$0"'
         yield replace(one, insert=f'{one.label}=""', snippet=snippet)
@@ -148,15 +149,15 @@ def _in_value(
 ) -> tuple[Span, tuple[Proposal, ...]]:
     node, begun = _node(tag), open_brace(xml[tag.word.start :], offset - tag.word.start)
     is_of_node = "BehaviorTree" in tag.parents and tag.key not in ("ID", "name")
-    is_script = is_of_node and offer.is_script(workspace, path, node, tag.key)
+    is_script = is_of_node and of_nodes.is_script(workspace, path, node, tag.key)
     if is_of_node and begun is not None and not is_script:
         keys = list(offer.keys(workspace, path, entry, begun.is_root)) if entry is not None else []
-        same = () if begun.is_root else (offer.SAME_ENTRY,)
+        same = () if begun.is_root else (of_nodes.SAME_ENTRY,)
         found = tuple(replace(one, insert=f"{one.insert}{begun.closing}") for one in (*same, *keys))
         return begun.span.shifted(tag.word.start), found
     if is_script:
         before = xml[tag.word.start : offset]
-        typed, found = offer.in_script(workspace, path, entry, before) if entry is not None else (0, ())
+        typed, found = of_nodes.in_script(workspace, path, entry, before) if entry is not None else (0, ())
         return Span(offset - typed, offset), found
     found = tuple(_values(workspace, path, entry, tag, node))
     spelt = (replace(one, insert=escape(_unquoted(one.insert)), snippet=None) for one in found)
@@ -167,7 +168,7 @@ def _values(workspace: Workspace, path: str, entry: Entry | None, tag: TypedTag,
     above = tag.parents[-1] if tag.parents else ""
     place = tag.name, tag.key
     if place == ("root", "main_tree_to_execute"):
-        yield from offer.trees(workspace, path)
+        yield from of_nodes.trees(workspace, path)
     elif place == ("root", "BTCPP_format"):
         yield from offer.words(("4",), "enum")
     elif place == ("include", "path"):
@@ -175,16 +176,16 @@ def _values(workspace: Workspace, path: str, entry: Entry | None, tag: TypedTag,
     elif place == ("BehaviorTree", "ID"):
         yield from offer.undeclared(workspace, path, Kind.TREE, What.TREE)
     elif above == "TreeNodesModel" and tag.key == "ID":
-        yield from offer.unknown_nodes(workspace, path)
+        yield from of_nodes.unknown_nodes(workspace, path)
     elif tag.parents[-2:-1] == ("TreeNodesModel",):
         yield from offer.types() if tag.key == "type" else ()
     elif tag.name in CATEGORIES and tag.key == "ID":
-        yield from offer.of_category(workspace, path, tag.name)
+        yield from of_nodes.of_category(workspace, path, tag.name)
     elif tag.key in RESERVED_ATTRIBUTES:
-        yield from offer.attribute_values(tag.key)
+        yield from of_nodes.attribute_values(tag.key)
     elif "BehaviorTree" in tag.parents and tag.key not in ("ID", "name"):
         known = (port for port in _ports(workspace, path, node) if port.name == tag.key)
-        yield from offer.port_values(workspace, path, entry, next(known, None))
+        yield from of_nodes.port_values(workspace, path, entry, next(known, None))
 
 
 def _unquoted(text: str) -> str:
