@@ -1,0 +1,99 @@
+"""What changes for a node of Nav2 on the way from one distribution to another.
+
+Sources: the files and tables of `catalog/nav2`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, TypeVar
+
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, FILES
+from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_PORTS
+from btq_lang.checks import lookups
+from btq_lang.checks.ports import adding_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
+from btq_lang.syntax.tree import written
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.nav2.changes import Change
+    from btq_lang.checks.view import View
+    from btq_lang.syntax.tree import Word
+    from btq_lang.workspace.resolved import ResolvedNode
+
+    Key = TypeVar("Key", bound=tuple[str, ...])
+
+
+def is_of_nav2(view: View, distribution: str, node: str) -> bool:
+    """Whether a distribution has a node."""
+    return _ports(view, distribution, node) is not None
+
+
+def changes_of(view: View, seen: ResolvedNode, name: Word, steps: tuple[str, ...]) -> Iterator[Diagnostic]:
+    """What changes for a node of Nav2 on some steps."""
+    renamed = _first(RENAMED, ((step, name.text) for step in steps))
+    if _ports(view, steps[-1], name.text) is None:
+        yield _without_node(view, name, renamed, steps)
+    before, ports = _ports(view, steps[0], name.text), _ports(view, steps[-1], renamed or name.text)
+    if before is not None and ports is not None:
+        yield from _without_ports(seen, name.text, before - ports, steps)
+    is_forward = DISTRIBUTIONS.index(steps[-1]) > DISTRIBUTIONS.index(steps[0])
+    for change in CHANGES:
+        if is_forward and change.since in steps[1:] and change.concerns(name.text):
+            yield from _changed(view, seen, name, change)
+
+
+def _ports(view: View, distribution: str, node: str) -> frozenset[str] | None:
+    """The names of the ports of a node in a distribution; None if it does not have the node."""
+    return lookups.ports_in_file(view.store, FILES[distribution], Kind.MODEL, node)
+
+
+def _without_node(view: View, name: Word, renamed: str | None, steps: tuple[str, ...]) -> Diagnostic:
+    gone = next(step for step in steps if _ports(view, step, name.text) is None)
+    instead = INSTEAD.get((gone, name.text))
+    return Diagnostic(
+        "target-breaks",
+        name.span,
+        f"Nav2 has no `{name.text}` in {gone.title()}" + _called(renamed),
+        notes=(f"write {instead}",) if instead else (),
+        fixes=(replace_fix(f"Replace `{name.text}` with `{renamed}`", name.span, renamed),) if renamed else (),
+    )
+
+
+def _without_ports(seen: ResolvedNode, node: str, gone: frozenset[str], steps: tuple[str, ...]) -> Iterator[Diagnostic]:
+    for pair in seen.node.attributes:
+        port = pair.key.text
+        if port not in gone:
+            continue
+        renamed = _first(RENAMED_PORTS, ((step, node, port) for step in steps))
+        yield Diagnostic(
+            "target-breaks",
+            pair.key.span,
+            f"`{node}` has no port `{port}` in {steps[-1].title()}" + _called(renamed),
+            fixes=(replace_fix(f"Replace `{port}` with `{renamed}`", pair.key.span, renamed),) if renamed else (),
+        )
+
+
+def _called(renamed: str | None) -> str:
+    return f": it is called `{renamed}`" if renamed else ""
+
+
+def _changed(view: View, seen: ResolvedNode, name: Word, change: Change) -> Iterator[Diagnostic]:
+    value = seen.node.attribute(change.port) if change.port else None
+    if not change.matches(value.text if value is not None else None):
+        return
+    fixes: tuple[Fix, ...] = ()
+    if change.keeps is not None:
+        fixes = adding_fix(view, seen.node, "Keep its meaning", f"{written(change.port)} = {written(change.keeps)}")
+    yield Diagnostic(
+        "target-breaks" if change.breaks else "target-differs",
+        (value or name).span,
+        f"from {change.since.title()} on `{name.text}` {change.what}",
+        notes=(change.instead,) if change.instead else (),
+        fixes=fixes,
+    )
+
+
+def _first(table: Mapping[Key, str], keys: Iterable[Key]) -> str | None:
+    return next((table[key] for key in keys if key in table), None)
