@@ -13,7 +13,8 @@ enforcement the nodes that requirements add, and how each clause is enforced; `e
 bundle      a mission and all that it includes as one document
 outputs     the texts that a build writes; `as_built` finds the mission that such texts were made of
 opening     files from the disk, XML too, as a workspace
-side_file   what of a mission its XML cannot hold; `instances` numbers the nodes as the engine does
+side_file   what of a mission its XML cannot hold; `instances` numbers the nodes as the engine does, and
+            `side_elements` finds what it says of each element
 restoring   a mission from its XML and its side file
 xsd         a schema of XML files with a project's nodes; `interfaces`: what these may have inside and beside them
 marks       what a build puts into the XML so that an import knows it

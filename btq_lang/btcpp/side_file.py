@@ -25,6 +25,7 @@ from btq_lang.syntax.tree import Apply, Context, Entry, Qualities, QualityDecl, 
 from btq_lang.syntax.tree import Requirement as RequirementItem
 from btq_lang.syntax.tree import Signal as SignalItem
 from btq_lang.util.record import Record, fields_of
+from btq_lang.workspace.file import SIDE_SUFFIX
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
@@ -33,7 +34,6 @@ Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | Non
 FORMAT: Final = "btq-requirements"
 VERSION: Final = 2  # 1: each condition had its contexts in it
 VERSIONS: Final = (1, 2)  # that are read
-SIDE_SUFFIX: Final = ".qreq.json"
 
 
 class Built(Record):

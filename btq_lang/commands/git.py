@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.btcpp.marks import is_built_of, named_beside
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.recognition import is_mission
-from btq_lang.btcpp.side_file import SIDE_SUFFIX, xml_path
+from btq_lang.btcpp.side_file import xml_path
 from btq_lang.util.globs import glob_matcher
 from btq_lang.workspace.config import Project, include_candidates
-from btq_lang.workspace.file import SUFFIXES, File
+from btq_lang.workspace.file import SIDE_SUFFIX, SUFFIXES, File
 from btq_lang.workspace.loader import absolute, find_project, read
 from btq_lang.workspace.workspace import Workspace
 

@@ -10,7 +10,7 @@ all features and the checks that they use takes a third of that time.
     completion.py          with completion_list, proposals, node_proposals, clause_words, measures, snippets,
                            ports, documentation
     xml_completion.py      the same in XML, of the same proposals
-    hover.py, signature.py   with describe and clause_enforcement
+    hover.py, signature.py   with describe, clause_enforcement and built_xml
     navigation.py, relations.py, calls.py, node_path.py   from a name to its definition, its uses and its callers
     rename.py, moves.py    edits in every file that names a thing
     actions.py             with refactor, block, short_form and unused

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.btcpp.marks import described
+from btq_lang.btcpp.side_file import side_path
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.ide import describe
+from btq_lang.ide.built_xml import said_in_xml
 from btq_lang.ide.clause_enforcement import missions_of
 from btq_lang.ide.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
 from btq_lang.ide.outline import requirement_detail
@@ -15,7 +16,7 @@ from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Claim, Entry, Requirement, Root
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span, counted
-from btq_lang.workspace.file import Definition, File
+from btq_lang.workspace.file import Definition
 from btq_lang.workspace.inputs import everything
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.references import What
@@ -67,11 +68,14 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
     return tuple(found)
 
 
-def code_lenses(workspace: Workspace, path: str) -> tuple[Lens, ...]:
+def code_lenses(workspace: Workspace, path: str, side: str | None = None) -> tuple[Lens, ...]:
     """How many places use a requirement, how many nodes it names itself, how many nodes call a tree; the main tree.
 
     As a reader counts: a requirement that is defined at a node is used there, and has a lens only if there are more
     uses; the `Root` that names the main tree does not call it.
+
+    Args:
+        side: the text of the side file of an XML file, if it has one.
     """
     found: list[Lens] = []
     for place in workspace.defined_in(path):
@@ -106,12 +110,16 @@ def code_lenses(workspace: Workspace, path: str) -> tuple[Lens, ...]:
             titles = [*(titles if uses or not nodes else ()), *holds]
         if uses or nodes or not is_in_place:
             found.append(Lens(place.span, ", ".join(titles), tuple(dict.fromkeys((*uses, *nodes)))))
-    return (*found, *_described(workspace.files[path]))
+    return (*found, *_built(workspace, path, side))
 
 
-def _described(file: File) -> Iterator[Lens]:
-    """How many requirements and qualities each element has that a build has described in the XML."""
-    for tag, lines in described(file.origin.text) if file.origin is not None else ():
+def _built(workspace: Workspace, path: str, side: str | None) -> Iterator[Lens]:
+    """How many requirements and qualities each element of XML has by its build; what is wrong with its side file."""
+    file = workspace.files[path]
+    said = said_in_xml(workspace, path, side)
+    if said.problem:
+        yield Lens(Span(0, 0), f"{side_path(path.rpartition('/')[2])} {said.problem}", ())
+    for tag, lines in sorted(said.lines.items()):
         qualities = sum(line.startswith("satisfices ") for line in lines)
         counts = (counted(len(lines) - qualities, "requirement"), counted(qualities, "quality", "qualities"))
         start = file.from_disk(tag)

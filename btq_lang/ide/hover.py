@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from btq_lang.btcpp.marks import described
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import phrase_at
 from btq_lang.ide import describe
+from btq_lang.ide.built_xml import said_in_xml
 from btq_lang.ide.meaning import Found, Subject, at, definition, everywhere, quality_match, subject
 from btq_lang.ide.navigation import writes
 from btq_lang.ide.place import item_tokens
@@ -25,27 +25,31 @@ class Hover(Record):
     markdown: str
 
 
-def hover(workspace: Workspace, path: str, offset: int) -> Hover | None:
+def hover(workspace: Workspace, path: str, offset: int, side: str | None = None) -> Hover | None:
     """The hover at a place: a node with its ports and semantics, a requirement with its text and its nodes, a quality
     with its definition, an entry with its readers and writers, a quantity in SI units, a rule's page, a word of the
-    language."""
+    language.
+
+    Args:
+        side: the text of the side file of an XML file, if it has one.
+    """
     found = at(workspace, path, offset)
     if found is None:
         return _word_of_the_language(workspace.files[path], offset)
     markdown = _explained(workspace, found, subject(workspace, found)) or ""
-    said = _described(workspace.files[path], found) if found.mention.what in (What.NODE, What.TREE) else ""
+    said = _built(workspace, found, side) if found.mention.what in (What.NODE, What.TREE) else ""
     both = "\n\n".join(filter(None, (markdown, said)))
     return Hover(found.span, both) if both else None
 
 
-def _described(file: File, found: Found) -> str:
-    """The requirements and qualities of an element that a build has described in the XML."""
+def _built(workspace: Workspace, found: Found, side: str | None) -> str:
+    """The requirements and qualities of an element of XML by its build."""
+    file = workspace.files[found.path]
     if file.origin is None:
         return ""
-    xml = file.origin.text
-    tag = xml.rfind("<", 0, file.on_disk(found.span).start) + 1
-    lines = next((lines for start, lines in described(xml) if start == tag), ())
-    return "\n".join(("Described by `btq build`:\n", *(f"* {line}" for line in lines))) if lines else ""
+    tag = file.origin.text.rfind("<", 0, file.on_disk(found.span).start) + 1
+    lines = said_in_xml(workspace, found.path, side).lines.get(tag, ())
+    return "\n".join(("Written by `btq build`:\n", *(f"* {line}" for line in lines))) if lines else ""
 
 
 def _explained(workspace: Workspace, found: Found, wanted: Subject) -> str | None:

@@ -58,8 +58,11 @@ def register(server: Server) -> None:
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     def did_change_watched_files(params: types.DidChangeWatchedFilesParams) -> None:
-        if _concerns(session, {convert.path(change.uri) for change in params.changes}):
+        changed = {convert.path(change.uri) for change in params.changes}
+        if _concerns(session, changed):
             server.reload()
+        elif any(map(_is_side_file, changed)) and server.can_refresh("code_lens"):
+            server.workspace_code_lens_refresh(None)  # nothing else is asked for again, or depends on it
 
 
 def _work_in(session: Session, folders: tuple[str, ...]) -> None:
@@ -75,7 +78,10 @@ async def _register_watchers(server: Server) -> None:
     watching = workspace.did_change_watched_files if workspace else None
     if watching is None or not watching.dynamic_registration:
         return
-    patterns = [f"**{ending}" if ending[0] == "/" else f"**/*{ending}" for ending in _endings()]
+    from btq_lang.workspace.file import SIDE_SUFFIX  # as in `_endings`
+
+    endings = (*_endings(), SIDE_SUFFIX)
+    patterns = [f"**{ending}" if ending[0] == "/" else f"**/*{ending}" for ending in endings]
     watchers = [types.FileSystemWatcher(pattern) for pattern in patterns]
     # If a folder is deleted as a whole, an editor reports only the folder.
     watchers.append(types.FileSystemWatcher("**/*", types.WatchKind.Delete))
@@ -123,6 +129,12 @@ def _endings() -> tuple[str, ...]:
     )
 
     return *SUFFIXES, ".xml", "/btq.toml", "/pyproject.toml"
+
+
+def _is_side_file(path: str) -> bool:
+    from btq_lang.workspace.file import SIDE_SUFFIX  # as above
+
+    return path.endswith(SIDE_SUFFIX)
 
 
 _TO_OPEN = 0.02  # seconds, in which an editor opens its visible files: these are checked first

@@ -321,6 +321,16 @@ class Session:
         """Forget a file that no longer exists."""
         self._checked.pop(path, None)
 
+    def side_file(self, path: str) -> str | None:
+        """The text of the side file of an XML file, empty if it cannot be read; None if there is none."""
+        if not path.endswith(".xml"):
+            return None
+        from btq_lang.btcpp.side_file import side_path
+        from btq_lang.workspace.loader import read, stamp
+
+        side = side_path(path)
+        return None if stamp(side) is None else read(side)[0] or ""
+
     def setting(self, name: str, default: bool) -> bool:
         """A setting of the user, if it is a bool."""
         value = self.settings.get(name)

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from lsp_editor import Editor, Message, part
 
+from btq_lang import build, open_workspace
 from btq_lang.btcpp.recognition import is_mission
 from btq_lang.checks import check
 from btq_lang.commands.files import Files
@@ -255,9 +256,46 @@ def test_requirements_that_a_build_has_described(editor: Editor) -> None:
         *((10, "2 requirements, 2 qualities"), (13, "1 requirement")),
     ]
     shown = editor.request("textDocument/hover", **editor.at("built.xml", 13, 8))["contents"]["value"]
-    assert shown.endswith("Described by `btq build`:\n\n* inline (energy): Little; takes at most 3 s")
+    assert shown.endswith("Written by `btq build`:\n\n* inline (energy): Little; takes at most 3 s")
     other = editor.request("textDocument/hover", **editor.at("built.xml", 14, 8))["contents"]["value"]
-    assert "Described" not in other
+    assert "btq build" not in other
+
+
+def test_requirements_in_a_side_file(tmp_path: Path) -> None:
+    """They count instead of what is described, unless the file is damaged, or the XML is not that of the build."""
+    mission = tmp_path / "main.btq"
+    pick = "    Action Pick\n        satisfies QualityReq quick takes at most 3 s\n"
+    mission.write_text(f"Root Main\nBehaviorTree Main\n{pick}", encoding="utf-8")
+    files = build(open_workspace(str(mission)), str(mission)).files
+    xml, side = (files[str(tmp_path / name)] for name in ("main.xml", "main.qreq.json"))
+    (tmp_path / "main.xml").write_text(xml, encoding="utf-8")
+    editor = Editor(tmp_path, capabilities={"workspace": {"codeLens": {"refreshSupport": True}}})
+    editor.open("main.xml", xml)
+
+    def shown() -> tuple[list[tuple[int, str]], str]:
+        lenses = editor.request("textDocument/codeLens", **editor.document("main.xml"))
+        hover = editor.request("textDocument/hover", **editor.at("main.xml", 4, 17))["contents"]["value"]
+        titles = [(lens["range"]["start"]["line"], lens["command"]["title"]) for lens in lenses]
+        return titles, hover.rpartition("Written by `btq build`:\n\n")[2]
+
+    main, counts = (3, "main tree"), (4, "1 requirement")
+    assert shown() == ([main, counts], "* quick: takes at most 3 s")
+    editor.write("main.qreq.json", side)
+    assert shown() == ([main, counts], "* quick: takes at most 3 s (monitored)")
+    assert [each["method"] for each in editor.asked].count("workspace/codeLens/refresh") == 1
+    for damaged in (side[:-30], "\0"):
+        editor.write("main.qreq.json", damaged)
+        assert shown() == ([main, (2, "main.qreq.json cannot be read"), counts], "* quick: takes at most 3 s")
+    editor.write("main.qreq.json", side.replace("3 s", "4 s"))
+    assert shown() == ([main, counts], "* quick: takes at most 4 s (monitored)")
+    editor.change("main.xml", f"{xml}<!-- mine -->\n")
+    other = (2, "main.qreq.json belongs to other XML than this")
+    assert shown() == ([main, other, counts], "* quick: takes at most 3 s")
+    editor.change("main.xml", xml)
+    assert shown() == ([main, counts], "* quick: takes at most 4 s (monitored)")
+    (tmp_path / "main.qreq.json").unlink()
+    assert shown() == ([main, counts], "* quick: takes at most 3 s")
+    assert editor.close() == ""
 
 
 def test_entries_in_xml_are_coloured(foreign: Editor) -> None:

@@ -6,8 +6,8 @@ import json
 import os
 from collections.abc import Iterator, Sequence
 
-from btq_lang.btcpp.side_file import SIDE_SUFFIX
 from btq_lang.util.record import Record
+from btq_lang.workspace.file import SIDE_SUFFIX
 from btq_lang.workspace.loader import absolute, read
 
 
