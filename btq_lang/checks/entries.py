@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
 from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.scripts import is_script
@@ -114,6 +115,9 @@ class Blackboards:
         self._ports: set[Name] = set()
         self._signals = view.ask(_signal_entries)
         self.root_names: dict[str, int] = {}
+        for name, direction in view.look_up(lookups.outside_entries):
+            touch = Touch(name, direction != "output", direction != "input", direction != "input")
+            self._uses.setdefault(("", name), []).append(touch)
         trees = {tree: view.ask(_handling, tree) for tree in view.names(Kind.TREE)}
         self._roots = frozenset([tree for tree in trees if not view.ask(callers, tree)])
         for tree, handling in trees.items():

@@ -20,6 +20,7 @@ from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.port_types import is_text, meetings
 
 if TYPE_CHECKING:
+    from btq_lang.catalog.nav2.navigator import OutsideEntry
     from btq_lang.workspace.custom_nodes import LikelyPort
     from btq_lang.workspace.file import Definition, Origin
     from btq_lang.workspace.symbols import Symbol
@@ -142,8 +143,20 @@ def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 @of_viewpoint
 def distribution(workspace: Workspace, viewpoint: str) -> str | None:
     """The distribution whose nodes of Nav2 are declared for a file."""
-    paths = workspace.scope(viewpoint).node_paths
-    return next((name for name, path in FILES.items() if path in paths), None)
+    return _distribution(workspace, viewpoint)
+
+
+@of_viewpoint
+def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry, ...]:
+    """The entries of the root blackboard that the program sets or reads, as far as they are known."""
+    if workspace.factory is not None and workspace.factory.entries:
+        return workspace.factory.entries
+    found = _distribution(workspace, viewpoint)
+    if found is None:
+        return ()
+    from btq_lang.catalog.nav2.navigator import outside_entries as of  # only for Nav2
+
+    return of(found)
 
 
 @of_viewpoint
@@ -511,3 +524,8 @@ def _is_of_node(item: object) -> bool:
 
 def _declaration(workspace: Workspace, found: Definition) -> Declaration:
     return Declaration(found.path, workspace.files[found.path].facts[id(found.entry.item)], found.symbol)
+
+
+def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
+    paths = workspace.scope(viewpoint).node_paths
+    return next((name for name, path in FILES.items() if path in paths), None)

@@ -11,6 +11,8 @@ from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from btq_lang.checks import lookups
+from btq_lang.checks.calls import callers
 from btq_lang.checks.entries import Mention, blackboards
 from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
@@ -39,6 +41,8 @@ def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if min(counts.values()) > 1:
         return
     others = dict.fromkeys((*counts, *(port.name.text for port in tree.ports if port.name is not None)))
+    if (outside := view.look_up(lookups.outside_entries)) and not view.ask(callers, tree.name.text):
+        others |= dict.fromkeys(name for name, _ in outside)
     if any(mention.name[:1] == "@" for mention in mentions):
         others |= dict.fromkeys(f"@{name}" for name in view.ask(_root_names))
     alike = _Alike(others)

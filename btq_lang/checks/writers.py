@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
+from btq_lang.checks import lookups
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.requirements import nodes
 from btq_lang.syntax.tree import Pair, Port, Verbatim, port_named
@@ -46,8 +47,9 @@ class Entries(Record):
 
 
 def written_keys(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
-    """The entries that something in scope may write, without their `@`."""
-    return frozenset().union(*[each.written for each in store.ask(all_entries, viewpoint)])
+    """The entries that something in scope or its program may write, without their `@`."""
+    outside = [name for name, direction in lookups.outside_entries(store, viewpoint) if direction != "input"]
+    return frozenset(outside).union(*[each.written for each in store.ask(all_entries, viewpoint)])
 
 
 def all_entries(store: Store[Workspace], viewpoint: str) -> tuple[Entries, ...]:

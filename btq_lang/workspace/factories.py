@@ -20,6 +20,7 @@ from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
+    from btq_lang.catalog.nav2.navigator import OutsideEntry
     from btq_lang.diagnostics.model import Diagnostic
 
     # The message, the keys below `factory` to its place, and the string that it is about.
@@ -37,6 +38,7 @@ class Factory(Record):
         files: those of `load`, in order, each once.
         node_files: those of `nodes` that are not in `files`.
         lost: the patterns that match no file, so that it is not known what the program registers.
+        entries: of the root blackboard, which the program sets or reads, if it is known to be bt_navigator.
     """
 
     name: str
@@ -46,6 +48,7 @@ class Factory(Record):
     files: tuple[str, ...] = ()
     node_files: tuple[str, ...] = ()
     lost: tuple[str, ...] = ()
+    entries: tuple[OutsideEntry, ...] = ()
 
 
 def read_factories(tables: object) -> tuple[tuple[Factory, ...], list[Complaint]]:
@@ -81,7 +84,7 @@ def read_factories(tables: object) -> tuple[tuple[Factory, ...], list[Complaint]
         elif any(name == each.name for each in factories):
             complaints.append((f"duplicate factory `{name}`", (*at, "name"), name))
         elif name:
-            factories.append(Factory(name, *((values[key] or ()) for key in ("load", "main", "nodes"))))
+            factories.append(Factory(name, values["load"] or (), values["main"] or (), values["nodes"] or ()))
     return tuple(factories), complaints
 
 
