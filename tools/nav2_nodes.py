@@ -1,4 +1,5 @@
-"""Writes `btq_lang/catalog/nav2/*.btq`, the nodes of Nav2 by distribution, from a clone of navigation2.
+"""Writes `btq_lang/catalog/nav2/*.btq`, the nodes of Nav2 by distribution, from a clone of navigation2, and `ports.py`
+beside them.
 
     python tools/nav2_nodes.py CLONE
 
@@ -11,6 +12,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from textwrap import wrap
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -18,7 +20,8 @@ sys.path.insert(0, str(ROOT))
 from nav2_sources import sources  # noqa: E402  # beside this script
 from nav2_words import NODES, OF_MESSAGES, PORTS, REQUIRED, REQUIRED_IN  # noqa: E402  # as above
 
-from btq_lang.catalog.nav2 import FILES  # noqa: E402  # of this checkout
+from btq_lang.catalog.nav2 import FILES, ports  # noqa: E402  # of this checkout
+from btq_lang.commands.explain_nav2 import models_of  # noqa: E402  # as above
 from btq_lang.commands.node_writers import models_in_btq  # noqa: E402  # as above
 from btq_lang.cpp.model import CppNode, CppPort  # noqa: E402  # as above
 from btq_lang.cpp.nodes import read_nodes  # noqa: E402  # as above
@@ -50,7 +53,34 @@ def _described_port(port: CppPort, is_required: bool) -> CppPort:
     return replace(port, type=OF_MESSAGES.get(port.type, port.type), default=default, text=PORTS[port.name])
 
 
+def ports_module() -> str:
+    """The text of `ports.py`, from the files of all distributions."""
+    of_node: dict[str, set[str]] = {}
+    for distribution in FILES:
+        for name, model in models_of(distribution).items():
+            of_node.setdefault(name, set()).update(port.id.text for port in model.ports if port.id is not None)
+    rows = []
+    for name in sorted(of_node):
+        lines = wrap(" ".join(sorted(of_node[name])), 109 - len(name)) or [""]
+        rows += [f'    "{name}": "{lines[0]}"', *(f'    " {line}"' for line in lines[1:])]
+        rows[-1] += ","
+    return _PORTS.format("\n".join(rows))
+
+
+_PORTS = '''"""The ports that each node of Nav2 has in any distribution; tools/nav2_nodes.py writes this file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+PORTS: Final[Mapping[str, str]] = {{
+{}
+}}
+'''
+
 if __name__ == "__main__":
     for distribution, path in FILES.items():
         Path(path).write_text(model_file(Path(sys.argv[1]), distribution), encoding="utf-8")
         print(path)
+    Path(ports.__file__).write_text(ports_module(), encoding="utf-8")

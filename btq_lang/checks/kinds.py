@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, model_name_problem
+from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.checks import lookups
@@ -22,9 +23,10 @@ from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Entry, Include, Model, Word, quote, written
 from btq_lang.util.spelling import did_you_mean, distance, without_digits
 from btq_lang.util.text import Span
-from btq_lang.workspace.symbols import Symbol, interface
+from btq_lang.workspace.symbols import Symbol, has_ports_of, interface
 
 if TYPE_CHECKING:
+    from btq_lang.checks.lookups import Declaration
     from btq_lang.workspace.custom_nodes import LikelyPort
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
@@ -195,8 +197,11 @@ def duplicate_definition(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if symbol.kind not in _DEFINED_ONCE or not view.is_repeated(symbol.kind, symbol.name):
             continue
         other, which = view.another(symbol)
-        if other is not None and not _is_same_model(other.symbol, symbol):
-            yield _second(symbol, symbol.span, (Related(other.place, which),), "duplicate definition of")
+        if other is None or _is_same_model(other.symbol, symbol) or _is_of_node(view, other, symbol):
+            continue
+        only_one = f"Nav2 registers a node `{symbol.name}`, and a program can register only one"
+        notes = (only_one,) if other.path in FILES.values() else ()
+        yield _second(symbol, symbol.span, (Related(other.place, which),), "duplicate definition of", notes)
 
 
 def declared_category(seen: ResolvedNode) -> str | None:
@@ -353,17 +358,24 @@ def _is_clause(seen: ResolvedNode) -> bool:
 _DEFINED_ONCE = (Kind.MODEL, Kind.SIGNAL, Kind.CONTEXT, Kind.QUALITY)
 
 
-def _second(symbol: Symbol, span: Span, related: tuple[Related, ...], what: str) -> Diagnostic:
+def _second(
+    symbol: Symbol, span: Span, related: tuple[Related, ...], what: str, notes: tuple[str, ...] = ()
+) -> Diagnostic:
     # The engine never reads the model of a node, so only tools are affected.
     severity = Severity.WARNING if symbol.kind is Kind.MODEL else None
     message = f"{what} the {symbol.kind.value} `{symbol.name}`"
-    return Diagnostic("duplicate-definition", span, message, related=related, severity=severity)
+    return Diagnostic("duplicate-definition", span, message, related=related, notes=notes, severity=severity)
 
 
 def _is_same_model(first: Symbol, second: Symbol) -> bool:
     """Whether two symbols are models that give a node the same interface."""
     one, other = first.target, second.target
     return isinstance(one, Model) and isinstance(other, Model) and interface(one) == interface(other)
+
+
+def _is_of_node(view: View, other: Declaration, symbol: Symbol) -> bool:
+    """Whether a symbol is the model of a node that a file of nodes declares with these ports and maybe more."""
+    return has_ports_of(other.symbol, symbol) and other.path in view.look_up(lookups.node_paths)
 
 
 # A file with so many nodes with ports should declare them.

@@ -125,9 +125,11 @@ def is_torn(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool
 @of_name
 def another_declaration(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Declaration | None:
     """Where the first file of a factory after the one at the viewpoint, whose definition of a name counts, defines it
-    again."""
-    found = workspace.scope(viewpoint).all(kind, name) if workspace.factory is not None else ()
-    other = next((each for each in found if each.path != viewpoint), None)
+    again; without a factory, where a file of nodes does."""
+    scope = workspace.scope(viewpoint)
+    others = scope.node_paths if workspace.factory is None else (*scope.paths, *scope.node_paths)
+    found = scope.all(kind, name) if others else ()
+    other = next((each for each in found if each.path != viewpoint and each.path in others), None)
     return _declaration(workspace, other) if other is not None and found[0].path == viewpoint else None
 
 
@@ -157,6 +159,12 @@ def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry,
     from btq_lang.catalog.nav2.navigator import outside_entries as of  # only for Nav2
 
     return of(found)
+
+
+@of_viewpoint
+def node_paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
+    """The files whose models count for a file, and nothing else in them."""
+    return workspace.scope(viewpoint).node_paths
 
 
 @of_viewpoint

@@ -11,6 +11,7 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
+from btq_lang.catalog.nav2 import ports_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import model_related, way_in
@@ -40,7 +41,10 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         known = ports.all
         names = ", ".join(f"`{port.name}`" for port in known)
         required = {port.name for port in ports.required}
+        of_nav2 = ports_of(seen.id.text) if seen.id is not None and _is_of_pool(view, seen) else None
         for key, likely in meant.items():
+            if key.text in (of_nav2 or ()):
+                continue  # the model may be one of another program, or a short one
             # The engine takes any port of a SubTree, a model without ports is often an unfinished one, and a program
             # may register another node than the one that another file of the project declares.
             harmless = (seen.is_subtree and not required.intersection(likely)) or not (known or seen.kind)

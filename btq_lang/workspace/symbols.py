@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import NAME
@@ -118,6 +119,31 @@ def interface(model: syntax.Model) -> object:
     """What a model says of its node; equal for equivalent models, as palettes that tools write repeat them."""
     ports = tuple([(port.direction, port.name, port.type, port.default) for port in model.ports])
     return model.category.raw, syntax.shape(ports)
+
+
+def has_ports_of(one: Symbol, other: Symbol) -> bool:
+    """Whether a model has all ports of another, in its directions, and none of a type that is certainly different.
+
+    Tools write types in many ways or not at all, and defaults with or without quotes.
+    """
+    model, shorter = one.target, other.target
+    if not (isinstance(model, syntax.Model) and isinstance(shorter, syntax.Model)):
+        return False
+    ports = {port.id.text: port for port in model.ports if port.id is not None}
+    return model.category.raw == shorter.category.raw and all(
+        (known := ports.get(port.id.text)) is not None
+        and known.direction.raw == port.direction.raw
+        and _may_be_one_type(known.type, port.type)
+        for port in shorter.ports
+        if port.id is not None
+    )
+
+
+def _may_be_one_type(one: syntax.Word | None, other: syntax.Word | None) -> bool:
+    types = {
+        plain_type(word.text) for word in (one, other) if word is not None and is_known_type(plain_type(word.text))
+    }
+    return len(types) < 2
 
 
 def _asked_by(requirement: syntax.Requirement) -> frozenset[str]:

@@ -18,12 +18,13 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nav2 import ports_of
 from btq_lang.syntax.tree import Entry, Include, Model, Qualities, Root, Word
 from btq_lang.util.record import Record
 from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import Definition, File, Origin, is_of_package
 from btq_lang.workspace.queries import Store
-from btq_lang.workspace.symbols import Use, interface
+from btq_lang.workspace.symbols import Use, has_ports_of, interface
 
 if TYPE_CHECKING:
     from btq_lang.util.text import Span
@@ -275,11 +276,9 @@ class Workspace:
         if found is not None:
             return found
         pooled = self.pooled(path, kind, name)
-        if len(pooled) < 2:
-            return pooled[0] if pooled else None
         models = [each.symbol.target for each in pooled]
         agree = len({interface(model) if isinstance(model, Model) else id(model) for model in models}) == 1
-        return pooled[0] if agree else None
+        return pooled[0] if agree and not _may_be_of_nav2(models[0], name) else None
 
     def pooled(self, path: str, kind: Kind, name: str) -> tuple[Definition, ...]:
         """What an XML file may mean by a name outside its scope: a tree of its folder's XML, else of its project; the
@@ -439,8 +438,29 @@ class Scope:
         for file in self.files(kind):
             if key in file.names.found:
                 found += file.definitions(kind, name)
+        if kind is Kind.MODEL and len(found) > 1 and self.node_paths:
+            found = _richest_first(found, self.node_paths)
         self._found[key] = found
         return found
+
+
+def _may_be_of_nav2(target: object, name: str) -> bool:
+    """Whether Nav2 has a node of a name, in no distribution with all ports of the model: either may be meant."""
+    known = ports_of(name) if isinstance(target, Model) else None
+    ports = target.ports if isinstance(target, Model) else ()
+    return known is not None and not known.issuperset([port.id.text for port in ports if port.id is not None])
+
+
+def _richest_first(found: tuple[Definition, ...], node_paths: tuple[str, ...]) -> tuple[Definition, ...]:
+    """The models of a node, the one that counts first: that of a file of nodes, if it has the ports of the first one.
+
+    Groot writes models without types, and not always with all ports; such a file says more about the same node.  A
+    model with other ports is of another node.
+    """
+    for each in found[1:]:
+        if each.path in node_paths and has_ports_of(each.symbol, found[0].symbol):
+            return each, *(other for other in found if other is not each)
+    return found
 
 
 def _repeated(files: list[Names]) -> frozenset[Name]:

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 from nav2_clone import COUNTS, clone, read
-from nav2_nodes import model_file
+from nav2_nodes import model_file, ports_module
 from nav2_words import NODES, PORTS, REQUIRED, REQUIRED_IN
 
 from btq_lang.catalog.kinds import CATEGORIES
-from btq_lang.catalog.nav2 import DISTRIBUTIONS, FILES
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, FILES, ports
 from btq_lang.checks import check
 from btq_lang.commands.explain_nav2 import models_of
 from btq_lang.formatter import format_text
@@ -31,6 +31,10 @@ def test_a_file_is_clean_formatted_and_whole(distribution: str) -> None:
     categories = Counter(model.category.raw for model in found.values())
     counted = (*(categories[each] for each in CATEGORIES[:4]), sum(len(model.ports) for model in found.values()))
     assert counted == COUNTS[distribution]
+
+
+def test_the_ports_of_all_distributions_are_those_of_the_files() -> None:
+    assert Path(ports.__file__).read_text(encoding="utf-8") == ports_module()
 
 
 def test_what_is_said_of_nodes_is_said_of_existing_ones() -> None:

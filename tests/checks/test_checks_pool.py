@@ -122,3 +122,16 @@ def test_a_model_of_the_pool_may_be_one_of_another_program() -> None:
         ("missing-port", Severity.WARNING),
         ("unknown-port", Severity.ERROR),
     ]
+
+
+def test_a_node_of_nav2_is_not_taken_for_another_of_its_name() -> None:
+    """A model in the pool with ports that Nav2's node has in no distribution is of another; others may lack some."""
+    main = "p/a.xml: " + tree("Main", '<Wait wait_duration="1"/>')
+    other = '<TreeNodesModel><Action ID="Wait"><input_port name="{}"/></Action></TreeNodesModel>'
+    assert problems(pool(main, "p/b.xml: " + other.format("duration"))) == []
+    assert problems(pool(main, "p/b.xml: " + other.format("server_name"))) == []
+    misspelt = main.replace("wait_duration", "wait_time")
+    assert problems(pool(misspelt, "p/b.xml: " + other.format("wait_duration"))) == [
+        "unknown-port: `Wait` has no port `wait_time`; did you mean `wait_duration`?"
+    ]
+    assert problems(pool(misspelt, "p/b.xml: " + other.format("duration"))) == []

@@ -75,7 +75,32 @@ def test_a_factory_names_them_too_beside_files(robot: Path) -> None:
 
 def test_a_model_of_the_project_counts_first(robot: Path) -> None:
     (robot / "m.btq").write_text("Action FollowPath\n    input speed\nBehaviorTree Main\n    FollowPath (speed = 3)\n")
-    assert check(robot) == []
+    duplicate = "m.btq:1:8: warning[duplicate-definition] duplicate definition of the node model `FollowPath`"
+    assert check(robot) == [duplicate]
+    _, out, _ = run_btq("check", cwd=robot)
+    assert "= note: Nav2 registers a node `FollowPath`, and a program can register only one" in out
+
+
+def test_a_shorter_model_of_the_same_node_hides_nothing(robot: Path) -> None:
+    """Groot's has no types and lacks ports; what Nav2's says of the node counts, types and defaults too."""
+    short = '<TreeNodesModel><Action ID="Wait"><input_port name="wait_duration"/></Action></TreeNodesModel>'
+    use = '<Wait wait_duration="soon" server_name="a" wait="1"/>'
+    (robot / "m.btq").unlink()
+    (robot / "m.xml").write_text(f'<root BTCPP_format="4"><BehaviorTree ID="M">{use}</BehaviorTree>{short}</root>\n')
+    number = "m.xml:1:66: error[invalid-literal] expected a number for `wait_duration`, found `soon`"
+    unknown = "m.xml:1:88: error[unknown-port] `Wait` has no port `wait`"
+    assert check(robot, "m.xml") == [number, unknown]
+    loads = '[[factory]]\nname = "m"\nload = ["m.xml"]\nnodes = ["nav2-jazzy"]\n'
+    (robot / "btq.toml").write_text(loads)
+    assert check(robot, "m.xml") == [number, unknown]
+    typed = short.replace("/></Action>", ' type="bool"/></Action>')
+    (robot / "m.xml").write_text((robot / "m.xml").read_text().replace(short, typed))
+    duplicate = "duplicate definition of the node model `Wait`"
+    assert check(robot, "m.xml") == [
+        number.replace("a number", "true, false, 1 or 0"),
+        unknown,
+        f"m.xml:1:141: warning[duplicate-definition] {duplicate}",
+    ]
 
 
 def test_editors_show_them(robot: Path) -> None:

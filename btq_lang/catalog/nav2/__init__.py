@@ -15,3 +15,10 @@ _FOLDER: Final = os.path.dirname(os.path.abspath(__file__)).replace(os.sep, "/")
 # The path of the file of each distribution, and the same by the name that a project uses.
 FILES: Final[Mapping[str, str]] = {each: f"{_FOLDER}/{each}.btq" for each in DISTRIBUTIONS}
 PACKAGED: Final[Mapping[str, str]] = {f"nav2-{each}": path for each, path in FILES.items()}
+
+
+def ports_of(node: str) -> frozenset[str] | None:
+    """The ports that a node of Nav2 has in any distribution; None if Nav2 has no such node."""
+    from btq_lang.catalog.nav2.ports import PORTS  # few projects need it
+
+    return frozenset(PORTS[node].split()) if node in PORTS else None
