@@ -268,6 +268,7 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         metavar="FILE",
         help="samples as CSV or Parquet: seconds since the epoch, then one column for each signal or entry",
     )
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="judge logs in N processes; default: 1")
     parser.add_argument("--format", choices=VERDICT_FORMATS, help="default: as the file of -o ends, else table")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     parser.add_argument("--verbose", action="store_true", help="in the table, explain more violations of each clause")

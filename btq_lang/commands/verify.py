@@ -51,6 +51,7 @@ def run(options: Namespace) -> int:
                 of_files,
                 options.mission,
                 with_timelines=form == "html",
+                jobs=options.jobs,
                 progress=lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"),
             )
         report = found.report
@@ -74,7 +75,10 @@ def run(options: Namespace) -> int:
 
 def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequence[Candidate], dict[str, Series]]:
     """The logs, missions and samples of a command line; errors are appended to the problems."""
-    if problem := usage_problem([*options.logs, *options.mission]) or form_problem(options, FORMATS):
+    problem = usage_problem([*options.logs, *options.mission]) or form_problem(options, FORMATS)
+    if options.jobs < 1:
+        problem = problem or f"--jobs {options.jobs}: expected a number of processes"
+    if problem:
         problems.append(problem)
         return (), (), {}
     home = find_project(".")

@@ -20,6 +20,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     coverage.py, ticks.py   which nodes ran, how long they took, and how long they blocked the tree
     verdicts.py    the report, as data
     sentences.py   a clause's result, and what to look at, in a sentence
+    judging.py, parallel.py   one log judged by itself, by one of several processes, and all of them added up
     verifying.py, notes.py, signal_sources.py   all of it in one call, and notes beside the verdicts
     table.py, json_document.py, csv_rows.py, junit.py, markdown.py   the writers; `trace/` draws the HTML page
 """
@@ -49,6 +50,7 @@ def verify(
     of_files: Mapping[str, Series] | None = None,
     *,
     with_timelines: bool = False,
+    jobs: int = 1,
     progress: Callable[[int, int], None] = lambda files, runs: None,
 ) -> Report:
     """Judge missions by logs.
@@ -59,47 +61,27 @@ def verify(
         shown: gives a path as people read it.
         sources: where further samples come from, with lower priority; topics are read from the bags among the logs.
         of_files: the samples of those sources that are files.
-        progress: called after each run with how many logs have been read, and how many runs have been judged.
+        progress: called with how many logs have been read, and how many runs have been judged.
         with_timelines: include the run of the worst violation of each clause.
+        jobs: how many processes judge logs; the report is the same.
     """
-    from btq_lang.evidence.evaluate import MissionEvaluation
-    from btq_lang.evidence.identity import difference
-    from btq_lang.evidence.named_runs import joined_sessions
-    from btq_lang.evidence.readers import NotALog, read, samples_of_bags
-    from btq_lang.evidence.runs import count_runs
-    from btq_lang.evidence.signals import by_signal
-    from btq_lang.evidence.verdicts import Foreign, Report
+    from btq_lang.evidence.judging import Judging, Means, judge
+    from btq_lang.evidence.readers import samples_of_bags
 
-    files = 0
-    evaluations = {
-        mission.path: MissionEvaluation(mission, with_timelines, lambda number: progress(files, number))
-        for mission in missions
-    }
-    foreign: dict[tuple[str, str], int] = {}
-    differences: dict[tuple[str, str], str] = {}
-    problems: list[str] = []
-    runs = 0
-    elsewhere, remarks, bags = samples_of_bags(logs, sources)
-    for log in (each for each in logs if each not in bags):
-        try:
-            for source, session, joined in joined_sessions(read(log, sources), missions, shown(log)):
-                if isinstance(joined, str):
-                    foreign[source, joined] = foreign.get((source, joined), 0) + count_runs(session)
-                    if (source, joined) not in differences:
-                        differences[source, joined] = difference(missions, session.tree)
-                else:
-                    signals = joined.mission.requirements.signals.values()
-                    given = by_signal(signals, samples, of_files or {}, session.signals, elsewhere)
-                    session.remarks.extend(remarks)
-                    runs += evaluations[joined.mission.path].read(session, joined, given, runs + 1, source)
-        except NotALog as error:
-            problems.append(f"{shown(log)}: {error}")
-        except OSError as error:
-            problems.append(f"{shown(log)}: cannot be read: {error.strerror or error}")
-        files += 1
-    others = [Foreign(key[0], number, key[1], differences[key]) for key, number in foreign.items()]
-    results = tuple(each.result() for each in evaluations.values())
-    return Report(tuple(each for each in results if each.sources), tuple(others), tuple(problems))
+    of_bags, remarks, bags = samples_of_bags(logs, sources)
+    means = Means(missions, samples, sources, of_files or {}, of_bags, remarks, shown, with_timelines)
+    judging = Judging(means)
+    wanted = [log for log in logs if log not in bags]
+    if jobs > 1 and len(wanted) > 1:
+        from btq_lang.evidence.parallel import judge_all
+
+        for number, found in enumerate(judge_all(wanted, means, jobs), start=1):
+            judging.add(found)
+            progress(number, judging.runs)
+    else:
+        for number, log in enumerate(wanted):
+            judging.add(judge(log, means, lambda run, files=number: progress(files, judging.runs + run)))  # type: ignore[misc]
+    return judging.report()
 
 
 def write(report: Report, form: str, *, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:

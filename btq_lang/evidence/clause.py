@@ -43,6 +43,21 @@ class _Place(Record):
     others: Nearby
 
 
+class ClauseFindings(Record):
+    """What was found of a clause in some logs.
+
+    Attributes:
+        paths: of its nodes.
+        missing: why nodes of it are not in a log; empty if all are.
+        has_run: whether one of its nodes has.
+    """
+
+    tally: Tally | Recent
+    paths: tuple[str, ...]
+    missing: str
+    has_run: bool
+
+
 class JudgedClause:
     """A clause at a written node, and its judgements so far.
 
@@ -262,6 +277,26 @@ class JudgedClause:
     def is_worst_in(self, run: Run) -> bool:
         """Whether a run has the worst violation so far; unknown for a window until all logs are read, so False."""
         return isinstance(self._tally, Tally) and self._tally.is_worst_in(run)
+
+    def findings(self) -> ClauseFindings:
+        """What a verdict needs of the logs so far."""
+        return ClauseFindings(self._tally, tuple(self._paths), self._missing, self._has_run)
+
+    def add(self, findings: ClauseFindings, runs: int) -> None:
+        """Add what was found in later logs.
+
+        Args:
+            runs: how many runs were before them.
+        """
+        self._tally.add_all(findings.tally, runs)  # type: ignore[arg-type]  # one clause has tallies of one class
+        self._paths.update(dict.fromkeys(findings.paths))
+        self._missing = self._missing or findings.missing
+        self._has_run = self._has_run or findings.has_run
+
+    def is_worse_in(self, findings: ClauseFindings, run: int) -> bool:
+        """Whether a run of later logs has a worse violation than all runs so far."""
+        later = findings.tally
+        return isinstance(self._tally, Tally) and isinstance(later, Tally) and later.is_worse_than(self._tally, run)
 
     def verdict(self) -> ClauseVerdict:
         """The verdict on all judgements so far."""

@@ -55,6 +55,16 @@ class Contexts:
             else:
                 self._unknown[context.name] += is_unknown
 
+    def counts(self) -> tuple[dict[str, int], dict[str, int]]:
+        """In how many runs each context held, and in how many others that is unknown."""
+        return self._held, self._unknown
+
+    def add_all(self, counts: tuple[dict[str, int], dict[str, int]]) -> None:
+        """Add the counts of other logs."""
+        for own, others in zip((self._held, self._unknown), counts, strict=True):
+            for name, number in others.items():
+                own[name] += number
+
     def summary(self) -> tuple[ContextSummary, ...]:
         """The counts of each context, in the order of definition."""
         return tuple(ContextSummary(name, held, self._unknown[name]) for name, held in self._held.items())

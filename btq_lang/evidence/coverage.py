@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.nodes import tags_of
@@ -30,11 +30,11 @@ class Coverage:
         self._repeated: dict[int, list[tuple[_Repeated, int]]] = {}  # the counters that a start increments
         self._runs = 1
 
-    def expect(self, tree: LoggedTree, written: Mapping[int, ResolvedNode]) -> None:
+    def expect(self, tree: LoggedTree, written: Mapping[int, int]) -> None:
         """Begin a log whose tree has these nodes.
 
         Args:
-            written: the written node of each, by uid.
+            written: by uid, the index of each written node among those of the mission.
         """
         self._now = {}
         for uid, node in tree.nodes.items():
@@ -78,9 +78,26 @@ class Coverage:
         """Record that a tick of a leaf took this time, in µs."""
         self._now[uid].ticks.append(time)
 
-    def summary(self) -> tuple[NodeSummary, ...]:
-        """The statistics of all nodes, in the order of their uids."""
-        return tuple(node.summary() for _, node in sorted(self._nodes.items(), key=lambda each: each[0]))
+    def add_all(self, other: Coverage, runs: int) -> None:
+        """Add the statistics of later logs.
+
+        Args:
+            runs: how many runs were before them.
+        """
+        for key, node in other._nodes.items():
+            own = self._nodes.setdefault(key, node)
+            if own is not node:
+                own.add_all(node)
+        self.retries.add_all(other.retries, runs)
+        self.recoveries.add_all(other.recoveries, runs)
+
+    def summary(self, written: Sequence[ResolvedNode]) -> tuple[NodeSummary, ...]:
+        """The statistics of all nodes, in the order of their uids.
+
+        Args:
+            written: the nodes of the mission.
+        """
+        return tuple(node.summary(written) for _, node in sorted(self._nodes.items(), key=lambda each: each[0]))
 
 
 class _Node:
@@ -91,7 +108,7 @@ class _Node:
         run: the last one in which it was active.
     """
 
-    def __init__(self, path: str, kind: str, is_leaf: bool, written: ResolvedNode | None) -> None:
+    def __init__(self, path: str, kind: str, is_leaf: bool, written: int | None) -> None:
         self.began = 0
         self.ticks: Final = array("q")
         self._path: Final = path
@@ -102,7 +119,15 @@ class _Node:
         self.times: Final = array("q")
         self.runs = self.run = 0
 
-    def summary(self) -> NodeSummary:
+    def add_all(self, other: _Node) -> None:
+        self.began += other.began
+        self.runs += other.runs
+        self.times.extend(other.times)
+        self.ticks.extend(other.ticks)
+        for outcome, number in other.outcomes.items():
+            self.outcomes[outcome] += number
+
+    def summary(self, written: Sequence[ResolvedNode]) -> NodeSummary:
         times, ticks = sorted(self.times), sorted(self.ticks)
         return NodeSummary(
             path=self._path,
@@ -118,7 +143,7 @@ class _Node:
             p95=_percentile(times, 95),
             tick_p95=_percentile(ticks, 95),
             tick_worst=_percentile(ticks, 100),
-            written=self._written,
+            written=written[self._written] if self._written is not None else None,
         )
 
 
@@ -134,6 +159,11 @@ class _Repeated:
         if self.now > self._most:
             self._most, self._run = self.now, run
         self.now = 0
+
+    def add_all(self, other: _Repeated, runs: int) -> None:
+        self._total += other._total
+        if other._most > self._most:
+            self._most, self._run = other._most, other._run + runs
 
     def summary(self) -> Repeats:
         return Repeats(self._total, self._most, self._run or None)

@@ -38,12 +38,31 @@ class Distribution:
             counts[at] += 1
             return
         counts[at] = 1
-        while max(self._counts) - min(self._counts) >= _MOST_STEPS:
-            doubled: dict[int, int] = {}
-            for at, number in self._counts.items():
-                doubled[at // 2] = doubled.get(at // 2, 0) + number
-            self._counts = doubled
-            self._step *= 2
+        self._fit()
+
+    def add_all(self, other: Distribution) -> None:
+        """Count the values of other logs; where they had another bound, each as the middle of its step."""
+        if self._last is None:
+            self._origin, self._step = other._origin, other._step
+        self._last = other._last or self._last
+        while self._step < other._step:
+            self._double()
+        for at, number in other._counts.items():
+            middle = other._origin + (at + 0.5) * other._step
+            into = floor((middle - self._origin) / self._step)
+            self._counts[into] = self._counts.get(into, 0) + number
+        self._fit()
+
+    def _fit(self) -> None:
+        while self._counts and max(self._counts) - min(self._counts) >= _MOST_STEPS:
+            self._double()
+
+    def _double(self) -> None:
+        doubled: dict[int, int] = {}
+        for at, number in self._counts.items():
+            doubled[at // 2] = doubled.get(at // 2, 0) + number
+        self._counts = doubled
+        self._step *= 2
 
     def histogram(self, goal: Value | None) -> Histogram | None:
         """The histogram with the bound and a goal; None where nothing was measured."""

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from functools import cache, partial
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.clause import JudgedClause
+from btq_lang.evidence.clause import ClauseFindings, JudgedClause
 from btq_lang.evidence.contexts import Contexts
 from btq_lang.evidence.coverage import Coverage
 from btq_lang.evidence.explain import Explainer
@@ -23,11 +23,29 @@ from btq_lang.evidence.tally import Run
 from btq_lang.evidence.ticks import timed
 from btq_lang.evidence.timeline import Timelines
 from btq_lang.evidence.verdicts import VIOLATED, ClauseVerdict, MissionVerdicts, RequirementVerdict, Source, worst_of
-from btq_lang.util.record import replace
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate, Joined
     from btq_lang.evidence.model import Outcome, Series, Session
+    from btq_lang.evidence.verdicts import Timeline
+
+
+class Findings(Record):
+    """What was found in some logs of a mission.
+
+    Attributes:
+        clauses: in the order in which a `MissionEvaluation` has them.
+        contexts: as of `Contexts.counts`.
+        timelines: of the runs that broke clauses worst, by the clause's index.
+    """
+
+    clauses: tuple[ClauseFindings, ...]
+    sources: tuple[Source, ...]
+    outcomes: dict[Outcome, int]
+    coverage: Coverage
+    contexts: tuple[dict[str, int], dict[str, int]]
+    timelines: dict[int, Timeline]
 
 
 class MissionEvaluation:
@@ -143,6 +161,37 @@ class MissionEvaluation:
         )
         return runs
 
+    def findings(self) -> Findings:
+        """What the verdicts need of the logs so far; refers to no text, and may go to another process."""
+        kept = self._timelines.kept if self._timelines is not None else {}
+        return Findings(
+            tuple(clause.findings() for clause in self._clauses),
+            tuple(self._sources),
+            self._outcomes,
+            self._coverage,
+            self._contexts.counts(),
+            {index: kept[clause] for index, clause in enumerate(self._clauses) if clause in kept},
+        )
+
+    def add(self, findings: Findings, runs: int) -> None:
+        """Add what was found in later logs, whose runs were numbered by themselves.
+
+        Args:
+            runs: how many runs were before them.
+        """
+        for index, timeline in findings.timelines.items():
+            clause = self._clauses[index]
+            if self._timelines is not None and clause.is_worse_in(findings.clauses[index], timeline.run):
+                self._timelines.kept[clause] = replace(timeline, run=timeline.run + runs)
+        for clause, found in zip(self._clauses, findings.clauses, strict=True):
+            clause.add(found, runs)
+        for source in findings.sources:
+            self._add(replace(source, first_run=source.first_run + runs))
+        for outcome, number in findings.outcomes.items():
+            self._outcomes[outcome] += number
+        self._coverage.add_all(findings.coverage, runs)
+        self._contexts.add_all(findings.contexts)
+
     def result(self) -> MissionVerdicts:
         """The verdicts so far."""
         found = self.mission.requirements
@@ -164,7 +213,7 @@ class MissionEvaluation:
                 if clauses
             ),
             outcomes=tuple((_OUTCOMES[outcome], number) for outcome, number in self._outcomes.items() if number),
-            nodes=self._coverage.summary(),
+            nodes=self._coverage.summary(found.nodes.all),
             contexts=self._contexts.summary(),
             retries=self._coverage.retries.summary(),
             recoveries=self._coverage.recoveries.summary(),
@@ -175,7 +224,7 @@ class MissionEvaluation:
         verdict = clause.verdict()
         if self._timelines is None or verdict.verdict != VIOLATED:
             return verdict
-        return replace(verdict, timeline=self._timelines.of(clause))
+        return replace(verdict, timeline=self._timelines.kept.get(clause))
 
     def _add(self, source: Source) -> None:
         """Merge a session's counts into those of its file."""

@@ -7,7 +7,8 @@ the mission, or the same unique path; what is not joined is not judged.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Final
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.btcpp.export import is_mission
 from btq_lang.btcpp.outputs import as_xml
@@ -18,13 +19,12 @@ from btq_lang.evidence.model import LoggedTree
 from btq_lang.evidence.readers.tree import kind_of
 from btq_lang.requirements.resolve import requirements
 from btq_lang.util.record import Record, replace
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.btcpp.instances import Instance
     from btq_lang.requirements.model import Target
     from btq_lang.requirements.resolved import Requirements
-    from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.workspace import Workspace
 
 
 class Candidate:
@@ -43,6 +43,17 @@ class Candidate:
         self.requirements: Final[Requirements] = requirements(workspace, path)
         self._builds: Final[list[Build]] = []
         self._unmade: Final = _builds(self)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """What makes it again in a process that does not share the memory of this one."""
+        workspace = self.workspace
+        files = (workspace.files, workspace.project, workspace.factory)
+        return _candidate, (files, self.path, self.name, self.side)
+
+    @cached_property
+    def indices(self) -> dict[int, int]:
+        """The index of each written node among those of the mission, by its `id`."""
+        return {id(node): index for index, node in enumerate(self.requirements.nodes.all)}
 
     def builds(self) -> Iterator[Build]:
         """What `btq build` makes of it, without options first."""
@@ -76,13 +87,14 @@ class Joined(Record):
         uids = [(each, self.uids.get(_number(each))) for each in self.build.running.instances(target)]
         return [(self.tree.nodes[uid].path if uid is not None else each.path, uid) for each, uid in uids]
 
-    def written(self) -> dict[int, ResolvedNode]:
-        """The written nodes of the log's nodes, by uid."""
-        found: dict[int, ResolvedNode] = {}
+    def written(self) -> dict[int, int]:
+        """By uid, the index of the written node of each of the log's nodes among those of the mission."""
+        indices = self.mission.indices
+        found: dict[int, int] = {}
         for instance, node in self.build.running.all:
             uid = self.uids.get(_number(instance))
             if node is not None and uid is not None:
-                found[uid] = node
+                found[uid] = indices[id(node)]
         return found
 
     def enforcing(self) -> dict[int, str]:
@@ -110,6 +122,10 @@ class Build(Record):
                 if each.uid is not None
             ]
         )
+
+
+def _candidate(files: tuple[Any, ...], path: str, name: str, side: list[tuple[int, str]] | None) -> Candidate:
+    return Candidate(Workspace(*files), path, name, side)
 
 
 def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:

@@ -9,6 +9,7 @@ from bisect import insort
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.tally import Run, Tally
+from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verbs import Judgement
@@ -47,9 +48,25 @@ class Recent:
         self._end = max(self._end, run.end)
         if self._now:
             found = sorted(self._now, key=_end)
-            insort(self._kept, (run, found), key=lambda each: each[0].begin)
+            insort(self._kept, (run, found), key=_begin)
             self._now.clear()
         self._leave_out()
+
+    def add_all(self, other: Recent, runs: int) -> None:
+        """Add the judgements of other logs, which were judged by themselves.
+
+        Args:
+            runs: how many runs were before theirs.
+        """
+        self.cut_off += other.cut_off
+        self._end = max(self._end, other._end)
+        for run, judgements in other._kept:
+            insort(self._kept, (replace(run, number=run.number + runs), judgements), key=_begin)
+        self._leave_out()
+
+    def __getstate__(self) -> dict[str, object]:
+        """The judgements, as `Tally.__getstate__`."""
+        return {**self.__dict__, "_odds": None, "_window": None}
 
     def result(self) -> Tally:
         """The tally of the judgements in the window."""
@@ -81,6 +98,10 @@ class Recent:
                 del judgements[:gone]
                 if not judgements:
                     del kept[0]
+
+
+def _begin(kept: tuple[Run, list[_Entry]]) -> int:
+    return kept[0].begin
 
 
 def _end(entry: _Entry) -> int:

@@ -11,7 +11,7 @@ from btq_lang.evidence.distribution import Distribution
 from btq_lang.evidence.odds import lower_limit, runs_to_decide, upper_limit
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, Violation, Worst
 from btq_lang.evidence.wording import measured
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.conditions import Reading
@@ -113,6 +113,33 @@ class Tally:
         if not self.violations or self.violations[-1].run != run.number:
             return False
         return self.violations[0].run == run.number or (self.worst is not None and self.worst.run == run.number)
+
+    def add_all(self, other: Tally, runs: int) -> None:
+        """Add the counts of later logs, which were judged by themselves.
+
+        Args:
+            runs: how many runs were before them.
+        """
+        self.counted += other.counted
+        self.violated += other.violated
+        self.unknown += other.unknown
+        self.cut_off += other.cut_off
+        self.why = self.why or other.why
+        room = max(_MOST_VIOLATIONS - len(self.violations), 0)
+        self.violations.extend(replace(each, run=each.run + runs) for each in other.violations[:room])
+        if other.worst is not None and other._worst_excess > self._worst_excess:
+            self._worst_excess = other._worst_excess
+            self.worst = replace(other.worst, run=other.worst.run + runs)
+        self.distribution.add_all(other.distribution)
+
+    def is_worse_than(self, other: Tally, run: int) -> bool:
+        """Whether the worst violation of both is the one in a run of this tally; the other's logs were earlier."""
+        is_worst = self.worst is not None and self.worst.run == run and self._worst_excess > other._worst_excess
+        return not other.violations or is_worst
+
+    def __getstate__(self) -> dict[str, object]:
+        """The counts, for another process; the requirement's odds refer to its text, which that process has."""
+        return {**self.__dict__, "_odds": None}
 
     def result(self) -> Tally:
         """The tally itself; `Recent` computes one."""

@@ -16,10 +16,14 @@ if TYPE_CHECKING:
 
 
 class Timelines:
-    """Records the runs with the worst violations."""
+    """Records the runs with the worst violations.
+
+    Attributes:
+        kept: the run with the worst violation of each clause.
+    """
 
     def __init__(self) -> None:
-        self._kept: Final[dict[JudgedClause, Timeline]] = {}
+        self.kept: Final[dict[JudgedClause, Timeline]] = {}
         self._now: Final[list[Activation]] = []
         self._left_out = 0
 
@@ -37,13 +41,9 @@ class Timelines:
             broken: the clauses whose worst violation so far is in this run.
         """
         if broken:
-            self._kept.update(dict.fromkeys(broken, self._timeline(run, tree)))
+            self.kept.update(dict.fromkeys(broken, self._timeline(run, tree)))
         self._now.clear()
         self._left_out = 0
-
-    def of(self, clause: JudgedClause) -> Timeline | None:
-        """The run with the worst violation of a clause; None without any."""
-        return self._kept.get(clause)
 
     def _timeline(self, run: Run, tree: LoggedTree) -> Timeline:
         bars = sorted(self._now, key=lambda each: (each.uid, each.begin))

@@ -117,6 +117,7 @@ def judged(
     requested: Sequence[str],
     *,
     with_timelines: bool = False,
+    jobs: int = 1,
     progress: Callable[[int, int], None] = lambda files, runs: None,
 ) -> Verification:
     """Judge missions, and add notes on what limits the verdicts.
@@ -124,10 +125,12 @@ def judged(
     Args:
         samples: the file that they are from, and the samples by signal or entry.
         requested: the missions as the command line names them; none: all that are known.
-        sources, of_files, with_timelines, progress: as in `verify`.
+        sources, of_files, with_timelines, jobs, progress: as in `verify`.
     """
     file, series = samples
-    report = verify(logs, missions, series, shown, sources, of_files, with_timelines=with_timelines, progress=progress)
+    report = verify(
+        logs, missions, series, shown, sources, of_files, with_timelines=with_timelines, jobs=jobs, progress=progress
+    )
     read_from = [(file, each) for each in series.values()]
     read_from += [(source.file, of_files[source.signal]) for source in sources if source.signal in of_files]
     report = replace(report, remarks=(*ignored_columns(file, series, missions), *other_times(read_from, report)))

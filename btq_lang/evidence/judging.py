@@ -1,0 +1,126 @@
+"""Judges one log by all missions, each run with the mission it belongs to.
+
+One invariant: a log is judged by itself, its runs numbered from 1, so that logs may be judged in any process and added
+up in their order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.evidence.evaluate import Findings, MissionEvaluation
+from btq_lang.evidence.identity import difference
+from btq_lang.evidence.named_runs import joined_sessions
+from btq_lang.evidence.readers import NotALog, read
+from btq_lang.evidence.runs import count_runs
+from btq_lang.evidence.signals import by_signal
+from btq_lang.evidence.verdicts import Foreign, Report
+from btq_lang.util.record import Record, replace
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.identity import Candidate
+    from btq_lang.evidence.model import Series
+    from btq_lang.workspace.project_evidence import SignalSource
+
+
+class Means(Record):
+    """What logs are judged by.
+
+    Attributes:
+        samples: of `--signals`, by signal or entry.
+        sources: where further samples come from.
+        of_files, of_bags: the samples of those sources, by signal, in files and in bags without a log of a tree.
+        remarks: notes about these bags.
+        shown: gives a path as people read it.
+    """
+
+    missions: Sequence[Candidate]
+    samples: Mapping[str, Series]
+    sources: Sequence[SignalSource]
+    of_files: Mapping[str, Series]
+    of_bags: Mapping[str, Series]
+    remarks: Sequence[str]
+    shown: Callable[[str], str]
+    with_timelines: bool
+
+
+class JudgedLog(Record):
+    """What was found in a log.
+
+    Attributes:
+        runs: how many were judged.
+        findings: by the path of the mission.
+        foreign: the runs of other missions.
+        problem: why the log, or the rest of it, could not be read; empty if it could.
+    """
+
+    runs: int
+    findings: dict[str, Findings]
+    foreign: tuple[Foreign, ...]
+    problem: str
+
+
+def judge(log: str, means: Means, ran: Callable[[int], None] = lambda number: None) -> JudgedLog:
+    """Judge the runs of a log.
+
+    Args:
+        ran: called with the number of each run after it is judged.
+    """
+    missions, shown = means.missions, means.shown
+    evaluations: dict[str, MissionEvaluation] = {}
+    foreign: dict[tuple[str, str], Foreign] = {}
+    problem = ""
+    runs = 0
+    try:
+        for source, session, joined in joined_sessions(read(log, means.sources), missions, shown(log)):
+            if isinstance(joined, str):
+                number = count_runs(session)
+                known = foreign.get((source, joined))
+                what = known or Foreign(source, 0, joined, difference(missions, session.tree))
+                foreign[source, joined] = replace(what, runs=what.runs + number)
+            else:
+                mission = joined.mission
+                if mission.path not in evaluations:
+                    evaluations[mission.path] = MissionEvaluation(mission, means.with_timelines, ran)
+                signals = mission.requirements.signals.values()
+                given = by_signal(signals, means.samples, means.of_files, session.signals, means.of_bags)
+                session.remarks.extend(means.remarks)
+                runs += evaluations[mission.path].read(session, joined, given, runs + 1, source)
+    except NotALog as error:
+        problem = f"{shown(log)}: {error}"
+    except OSError as error:
+        problem = f"{shown(log)}: cannot be read: {error.strerror or error}"
+    findings = {path: evaluation.findings() for path, evaluation in evaluations.items()}
+    return JudgedLog(runs, findings, tuple(foreign.values()), problem)
+
+
+class Judging:
+    """Adds up what was found in logs.
+
+    Attributes:
+        runs: how many were judged.
+    """
+
+    def __init__(self, means: Means) -> None:
+        self.runs = 0
+        self._evaluations: Final = {each.path: MissionEvaluation(each, means.with_timelines) for each in means.missions}
+        self._foreign: Final[dict[tuple[str, str], Foreign]] = {}
+        self._problems: Final[list[str]] = []
+
+    def add(self, log: JudgedLog) -> None:
+        """Add the next log."""
+        for path, findings in log.findings.items():
+            self._evaluations[path].add(findings, self.runs)
+        self.runs += log.runs
+        for each in log.foreign:
+            known = self._foreign.get((each.file, each.of))
+            self._foreign[each.file, each.of] = replace(known, runs=known.runs + each.runs) if known else each
+        if log.problem:
+            self._problems.append(log.problem)
+
+    def report(self) -> Report:
+        """All that was found."""
+        missions = [each.result() for each in self._evaluations.values()]
+        found = tuple(each for each in missions if each.sources)
+        return Report(found, tuple(self._foreign.values()), tuple(self._problems))

@@ -1,0 +1,39 @@
+"""Judges many logs in several processes, in the order of the logs."""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from typing import TYPE_CHECKING
+
+from btq_lang.evidence.judging import JudgedLog, judge
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.judging import Means
+
+# A forked process has the missions already; otherwise each process builds them once.
+START = "fork" if "fork" in multiprocessing.get_all_start_methods() else None
+
+_means: Means | None = None
+
+
+def judge_all(logs: Sequence[str], means: Means, jobs: int) -> Iterator[JudgedLog]:
+    """What was found in each log, in order; if a process is ended from outside, a problem instead of the rest."""
+    context = multiprocessing.get_context(START)
+    with ProcessPoolExecutor(min(jobs, len(logs)), context, _begin, (means,)) as pool:
+        try:
+            yield from pool.map(_judge, logs)
+        except BrokenProcessPool:
+            yield JudgedLog(0, {}, (), "a process that judges logs was ended from outside, perhaps for lack of memory")
+
+
+def _begin(means: Means) -> None:
+    global _means
+    _means = means
+
+
+def _judge(log: str) -> JudgedLog:
+    assert _means is not None, "every process begins with _begin"
+    return judge(log, _means)
