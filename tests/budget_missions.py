@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from pathlib import Path
 
 from hypothesis import strategies as st
 
+from btq_lang.catalog.nav2 import FILES
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.file import File
 from btq_lang.workspace.workspace import Workspace
+
+NAV2 = File(FILES["lyrical"], Path(FILES["lyrical"]).read_text(encoding="utf-8"))
 
 # What the kinds of nodes with children have in common where trees are drawn.
 GROUPS = {
@@ -20,6 +26,9 @@ GROUPS = {
         *("KeepRunningUntilFailure", "RunOnce", "Precondition"),
     ),
     "other": ("IfThenElse", "WhileDoElse", "TryCatch", "Switch"),
+    "many of Nav2": ("PipelineSequence", "RoundRobin", "NonblockingSequence", "PersistentSequence"),
+    "two of Nav2": ("RecoveryNode",),
+    "one of Nav2": ("RateController", "DistanceController", "GoalUpdater", "PathLongerOnApproach", "SingleTrigger"),
     "leaf": ("SubTree",),
 }
 
@@ -53,7 +62,8 @@ def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True, top: str
 
     group = next((group for group, kinds in GROUPS.items() if top in kinds), "leaf")
     if not top and depth:
-        group = draw(st.sampled_from(["leaf", "order", "order", "reactive", "parallel", "one", "other"]))
+        groups = [*GROUPS, "order"]
+        group = draw(st.sampled_from(groups))
     children: list[list[str]] = []
     if group == "leaf":
         is_subtree = top == "SubTree" or (sub and draw(st.integers(0, 4)) == 0 and may_skip)
@@ -85,6 +95,8 @@ def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True, top: str
         children = below(skipping=may_skip)
         if not may_skip and ("SKIPPED" in head or head == "RunOnce" or "= 0)" in head):
             head = "Inverter"
+    elif group.endswith("of Nav2"):
+        head, children = draw_of_nav2(draw, one_of(GROUPS[group]), below)
     else:
         head = one_of(GROUPS["other"])
         children = below(1, head == "TryCatch") + below(draw(st.integers(1, 2)))
@@ -102,6 +114,22 @@ def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True, top: str
     return [head, *(f"    {line}" for child in children for line in child)]
 
 
+def draw_of_nav2(
+    draw: st.DrawFn, kind: str, below: Callable[[int, bool], list[list[str]]]
+) -> tuple[str, list[list[str]]]:
+    """The head of a node of Nav2, and its children."""
+    if kind == "RecoveryNode":
+        return f"{kind} (number_of_retries = {draw(st.integers(0, 2))})", below(2, True)
+    if kind in GROUPS["one of Nav2"]:
+        return kind, below(1, True)
+    children = below(draw(st.integers(1, 3)), kind != "NonblockingSequence")  # which throws if one is skipped
+    if kind == "PersistentSequence":
+        kind += " (current_child_idx = {at})"
+    elif kind == "RoundRobin" and draw(st.booleans()):
+        kind += " (wrap_around = true)"
+    return kind, children
+
+
 @st.composite
 def missions(draw: st.DrawFn, top: str = "") -> str:
     lines = ["BehaviorTree Main", *(f"    {line}" for line in draw(tree(3, True, top=top)))]
@@ -111,7 +139,7 @@ def missions(draw: st.DrawFn, top: str = "") -> str:
 
 
 def resolved(text: str) -> Requirements:
-    workspace = Workspace.of({"main.btq": text})
+    workspace = Workspace({"main.btq": File("main.btq", text), NAV2.path: NAV2}, Project(node_files=(NAV2.path,)))
     assert workspace.files["main.btq"].parsed.diagnostics == ()
     found = requirements(workspace, "main.btq")
     assert found.problems == ()

@@ -26,8 +26,8 @@ MAIN = "main.btq"
 MARKER = re.compile(r"(?P<where>next-line |file )?(?P<severity>error|warning|info|hint): \[(?P<rule>[\w-]+)\]")
 COMMENT_WITH_MARKERS = re.compile(r"(?:#|<!--)\s*(?=(?:next-line |file )?(?:error|warning|info|hint): \[).*")
 
-MOVES = re.compile(
-    r'^# nodes = \["(?P<nodes>[\w-]+)"\] in btq.toml, and: btq check --target (?P<target>[\w-]+)$', re.MULTILINE
+NODES = re.compile(
+    r'^# nodes = \["(?P<nodes>[\w-]+)"\] in btq.toml(, and: btq check --target (?P<target>[\w-]+))?$', re.MULTILINE
 )
 
 Announced = Counter[tuple[str, int, str, str]]  # (file, line, severity, rule)
@@ -64,9 +64,9 @@ def assert_marked(text: str, name: str = "main.btq") -> None:
     """
     files = split_files(text, name)
     workspace = workspace_of(files)
-    if moves := MOVES.search(text):
-        project = replace(workspace.project, node_files=(PACKAGED[moves["nodes"]],))
-        workspace = with_target(workspace.with_project(project), moves["target"])
+    if given := NODES.search(text):
+        project = replace(workspace.project, node_files=(PACKAGED[given["nodes"]],))
+        workspace = with_target(workspace.with_project(project), given["target"] or given["nodes"])
     expected: Announced = Counter()
     found: Announced = Counter()
     for path, content in files.items():

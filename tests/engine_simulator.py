@@ -419,6 +419,144 @@ class Precondition(Sim):
         return status
 
 
+# ---- Nav2's nodes, after its code for Lyrical ----
+
+
+class Pipeline(Sim):
+    def begin(self) -> None:
+        self.furthest = 0
+
+    def tick(self) -> str:
+        skipped = 0
+        for index, child in enumerate(self.children):
+            status = child.execute()
+            if status == FAILURE:
+                return self.over(FAILURE)
+            if status == RUNNING and index >= self.furthest:
+                self.furthest = index
+                return RUNNING
+            skipped += status == SKIPPED
+        return self.over(SKIPPED if skipped == len(self.children) else SUCCESS)
+
+    def over(self, status: str) -> str:
+        for child in self.children:
+            child.halt()
+        self.begin()
+        return status
+
+
+class Recovery(Sim):
+    count = 0  # a skip of the second child keeps it
+
+    def begin(self) -> None:
+        self.at = 0
+
+    def halted(self) -> None:
+        self.at = self.count = 0
+
+    def tick(self) -> str:
+        first, second = self.children
+        while True:
+            if self.at == 0:
+                status = first.execute()
+                if status != FAILURE or self.count >= self.number("number_of_retries", 1):
+                    self.count = 0 if status != RUNNING else self.count
+                    return status
+                self.at = 1
+            status = second.execute()
+            if status == RUNNING:
+                return RUNNING
+            self.at = 0
+            if status != SUCCESS:
+                self.count = 0 if status == FAILURE else self.count
+                return FAILURE
+            self.count += 1
+
+
+class RoundRobin(Sim):
+    at = 0
+
+    def begin(self) -> None:
+        self.failed = 0
+
+    def halted(self) -> None:
+        self.at = self.failed = 0
+
+    def tick(self) -> str:
+        skipped, n = 0, len(self.children)
+        word = self.source.node.attribute("wrap_around")
+        wraps = word is not None and word.text == "true"
+        while self.failed + skipped < n:
+            status = self.children[self.at].execute()
+            if status == RUNNING:
+                return RUNNING
+            self.at += 1
+            skipped += status == SKIPPED
+            self.failed += status == FAILURE
+            if self.at == n and not wraps:
+                break
+            self.at %= n
+            if status == SUCCESS:
+                self.failed = 0
+                return SUCCESS
+        self.halted()
+        return SKIPPED if skipped == n else FAILURE
+
+
+class Nonblocking(Sim):
+    def tick(self) -> str:
+        found = []
+        for child in self.children:
+            found.append(child.execute())
+            if found[-1] == FAILURE:
+                break
+        if RUNNING in found and FAILURE not in found:
+            return RUNNING
+        for child in self.children:
+            child.halt()
+        return found[-1] if FAILURE in found else SUCCESS
+
+
+class Persistent(Sim):
+    at = 0
+
+    def tick(self) -> str:
+        while self.at < len(self.children):
+            status = self.children[self.at].execute()
+            if status == RUNNING:
+                return RUNNING
+            self.at += 1
+            if status == FAILURE:
+                break
+        else:
+            status = SUCCESS
+        self.at = 0
+        return status
+
+
+class PathLonger(Sim):
+    """The path does not change while its child runs."""
+
+    def tick(self) -> str:
+        is_longer = self.child.started is not None or self.run.chance.random() < 0.5
+        return self.child.execute() if is_longer else SUCCESS
+
+
+class Through(Sim):
+    """GoalUpdater, and a RateController that its parent has reset."""
+
+    def tick(self) -> str:
+        return self.child.execute()
+
+
+class ByDistance(Sim):
+    def tick(self) -> str:
+        if self.run.chance.random() < 0.1:
+            self.child.halt()
+            return FAILURE
+        return self.child.execute()
+
+
 class SubTree(Sim):
     def __init__(self, run: Run, source: ResolvedNode) -> None:
         super().__init__(run, source)
@@ -454,10 +592,20 @@ _CLASSES: dict[str, type[Sim]] = {
     "ForceSuccess": Decorator,
     "ForceFailure": Decorator,
     "KeepRunningUntilFailure": Decorator,
+    "PipelineSequence": Pipeline,
+    "RecoveryNode": Recovery,
+    "RoundRobin": RoundRobin,
+    "NonblockingSequence": Nonblocking,
+    "PersistentSequence": Persistent,
+    "PathLongerOnApproach": PathLonger,
+    "GoalUpdater": Through,
+    "RateController": Through,
+    "SingleTrigger": Through,
+    "DistanceController": ByDistance,
 }
 
 
 def make(run: Run, source: ResolvedNode) -> Sim:
     if source.category == "SubTree":
         return SubTree(run, source)
-    return _CLASSES.get(source.tag, Leaf)(run, source)
+    return _CLASSES.get(source.behavior.tag if source.behavior is not None else "", Leaf)(run, source)

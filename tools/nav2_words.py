@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
 from typing import Final
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from btq_lang.catalog.nav2.nodes import NODES as KINDS  # of this checkout
+
 NODES: Final = {
+    **{kind.tag: kind.doc for kind in KINDS.values() if kind.doc},
     "AppendGoalPoseToGoals": "Adds a pose to the end of a list of goals.",
     "AreErrorCodesPresent": "SUCCESS if an error code is one of a list.",
     "ArePosesNear": "SUCCESS if two poses are within a tolerance.",
@@ -19,7 +26,6 @@ NODES: Final = {
     "CancelSpin": "Cancels Spin on its server.",
     "CancelWait": "Cancels Wait on its server.",
     "CheckPoseOccupancy": "SUCCESS if a pose is occupied in the costmap.",
-    "CheckStopStatus": "SUCCESS once the robot has been still for some time, FAILURE while it moves.",
     "ClearCostmapAroundPose": "Clears the costmap around a pose.",
     "ClearCostmapAroundRobot": "Clears the costmap around the robot.",
     "ClearCostmapExceptRegion": "Clears the costmap except around the robot.",
@@ -30,8 +36,6 @@ NODES: Final = {
     "ComputeRoute": "Plans a route over the route graph.",
     "ConcatenatePaths": "Joins two paths.",
     "ControllerSelector": "Chooses the controller that a topic names.",
-    "DistanceController": "Ticks its child each time the robot has moved some distance.",
-    "DistanceTraveled": "SUCCESS each time the robot has moved some distance.",
     "DockRobot": "Drives into a dock.",
     "DriveOnHeading": "Drives straight ahead.",
     "ExtractRouteNodesAsGoals": "Turns the nodes of a route into goals.",
@@ -43,40 +47,25 @@ NODES: Final = {
     "GlobalUpdatedGoal": "SUCCESS if the goal has changed since the last tick, whoever ticked it.",
     "GoalCheckerSelector": "Chooses the goal checker that a topic names.",
     "GoalReached": "SUCCESS if the robot is at the goal.",
-    "GoalUpdated": "SUCCESS if the goal has changed since this node became active.",
-    "GoalUpdatedController": "Ticks its child each time the goal changes.",
-    "GoalUpdater": "Replaces the goal of its child by one that a topic gives.",
     "InitialPoseReceived": "SUCCESS if the initial pose was received.",
     "IsBatteryCharging": "SUCCESS if the battery is charging.",
     "IsBatteryLow": "SUCCESS if the battery is below a limit.",
     "IsGoalNearby": "SUCCESS if the rest of a path is short.",
     "IsPathValid": "SUCCESS if a path is free of collisions.",
-    "IsStopped": "SUCCESS if the robot has not moved for some time.",
     "IsStuck": "SUCCESS if the robot brakes hard, as if something held it.",
     "IsWithinPathTrackingBounds": "SUCCESS if the robot is close enough to its path.",
     "NavigateThroughPoses": "Navigates through several poses, with a tree of its own.",
     "NavigateToPose": "Navigates to a pose, with a tree of its own.",
-    "NonblockingSequence": "Ticks all children each time, until all succeed in one tick.",
     "PathExpiringTimer": "SUCCESS if a path has not changed for some time.",
     "PathHandlerSelector": "Chooses the path handler that a topic names.",
-    "PathLongerOnApproach": "Ticks its child if the path became much longer close to the goal.",
-    "PauseResumeController": "Pauses and resumes its first child when services are called.",
-    "PersistentSequence": "A sequence that keeps its index in an entry.",
-    "PipelineSequence": "A sequence that ticks the earlier children again while a later one runs.",
     "PlannerSelector": "Chooses the planner that a topic names.",
     "ProgressCheckerSelector": "Chooses the progress checker that a topic names.",
-    "RateController": "Ticks its child at a rate.",
-    "RecoveryNode": "Ticks the second child when the first one fails, then the first one again.",
     "ReinitializeGlobalLocalization": "Spreads the particles of the localization over the map.",
     "RemoveInCollisionGoals": "Removes the goals that are in collision.",
     "RemovePassedGoals": "Removes the goals that the robot has reached.",
-    "RoundRobin": "Ticks its children in turn.",
-    "SingleTrigger": "Ticks its child until it ends, once.",
     "SmoothPath": "Smooths a path.",
     "SmootherSelector": "Chooses the smoother that a topic names.",
-    "SpeedController": "Ticks its child the more often the faster the robot is.",
     "Spin": "Turns on the spot.",
-    "TimeExpired": "SUCCESS each time some time has passed.",
     "ToggleCollisionMonitor": "Switches the collision monitor on or off.",
     "TransformAvailable": "SUCCESS once the transform between two frames is known.",
     "TruncatePath": "Shortens a path at its end.",

@@ -14,6 +14,7 @@ from typing import Final
 from btq_lang.btcpp.document import Attribute, Element
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
+from btq_lang.catalog.words import KEPT_FROM_VERSION_3
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
@@ -164,17 +165,9 @@ def _is_true(said: str) -> bool:
 _GONE: Final = frozenset(
     ("ManualSelector", "BlackboardCheckInt", "BlackboardCheckDouble", "BlackboardCheckString", "BlackboardCheckBool")
 )
-_OLD_NODES: Final = frozenset(
-    (
-        *("Sequence", "Fallback", "Parallel", "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse"),
-        *("Switch2", "Switch3", "Switch4", "Switch5", "Switch6", "Inverter", "ForceSuccess", "ForceFailure"),
-        *("KeepRunningUntilFailure", "Repeat", "RetryUntilSuccessful", "Timeout", "Delay", "AlwaysSuccess"),
-        *("AlwaysFailure", "SetBlackboard", "SubTree"),
-    )
-)
 # The tags of elements that may have to be translated because of their tag or their ID.
 _MAY_BE_OLD: Final = frozenset((*KNOWN_WORDS, *(tag for tag, _ in OLD_PORTS), *CATEGORIES))
-_NEW_NODES: Final = frozenset(BUILTINS) - _OLD_NODES
+_NEW_NODES: Final = frozenset(BUILTINS) - KEPT_FROM_VERSION_3
 _NEW_ATTRIBUTES: Final = frozenset(
     kind.name for kind in RESERVED_ATTRIBUTES.values() if kind.is_script or kind.name == "_autoremap"
 )

@@ -1,7 +1,7 @@
 """The records for node kinds and ports, and the categories.
 
 One invariant: a record describes BehaviorTree.CPP's newest version; differences of older ones have fields of their own
-(`since`, `type_before`).  It does not know particular nodes: those are rows of `engine_nodes`.
+(`since`, `type_before`).  It does not know particular nodes: those are rows of `engine_nodes` and `nav2/nodes`.
 """
 
 from __future__ import annotations
@@ -61,12 +61,26 @@ if TYPE_CHECKING:
         "fails",  # returns FAILURE within the tick
         "answers",  # returns SUCCESS or FAILURE within the tick
         "sleeps",  # returns SUCCESS after a time
+        "waits",  # returns SUCCESS or FAILURE, perhaps after a time
+        "pipeline",  # a sequence that begins with its first child at every tick and lets the later ones run on
+        "together",  # all children at every tick, until all succeed in one tick
+        "resume",  # a sequence that begins with the child whose index an entry has
+        "recover",  # its first child; the second after a failure, and then the first again
+        "rotate",  # one child after the other until one succeeds; the next activation begins after that one
+        "pause",  # its first child, and others in its place while a service has stopped that
+        "pass",  # its child, with the same result
+        "throttle",  # its child when it starts, and again each time that something has happened
+        "throttle-or-fail",  # the same, but it fails without what it measures that by
+        "pass-or-succeed",  # its child if something has happened; else SUCCESS
+        "pass-once",  # its child until that ends, then FAILURE
+        "notices",  # FAILURE when it starts, then SUCCESS each time that something has happened
     ]
 
     # The role of a port's value in the flow of its node.  count: how often it runs its child at most; -1: without end.
     # time: how long it waits, or lets its child run.  successes, failures: how many of its children must succeed or
     # fail for it to do so; a negative number counts from the end.  otherwise: what it returns without its child.
-    Role: TypeAlias = Literal["", "count", "time", "successes", "failures", "otherwise"]
+    # retries: how often its second child may help its first.  wraps: whether its first child follows its last.
+    Role: TypeAlias = Literal["", "count", "time", "successes", "failures", "otherwise", "retries", "wraps"]
 
 # The text of a port: a value, a script, or the name of a blackboard entry, written without braces.
 Content: TypeAlias = "Literal['value', 'script', 'key']"
@@ -76,7 +90,7 @@ RESULT: Final = "BT::NodeStatus except IDLE"
 
 
 class PortKind(Record):
-    """A port of a built-in.
+    """A port of a built-in, or of a node of a library that btq knows.
 
     Attributes:
         type: the C++ type as the engine prints it.
@@ -105,7 +119,7 @@ class PortKind(Record):
 
 
 class NodeKind(Record):
-    """A built-in node of the engine.
+    """A built-in node of the engine, or one of a library that btq knows (`nav2/nodes.py`).
 
     Attributes:
         tag: its XML tag, which is also its name in a file.
@@ -120,6 +134,8 @@ class NodeKind(Record):
         inspects_children: whether the engine looks up the tags of its children at load, and refuses what
             `versions.NO_EXPLICIT_CHILD` and `versions.ONE_ASYNC_SEQUENCE` describe.
         late_count: whether a wrong number of children throws only when the node is ticked, not at load.
+        memory: the result after which its parent must not reset it, or it forgets what it waits for; empty: any parent
+            may reset it.
         since, until: the first and the last version that has it; until=None: the newest does.
     """
 
@@ -137,6 +153,7 @@ class NodeKind(Record):
     keeps_place: bool = False
     inspects_children: bool = False
     late_count: bool = False
+    memory: Literal["", "success", "failure"] = ""
     since: str = "4.6"
     until: str | None = None
 

@@ -103,3 +103,19 @@ PLACEHOLDERS: Final[dict[str, Category]] = {
     "Script": "Action",
     "ScriptCondition": "Condition",
 }
+
+# The built-ins of today that version 3.8 registers too, and those that are only in it.
+KEPT_FROM_VERSION_3: Final = frozenset(
+    (
+        *("Sequence", "Fallback", "Parallel", "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse"),
+        *("Switch2", "Switch3", "Switch4", "Switch5", "Switch6", "Inverter", "ForceSuccess", "ForceFailure"),
+        *("KeepRunningUntilFailure", "Repeat", "RetryUntilSuccessful", "Timeout", "Delay", "AlwaysSuccess"),
+        *("AlwaysFailure", "SetBlackboard", "SubTree"),
+    )
+)
+ONLY_IN_VERSION_3: Final = frozenset(
+    (
+        *("SequenceStar", "SubTreePlus", "ManualSelector"),
+        *("BlackboardCheckInt", "BlackboardCheckDouble", "BlackboardCheckString", "BlackboardCheckBool"),
+    )
+)

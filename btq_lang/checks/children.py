@@ -29,7 +29,7 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
         category = seen.stated_category
         if category is None:
             continue
-        least, most = seen.kind.children if seen.kind is not None else CHILDREN[category]
+        least, most = seen.behavior.children if seen.behavior is not None else CHILDREN[category]
         count = len(seen.node.children)
         if (least <= count and (most is None or count <= most)) or _is_by_children(seen):
             continue
@@ -43,7 +43,7 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
             if view.is_torn(seen.node.start, after - 1):
                 continue  # its child may be on a line that could not be read
         notes: tuple[str, ...] = ()
-        if seen.kind is not None and seen.kind.late_count and count:
+        if seen.behavior is not None and seen.behavior.late_count and count:
             notes = ("the engine loads this and throws when the node is ticked",)
         related = model_related(view, seen, "declared by its model") if seen.node.category is None else ()
         if most is not None and count > most:
@@ -122,7 +122,7 @@ def _integer(word: Word | None) -> int | None:
 
 def _called(seen: ResolvedNode) -> str:
     """A node with its category, if the number of its children follows only from that."""
-    is_known = seen.kind is not None or seen.is_placeholder or seen.is_subtree
+    is_known = seen.behavior is not None or seen.is_placeholder or seen.is_subtree
     return seen.shown_kind if is_known else f"the {seen.category} {seen.shown_kind}"
 
 

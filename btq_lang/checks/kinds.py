@@ -13,6 +13,7 @@ from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.catalog.versions import VERSIONS
+from btq_lang.catalog.words import KEPT_FROM_VERSION_3, ONLY_IN_VERSION_3
 from btq_lang.checks import lookups
 from btq_lang.checks.view import COUNTS, View, misspelt_clause
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
@@ -71,6 +72,8 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         message = f"`{text}` is not built into BehaviorTree.CPP {VERSIONS[0]}–{VERSIONS[-1]}"
         known = KNOWN_WORDS.get(text)
+        if text in ONLY_IN_VERSION_3 and view.is_of_version_3:
+            continue
         if known is not None and (not name.quoted or known.tag == name.text):
             fixes = _of_today(seen, name, known)
             notes = (known.why, *_way_in(view, known))
@@ -82,8 +85,14 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A built-in that is missing in a version which the project targets."""
+    """A built-in that is missing in a version which the project targets, or with which its nodes come."""
     project = view.project
+    if (new := view.seen.by_tag.keys() - KEPT_FROM_VERSION_3) and view.is_of_version_3:
+        for seen in (each for tag in new for each in view.seen.by_tag[tag]):
+            if seen.id is not None and seen.id.text not in ONLY_IN_VERSION_3:
+                message = f"`{seen.tag}` requires BehaviorTree.CPP 4; your nodes come with version 3"
+                yield Diagnostic("newer-engine-node", seen.id.span, message)
+        return
     for tagged in view.seen.by_tag.values():
         missing = [] if tagged[0].kind is None else _missing(tagged[0].kind.tag, project.engines)
         for seen in tagged if missing else ():

@@ -50,6 +50,8 @@ def old_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
     pairs = (pair for seen in view.seen.given for pair in seen.node.attributes)
     begun = [(pair.key, pair.value) for pair in pairs if pair.value is not None and "${" in pair.value.raw[:3]]
     values = [value for key, value in begun if _OLD_ENTRY.fullmatch(value.text) and is_port_name(key.text)]
+    if values and view.is_of_version_3:
+        return
     typed = {value.span: target for target, value in _values(view, entry)} if values else {}
     for value in values:
         key, target = value.text[1:], typed.get(value.span)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
-from btq_lang.catalog.nav2 import FILES
+from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
@@ -535,5 +535,4 @@ def _declaration(workspace: Workspace, found: Definition) -> Declaration:
 
 
 def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
-    paths = workspace.scope(viewpoint).node_paths
-    return next((name for name, path in FILES.items() if path in paths), None)
+    return distribution_among(workspace.scope(viewpoint).node_paths)

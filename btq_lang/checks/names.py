@@ -25,6 +25,12 @@ _NO_NAMESPACES = ("it does not support XML namespaces: the prefix is part of the
 
 def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """The name of a tree, a node, an instance or a SubTree's port that the engine refuses at load."""
+    found = [*_forbidden(view, entry)]
+    if found and not view.is_of_version_3:
+        yield from found
+
+
+def _forbidden(view: View, entry: Entry) -> Iterator[Diagnostic]:
     version = view.project.target
     item = entry.item
     if isinstance(item, Tree):
@@ -63,7 +69,7 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if other is name:
             continue
         related = (Related(Place(other.span), "the first one"),)
-        if is_subtree:
+        if is_subtree and not view.is_of_version_3:
             message = f"the engine refuses two SubTrees with the name `{text}` in one tree"
             severity = Severity.ERROR if view.is_xml else Severity.WARNING
             renames = ("`btq build` writes the second one under another name",)

@@ -45,6 +45,8 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for key, likely in meant.items():
             if key.text in (of_nav2 or ()):
                 continue  # the model may be one of another program, or a short one
+            if seen.kind is not None and (seen.kind.tag, key.text) in OLD_PORTS and view.is_of_version_3:
+                continue
             # The engine takes any port of a SubTree, a model without ports is often an unfinished one, and a program
             # may register another node than the one that another file of the project declares.
             harmless = (seen.is_subtree and not required.intersection(likely)) or not (known or seen.kind)
@@ -129,7 +131,7 @@ def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
                     notes=(refused if is_port else kept,),
                     severity=Severity.WARNING if is_port else Severity.HINT,
                 )
-            elif not (key in _OF_TODAY and _is_off(pair.value)):
+            elif not (key in _OF_TODAY and (_is_off(pair.value) or view.is_of_version_3)):
                 fixes = tuple(replace_fix(f"Replace `{key}` with `{name}`", pair.key.span, name) for name in likely)
                 message = f"the engine silently ignores `{key}`{did_you_mean(likely)}"
                 yield Diagnostic("unknown-attribute", pair.key.span, message, fixes=fixes)

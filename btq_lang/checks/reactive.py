@@ -58,6 +58,8 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
     nodes = view.seen
     if not any(inspects_children(tag) for tag in nodes.by_tag) or not NO_EXPLICIT_CHILD.holds(target):
         return
+    if view.is_of_version_3:
+        return
     for seen in nodes.all:
         parent, category, name = seen.parent, seen.node.category, seen.id
         if parent is None or parent.kind is None or not parent.kind.inspects_children or seen.is_subtree:

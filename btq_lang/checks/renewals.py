@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
 # While a child of these runs no other one does, and earlier ones have ended, unless they are reactive.
-_ONE_AT_A_TIME = frozenset(("sequence", "fallback", "choice", "switch"))
+_ONE_AT_A_TIME = frozenset(("sequence", "fallback", "choice", "switch", "resume", "recover", "rotate"))
 
 
 def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
@@ -102,7 +102,7 @@ def _is_renewed_beside(writing: frozenset[int], carrying: frozenset[int], node: 
 
 
 def _runs_one_at_a_time(node: ResolvedNode) -> bool:
-    return node.kind is not None and node.kind.flow in _ONE_AT_A_TIME and not node.kind.reactive
+    return node.flow in _ONE_AT_A_TIME and node.behavior is not None and not node.behavior.reactive
 
 
 # ---- queries ----

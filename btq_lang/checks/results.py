@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_builtin
+from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_kind
 from btq_lang.checks.view import View
 from btq_lang.syntax.tree import Node, Tree
 from btq_lang.util.record import Record
@@ -78,9 +78,9 @@ def _of_node(view: View, seen: ResolvedNode, known: dict[int, Results]) -> Resul
     found = UNKNOWN
     if seen.is_subtree:
         found = view.ask(_of_tree, seen.id.text) if seen.id is not None and seen.id.text else UNKNOWN
-    elif seen.kind is not None:
+    elif seen.behavior is not None:
         children = tuple([known.get(id(child), UNKNOWN) for child in seen.node.children])
-        found = _of_builtin(seen.kind, seen.node, children)
+        found = _of_known(seen.behavior, seen.node, children)
     elif not seen.node.children:
         found = _CUSTOM.get(seen.stated_category or "", _UNKNOWN_LEAF)
     added = 0
@@ -89,20 +89,20 @@ def _of_node(view: View, seen: ResolvedNode, known: dict[int, Results]) -> Resul
     return Results(found.first | added, found.usual | added, found.ever | added) if added else found
 
 
-def _of_builtin(kind: NodeKind, node: Node, children: tuple[Results, ...]) -> Results:
+def _of_known(kind: NodeKind, node: Node, children: tuple[Results, ...]) -> Results:
     """Cached, for most nodes have no attributes and few kinds of children."""
-    key: tuple[str | int, ...] = kind.tag, *[child.first | child.usual << 4 | child.ever << 8 for child in children]
+    key = id(kind), *[child.first | child.usual << 4 | child.ever << 8 for child in children]
     found = _without_ports.get(key) if not node.attributes else None
     if found is not None:
         return found
     if kind.flow == "timeout" and len(children) == 1 and children[0].usual == RUNNING:
         first = RUNNING  # an action with a limited time takes time
     else:
-        first = of_builtin(kind, node, [child.first for child in children], starting=True)
+        first = of_kind(kind, node, [child.first for child in children], starting=True)
     found = Results(
         first,
-        of_builtin(kind, node, [child.usual for child in children], starting=True),
-        of_builtin(kind, node, [child.ever for child in children], starting=False),
+        of_kind(kind, node, [child.usual for child in children], starting=True),
+        of_kind(kind, node, [child.ever for child in children], starting=False),
     )
     if not node.attributes and len(children) < _FEW:
         _without_ports[key] = found
@@ -110,7 +110,7 @@ def _of_builtin(kind: NodeKind, node: Node, children: tuple[Results, ...]) -> Re
 
 
 _FEW: Final = 4  # there are not many such combinations
-_without_ports: Final[dict[tuple[str | int, ...], Results]] = {}
+_without_ports: Final[dict[tuple[int, ...], Results]] = {}
 _ANY_LEAF: Final = SUCCESS | FAILURE | RUNNING
 _UNKNOWN_LEAF: Final = Results(_ANY_LEAF, _ANY_LEAF, _ANY_LEAF)
 _CUSTOM: Final = {

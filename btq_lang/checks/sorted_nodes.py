@@ -40,10 +40,12 @@ class SortedNodes:
         placeholders: those that represent a skill.
         strangers: those that are neither a built-in, a placeholder nor a SubTree, and have no model.
         by_tag: the built-ins, by their tag.
+        by_flow: the nodes of which it is known what they do, by their flow.
     """
 
     __slots__ = (
         "all",
+        "by_flow",
         "by_tag",
         "categorized",
         "demanding",
@@ -70,13 +72,16 @@ class SortedNodes:
             if seen.kind is None and seen.of_model is None and not (seen.is_placeholder or seen.is_subtree)
         ]
         self.by_tag: Final[dict[str, list[ResolvedNode]]] = {}
+        self.by_flow: Final[dict[Flow, list[ResolvedNode]]] = {}
         for seen in nodes:
             if seen.kind is not None:
                 self.by_tag.setdefault(seen.kind.tag, []).append(seen)
+            if seen.flow:
+                self.by_flow.setdefault(seen.flow, []).append(seen)
 
     def of_flow(self, *flows: Flow) -> list[ResolvedNode]:
-        """The built-ins of these flows, tag by tag."""
-        return [seen for same in self.by_tag.values() if same[0].flow in flows for seen in same]
+        """The nodes of these flows, flow by flow."""
+        return [seen for flow in flows for seen in self.by_flow.get(flow, ())]
 
 
 def _is_marked(node: Node) -> bool:

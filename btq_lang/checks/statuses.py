@@ -1,6 +1,6 @@
-"""The possible results of a built-in, given those of its children.
+"""The possible results of a node of which it is known what it does, given those of its children.
 
-One invariant: every status that the engine's node returns in any version is included.  A set of statuses is a sum of
+One invariant: every status that the node returns in any version is included.  A set of statuses is a sum of
 powers of two; a missing or surplus child can return anything.
 """
 
@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
+
+from btq_lang.workspace.node_names import wraps
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Flow, NodeKind, Role
@@ -20,8 +22,8 @@ RUNNING: Final = 8
 ANYTHING: Final = SUCCESS | FAILURE | SKIPPED | RUNNING
 
 
-def of_builtin(kind: NodeKind, node: Node, children: Sequence[int], starting: bool) -> int:
-    """The statuses that a built-in can return.
+def of_kind(kind: NodeKind, node: Node, children: Sequence[int], starting: bool) -> int:
+    """The statuses that a node can return.
 
     Args:
         node: that has the ports.
@@ -31,6 +33,8 @@ def of_builtin(kind: NodeKind, node: Node, children: Sequence[int], starting: bo
     flow = kind.flow
     if flow in _LEAVES:
         return _LEAVES[flow]
+    if flow == "notices":
+        return FAILURE if starting else SUCCESS | FAILURE
     if flow == "sleeps":
         return RUNNING if starting and _number(kind, node, "time") != 0 else SUCCESS | RUNNING
     if flow in GOES_ON:
@@ -47,7 +51,7 @@ def of_builtin(kind: NodeKind, node: Node, children: Sequence[int], starting: bo
         return tried | (children[-1] & RUNNING if tried & FAILURE else 0)
     if flow in ("parallel", "parallel-all") and children:
         return _parallel(kind, node, children)
-    return ANYTHING
+    return _of_library(kind, node, children) if children else ANYTHING
 
 
 def _number(kind: NodeKind, node: Node, role: Role) -> int | None:
@@ -115,6 +119,28 @@ def _parallel(kind: NodeKind, node: Node, children: Sequence[int]) -> int:
     return (found & (FAILURE | RUNNING)) | succeeds | (SKIPPED if found & SKIPPED else 0)
 
 
+def _of_library(kind: NodeKind, node: Node, children: Sequence[int]) -> int:
+    """The statuses of a control node of a library."""
+    found = _any_of(children)
+    first, last = children[0], children[-1]
+    match kind.flow:
+        case "together":  # it throws if a child is skipped
+            everyone = SUCCESS if all(child & SUCCESS for child in children) else 0
+            return found & (FAILURE | RUNNING) | everyone
+        case "resume":  # its index may be beyond its children
+            return found & (FAILURE | RUNNING) | SUCCESS
+        case "recover" if len(children) == 2:
+            return first | (last & RUNNING if first & FAILURE else 0)
+        case "rotate":
+            ends = FAILURE if last & (SUCCESS | SKIPPED) else 0
+            without = _any_of(children[:-1]) | last & ~SUCCESS | ends
+            does = wraps(kind, node)
+            return found if does else without if does is False else found | without
+        case "pause":
+            return found & (FAILURE | RUNNING) | RUNNING | (SUCCESS if first & (SUCCESS | SKIPPED) else 0)
+    return ANYTHING
+
+
 def _decorated(kind: NodeKind, node: Node, child: int, starting: bool) -> int | None:
     """The statuses of a decorator; None for another flow."""
     match kind.flow:
@@ -145,6 +171,15 @@ def _decorated(kind: NodeKind, node: Node, child: int, starting: bool) -> int | 
             return child | SKIPPED
         case "wait-until-updated":
             return child | RUNNING
+        case "pass":
+            return child
+        case "throttle" | "throttle-or-fail":
+            fails = FAILURE if kind.flow == "throttle-or-fail" else 0
+            return child | fails | (0 if starting else RUNNING)
+        case "pass-or-succeed":
+            return child | SUCCESS
+        case "pass-once":
+            return child if starting else child | FAILURE
     return None
 
 
@@ -168,6 +203,11 @@ def _otherwise(kind: NodeKind, node: Node) -> int:
 
 
 _STATUSES: Final = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED, "RUNNING": RUNNING}
-_LEAVES: Final[Mapping[Flow, int]] = {"succeeds": SUCCESS, "fails": FAILURE, "answers": SUCCESS | FAILURE}
+_LEAVES: Final[Mapping[Flow, int]] = {
+    "succeeds": SUCCESS,
+    "fails": FAILURE,
+    "answers": SUCCESS | FAILURE,
+    "waits": SUCCESS | FAILURE | RUNNING,
+}
 # The status of a child after which the next one is ticked.
-GOES_ON: Final[Mapping[Flow, int]] = {"sequence": SUCCESS, "fallback": FAILURE}
+GOES_ON: Final[Mapping[Flow, int]] = {"sequence": SUCCESS, "fallback": FAILURE, "pipeline": SUCCESS}

@@ -10,6 +10,7 @@ from btq_lang.checks.demanded import Demanded, Found, highest
 from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements.composition import port_count
 from btq_lang.requirements.nodes import callers, mission
+from btq_lang.workspace.node_names import wraps
 from btq_lang.workspace.resolved import ResolvedNode
 
 if TYPE_CHECKING:
@@ -96,6 +97,11 @@ def _swallows(parent: ResolvedNode, child: ResolvedNode) -> str | None:
         return None if port_count(parent, "count") == 1 else "tries again"
     if flow in ("force-success", "invert"):
         return "succeeds"
+    if flow == "recover" and child.index == 0:
+        return None if port_count(parent, "retries") == 0 else "runs its second child"
+    if flow == "rotate" and parent.behavior is not None:
+        goes_on = not last or (wraps(parent.behavior, parent.node) and child.index)
+        return "continues with its next child" if goes_on else None
     if flow == "choice" and child.index == 0:
         return "runs its third child" if len(parent.node.children) == 3 else None
     if flow in ("parallel", "parallel-all") and _failures_needed(parent) > 1:

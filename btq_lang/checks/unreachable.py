@@ -30,6 +30,8 @@ def unreachable_child(view: View, entry: Entry) -> Iterator[Diagnostic]:
             found = _in_try(view, seen)
         elif flow == "choice":
             found = _by_condition(view, seen)
+        elif flow == "recover":
+            found = _behind(view, seen.node.children[:2], FAILURE)
         elif flow == "switch":
             found = _in_switch(seen)
         else:

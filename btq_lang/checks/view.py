@@ -12,6 +12,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nav2 import WITH_VERSION_3
 from btq_lang.catalog.nodes import BUILTINS, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.checks import lookups
@@ -105,6 +106,11 @@ class View:
         name = tree.name.text if isinstance(tree, Tree) and tree.name is not None else ""
         is_only_one = self.ask(_is_main_tree, name)
         return bool(is_only_one) or (is_only_one is not None and self.defines_here(Kind.TREE, name))
+
+    @property
+    def is_of_version_3(self) -> bool:
+        """Whether the nodes in scope are those of a library that comes with version 3 of the engine."""
+        return self.look_up(lookups.distribution) in WITH_VERSION_3
 
     def is_first_use(self, node: Node, name: str) -> bool:
         """Whether no earlier node of the file has an ID."""

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
+from textwrap import fill
 from typing import Final
 
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, FILES
+from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import Model, Port, models_in
 from btq_lang.workspace.loader import read
@@ -24,6 +26,8 @@ def nav2_page(name: str) -> Iterator[str]:
         return
     *_, newest = found.values()
     lines = [f"# {name} ({newest.category.raw} of Nav2)", "", newest.text.text if newest.text is not None else "", ""]
+    if name in NODES:
+        lines += [fill(NODES[name].semantics, 100), ""]
     lines.append(f"in: {', '.join(map(str.capitalize, found))}")
     if rows := _rows(found):
         width = max(map(len, rows))

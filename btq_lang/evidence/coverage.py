@@ -6,6 +6,7 @@ from array import array
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.catalog.nodes import tags_of
 from btq_lang.evidence.verdicts import NodeSummary, Repeats
 
@@ -46,7 +47,7 @@ class Coverage:
                 self._repeated.setdefault(uid, []).append((self.retries, -1))
                 self._repeated.setdefault(uid + 1, []).append((self.retries, 1))
                 second = tree.last[uid + 1] + 1
-                if node.kind == _RECOVERY and second <= tree.last[uid]:
+                if node.kind in _RECOVERING and second <= tree.last[uid]:
                     self._repeated.setdefault(second, []).append((self.recoveries, 1))
 
     def count(self, activation: Activation) -> None:
@@ -174,5 +175,5 @@ def _percentile(ordered: list[int], percent: int) -> float | None:
     return ordered[-(-len(ordered) * percent // 100) - 1] / 1e6 if ordered else None
 
 
-_RECOVERY: Final = "RecoveryNode"
-_RETRYING: Final = frozenset((*tags_of("retry"), _RECOVERY))
+_RECOVERING: Final = frozenset([kind.tag for kind in NODES.values() if kind.flow == "recover"])
+_RETRYING: Final = tags_of("retry") | _RECOVERING

@@ -24,6 +24,7 @@ from btq_lang.ide.ports import NodePort, ports_of_kind, ports_of_tree
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import Apply, Context, Model, QualityDecl, Requirement, Signal, Tree, Word, walk
 from btq_lang.util.text import Span, counted
+from btq_lang.workspace import inputs
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.references import What
 from btq_lang.workspace.workspace import Workspace
@@ -41,7 +42,9 @@ def node_kind(workspace: Workspace, path: str, name: str, quoted: bool = False, 
     if found is not None and isinstance(target := found.symbol.target, Model):
         text = target.text.text if target.text else ""
         shown = f"```btq\n{target.category.raw} {name}\n```"
-        return "\n\n".join(filter(None, (shown, text, _ports(ports_of_kind(workspace, path, name)))))
+        _, known = inputs.declared(workspace.store, path, name)
+        semantics = known.semantics if known is not None else ""
+        return "\n\n".join(filter(None, (shown, text, semantics, _ports(ports_of_kind(workspace, path, name)))))
     if not quoted and name in KNOWN_WORDS:
         return f"`{name}`: {KNOWN_WORDS[name].why}."
     return f"`{name}`: a custom node without a model in this file or its includes."

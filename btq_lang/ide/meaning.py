@@ -305,7 +305,7 @@ def _port(workspace: Workspace, found: Found) -> Subject:
         return Subject(What.PORT, mention.name, f"tree {name.text}")
     if node.id is None:
         return Subject(What.PORT, mention.name)
-    kind = meaning_of(node, partial(inputs.category, workspace.store, found.path)).kind
+    kind = meaning_of(node, partial(inputs.declared, workspace.store, found.path)).kind
     if kind is not None:
         return Subject(What.PORT, mention.name, f"{ENGINE} {kind.tag}")
     owner = _defined(workspace, found.path, What.NODE, node.id.text)

@@ -140,7 +140,7 @@ def _node(workspace: Workspace, path: str, node: syntax.Node, by: int) -> Outlin
 
 
 def _category(workspace: Workspace, path: str, node: syntax.Node) -> str:
-    meaning = meaning_of(node, partial(inputs.category, workspace.store, path))
+    meaning = meaning_of(node, partial(inputs.declared, workspace.store, path))
     return meaning.category.lower() if meaning.category is not None else "node"
 
 

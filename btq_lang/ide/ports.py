@@ -44,7 +44,7 @@ def ports_of(workspace: Workspace, path: str, node: Node) -> tuple[NodePort, ...
     tree = called(node)
     if tree is not None:
         return ports_of_tree(workspace, path, tree.text)
-    meaning = meaning_of(node, partial(inputs.category, workspace.store, path))
+    meaning = meaning_of(node, partial(inputs.declared, workspace.store, path))
     return _ports(workspace, path, meaning.kind, node.id.text) if node.id is not None else ()
 
 

@@ -195,7 +195,7 @@ class TreeBudgets:
     def composed_of_known(self, node: ResolvedNode) -> Budget:
         """As for all budgets."""
         composed = self.composed(node)
-        if node.category == "SubTree" or node.kind is None or not node.children or _is_sure(composed):
+        if node.category == "SubTree" or node.behavior is None or not node.children or _is_sure(composed):
             return composed if _is_sure(composed) else _shortest(composed)
         parts = {id(child.node): _as_part(child, self._known(child)) for child in node.children}
         found = compose(node, [parts.get(id(child), _shortest(_XML)) for child in node.node.children])
@@ -253,9 +253,9 @@ class TreeBudgets:
     def _compose(self, node: ResolvedNode) -> Budget:
         if node.category == "SubTree":
             return self._outcome_of(node).budget
-        if node.kind is None and not node.node.children:
+        if node.behavior is None and not node.node.children:
             return _CONDITION if node.category == "Condition" else _NO_CLAUSE
-        if node.kind is None:
+        if node.behavior is None:
             return unknown("is a custom control or decorator node")
         if not node.node.children:
             return compose(node, ())
@@ -292,7 +292,7 @@ def _success_of(node: ResolvedNode, parts: list[Success]) -> Success | None:
     first = parts[0]
     together = tuple(part for each in parts for part in each.parts)
     missed = fsum([1.0 - part.probability for part in parts])
-    if node.flow == "sequence" and not (node.kind is not None and node.kind.reactive):
+    if node.flow == "sequence" and not (node.behavior is not None and node.behavior.reactive):
         return Success(fsum([part.seconds for part in parts]), max(0.0, 1.0 - missed), together)
     if node.flow == "parallel" and port_count(node, "successes") in (-1, len(parts)):
         return Success(max(part.seconds for part in parts), max(0.0, 1.0 - missed), together)

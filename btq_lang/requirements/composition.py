@@ -1,8 +1,8 @@
 """How long a node takes, given how long its children take: a rule for each flow.
 
-One invariant: every run of the engine is within the ranges, if the children are within theirs.  Two things are left
-out: the time between two ticks, and that the variable of a switch changes while a case runs.  Requirements are for
-`budgets`.
+One invariant: every run of the engine is within the ranges, if the children are within theirs.  Three things are left
+out: the time between two ticks, that the variable of a switch changes while a case runs, and how long a node holds its
+child back that its parent has not reset.  Requirements are for `budgets`.
 """
 
 from __future__ import annotations
@@ -25,8 +25,9 @@ from btq_lang.requirements.durations import (
     without_end,
 )
 from btq_lang.syntax.quantities import parse_quantity
-from btq_lang.syntax.tokens import QUANTITY
+from btq_lang.syntax.tokens import BRACED, QUANTITY
 from btq_lang.util.record import Record, replace
+from btq_lang.workspace.node_names import wraps
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Flow, Role
@@ -98,7 +99,7 @@ def compose(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
         return unknown("is a node of unknown duration")
     if found is None:
         return unknown("has the wrong number of children")
-    if found.waits or node.kind is None or node.kind.execution != "asynchronous":
+    if found.waits or node.behavior is None or node.behavior.execution != "asynchronous":
         return found
     return replace(found, waits=True)
 
@@ -130,7 +131,7 @@ def port_count(node: ResolvedNode, role: Role) -> int | None:
 
 def _port(node: ResolvedNode, role: Role) -> tuple[Word | None, str]:
     """The value of the port, and its default."""
-    port = node.kind.port_for(role) if node.kind is not None else None
+    port = node.behavior.port_for(role) if node.behavior is not None else None
     return (None, "") if port is None else (node.node.attribute(port.name), port.default or "")
 
 
@@ -138,17 +139,17 @@ def _port(node: ResolvedNode, role: Role) -> tuple[Word | None, str]:
 
 
 def _sequence(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    if node.kind is not None and node.kind.keeps_place:
+    if node.behavior is not None and node.behavior.keeps_place:
         return _with_memory(children)
     go, end, skip = _in_order([(each.success, each.failure, each.skip) for each in children])
     found = _made(children, go, end, skip)
-    return _reactive(children, found, "failure") if node.kind is not None and node.kind.reactive else found
+    return _reactive(children, found, "failure") if node.behavior is not None and node.behavior.reactive else found
 
 
 def _fallback(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     go, end, skip = _in_order([(each.failure, each.success, each.skip) for each in children])
     found = _made(children, end, go, skip)
-    return _reactive(children, found, "success") if node.kind is not None and node.kind.reactive else found
+    return _reactive(children, found, "success") if node.behavior is not None and node.behavior.reactive else found
 
 
 def _in_order(
@@ -275,7 +276,7 @@ def _choice(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
     if len(children) not in (2, 3):
         return None
     found = _if_then_else(children)
-    return _rechecking(children, found) if node.kind is not None and node.kind.reactive else found
+    return _rechecking(children, found) if node.behavior is not None and node.behavior.reactive else found
 
 
 def _if_then_else(children: Sequence[Budget]) -> Budget:
@@ -335,7 +336,96 @@ def _try(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
     return _made(children, go, plus(end, catch.anything), skip)
 
 
+def _pipeline(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
+    """An earlier child is ticked again while a later one runs, and may then fail, or be skipped with all others."""
+    go, end, skip = _in_order([(each.success, each.failure, each.skip) for each in children])
+    longest = total(child.running for child in children)
+    if any(child.waits for child in children[1:]):
+        end = hull(end, longest) if end is not None else None
+        skip = hull(skip, longest) if skip is not None else None
+    return _made(children, go, end, skip)
+
+
+def _together(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
+    """A child that has ended starts again as long as another one runs."""
+    if sum(child.waits for child in children) > 1:
+        likely = 0.0 if any(child.probability < 1.0 for child in children) else 1.0
+        reason = "restarts children that have ended until all succeed in one tick"
+        return Budget(ANY, ANY, None, probability=likely, reason=reason, endless=True)
+    success = total(child.success for child in children)
+    fails = any(child.failure is not None for child in children)
+    return _made(children, success, total(child.running for child in children) if fails else None, None)
+
+
+def _resume(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
+    """It may begin with any child, and end before the first one.  With a number instead of an entry it begins there at
+    every tick."""
+    word = node.node.attribute("current_child_idx")
+    if word is not None and word.kind != BRACED:
+        return unknown("begins with the same child at every tick")
+    go, end, _ = _in_order([(each.success, each.failure, each.skip) for each in children])
+    return _made(children, hull(from_zero(go), ZERO), from_zero(end), None)
+
+
+def _recover(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
+    """The second child's success begins the first one again, its failure or skip is the failure of the node; after a
+    skip the next activation has fewer tries left."""
+    if len(children) != 2:
+        return None
+    first, second = children
+    count = port_count(node, "retries")
+    if count is not None and count < 0:
+        count = None  # before Jazzy without limit, from then on one
+    cycle, gives_up = plus(first.failure, second.success), plus(first.failure, hull(second.failure, second.skip))
+    most = inf if count is None else count
+    last = first.failure
+    if count is not None and second.skip is None:
+        last = plus(times(count, cycle), first.failure) if count == 0 or cycle is not None else None
+    elif cycle is not None:
+        last = _before(cycle, first.failure, most)
+    found = _made(
+        children,
+        _before(cycle, first.success, most),
+        hull(last, _before(cycle, gives_up, most - 1) if most > 0 else None),
+        _before(cycle, first.skip, most),
+    )
+    reason = "" if count is not None or cycle is None else "has no known limit of its retries"
+    likely = _likely([child.probability for child in children], None if count is None else count + 1)
+    return replace(found, probability=likely, reason=reason, endless=found.endless or bool(reason))
+
+
+def _rotate(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
+    """It may begin with any child; one that was skipped it ticks again, if its first follows its last."""
+    goes_round = node.behavior is not None and wraps(node.behavior, node.node) is not False
+    if goes_round and any(child.skip is not None and child.skip.high > 0.0 for child in children):
+        return replace(unknown("ticks a skipped child without limit"), waits=any(child.waits for child in children))
+    longest = total(child.running for child in children)
+    succeeds = [child.success for child in children if child.success is not None]
+    return _made(
+        children,
+        replace(longest, low=min(each.low for each in succeeds)) if succeeds and longest is not None else None,
+        longest,
+        longest if all(child.skip is not None for child in children) else None,
+    )
+
+
 # ---- decorators ----
+
+
+def _pass(node: ResolvedNode, child: Budget) -> Budget:
+    return child
+
+
+def _throttle_or_fail(node: ResolvedNode, child: Budget) -> Budget:
+    return replace(child, failure=hull(child.failure, from_zero(child.running)))
+
+
+def _pass_or_succeed(node: ResolvedNode, child: Budget) -> Budget:
+    return replace(child, success=hull(child.success, from_zero(child.running)))
+
+
+def _pass_once(node: ResolvedNode, child: Budget) -> Budget:
+    return replace(child, failure=hull(child.failure, ZERO))
 
 
 def _invert(node: ResolvedNode, child: Budget) -> Budget:
@@ -508,6 +598,8 @@ _LEAVES: Final[Mapping[Flow, Budget]] = {
     "succeeds": Budget(ZERO, None, None, False),
     "fails": Budget(None, ZERO, None, False),
     "answers": Budget(ZERO, ZERO, None, False),
+    "notices": Budget(ZERO, ZERO, None, False),
+    "waits": Budget(ANY, ANY, reason="has no `takes` clause"),
 }
 _CONTROLS: Final[Mapping[Flow, Callable[[ResolvedNode, Sequence[Budget]], Budget | None]]] = {
     "sequence": _sequence,
@@ -517,6 +609,11 @@ _CONTROLS: Final[Mapping[Flow, Callable[[ResolvedNode, Sequence[Budget]], Budget
     "choice": _choice,
     "switch": _switch,
     "try": _try,
+    "pipeline": _pipeline,
+    "together": _together,
+    "resume": _resume,
+    "recover": _recover,
+    "rotate": _rotate,
 }
 _DECORATORS: Final[Mapping[Flow, Callable[[ResolvedNode, Budget], Budget]]] = {
     "invert": _invert,
@@ -532,4 +629,9 @@ _DECORATORS: Final[Mapping[Flow, Callable[[ResolvedNode, Budget], Budget]]] = {
     "for-each": _for_each,
     "skip-unless-updated": _skip_unless_updated,
     "wait-until-updated": _wait_until_updated,
+    "pass": _pass,
+    "throttle": _pass,
+    "throttle-or-fail": _throttle_or_fail,
+    "pass-or-succeed": _pass_or_succeed,
+    "pass-once": _pass_once,
 }

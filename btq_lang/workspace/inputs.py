@@ -16,6 +16,7 @@ from functools import wraps
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.syntax.tree import Apply, Entry, Item, Model, Tree, Verbatim
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
@@ -25,13 +26,17 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
     from typing import Concatenate, ParamSpec, TypeVar
 
+    from btq_lang.catalog.kinds import NodeKind
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.file import File
+    from btq_lang.workspace.workspace import Scope
 
     P = ParamSpec("P")
     T = TypeVar("T")
 
 Placed: TypeAlias = tuple[str, Facts]  # an item, and the path of its file
+# The category of a model, if there is one, and what the node does, if it is of a library that btq knows.
+Declared: TypeAlias = "tuple[str | None, NodeKind | None]"
 
 # ---- topics: what an edit has to touch to invalidate an input ----
 
@@ -177,21 +182,33 @@ def definition(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> P
     return None
 
 
-def category(store: Store[Workspace], viewpoint: str, name: str) -> str | None:
-    """The category of a custom node according to its model; None if it has none."""
-    return _category(store, viewpoint, Kind.MODEL, name)
+def declared(store: Store[Workspace], viewpoint: str, name: str) -> Declared:
+    """What the model of a custom node declares; nothing if it has none."""
+    return _declared(store, viewpoint, Kind.MODEL, name)
 
 
 @of_name
-def _category(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> str | None:
-    for file in workspace.scope(viewpoint).files(kind):
+def _declared(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Declared:
+    scope = workspace.scope(viewpoint)
+    for file in scope.files(kind):
         if found := file.names.found.get((kind, name)):
             model = found[0][1].target
-            return model.category.raw if isinstance(model, Model) else None
+            category = model.category.raw if isinstance(model, Model) else None
+            return category, _of_library(scope, kind, name) if scope.node_paths else None
     pooled = workspace.find(viewpoint, kind, name)
     target = pooled.symbol.target if pooled is not None else None
     is_of_node = isinstance(target, Model) and target.category.raw != "SubTree"  # else of a tree of that name
-    return target.category.raw if isinstance(target, Model) and is_of_node else None
+    return target.category.raw if isinstance(target, Model) and is_of_node else None, None
+
+
+def _of_library(scope: Scope, kind: Kind, name: str) -> NodeKind | None:
+    """What a node does, if the model that counts is of a library that btq knows."""
+    found, distribution = scope.find(kind, name), distribution_among(scope.node_paths)
+    if found is None or distribution is None or found.path != FILES[distribution]:
+        return None
+    from btq_lang.catalog.nav2.nodes import nodes_of  # few projects have these models
+
+    return nodes_of(distribution).get(name)
 
 
 def symbol(facts: Facts, kind: Kind, name: str) -> Symbol:

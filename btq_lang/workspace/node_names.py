@@ -1,6 +1,6 @@
 """What a written node is called, and what that means.
 
-One invariant: besides the node, only the category of its model counts, which the caller looks up.
+One invariant: besides the node, only what its model declares counts, which the caller looks up.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup, spellings, xml_tag
 from btq_lang.util.record import Record
@@ -16,6 +17,7 @@ from btq_lang.workspace.placeholders import is_placeholder
 
 if TYPE_CHECKING:
     from btq_lang.syntax.tree import Node
+    from btq_lang.workspace.inputs import Declared
 
 
 class Meaning(Record):
@@ -23,6 +25,7 @@ class Meaning(Record):
 
     Attributes:
         kind: the built-in, if it is one; for an older engine's word, the one of today.
+        behavior: the same, or the node of a library that btq knows; None if nothing is known of what it does.
         category: as written, or that of the built-in, the placeholder, the model or an older engine's word; None if
             unknown.
         of_model: the category of its model; None if no model of it is in scope.
@@ -33,13 +36,14 @@ class Meaning(Record):
     category: str | None
     of_model: str | None = None
     is_outdated: bool = False
+    behavior: NodeKind | None = None
 
 
-def meaning_of(node: Node, category_of_model: Callable[[str], str | None]) -> Meaning:
+def meaning_of(node: Node, declared: Callable[[str], Declared]) -> Meaning:
     """What a node means.
 
     Args:
-        category_of_model: returns the category of a node's model in scope, given the node's name.
+        declared: returns what a node's model in scope declares, given the node's name.
     """
     name = node.id
     category = node.category.raw if node.category is not None else None
@@ -49,13 +53,13 @@ def meaning_of(node: Node, category_of_model: Callable[[str], str | None]) -> Me
         return Meaning(None, PLACEHOLDERS[name.raw])
     kind = kind_of(node)
     if kind is not None:
-        return Meaning(kind, category or kind.category)
-    of_model = category_of_model(name.text)
+        return Meaning(kind, category or kind.category, behavior=kind)
+    of_model, known_node = declared(name.text)
     known = KNOWN_WORDS.get(name.text) if of_model is None and not name.quoted else None
     if known is None:
-        return Meaning(None, category or of_model, of_model)
+        return Meaning(None, category or of_model, of_model, behavior=known_node)
     kind = BUILTINS.get(known.replacement or "")
-    return Meaning(kind, category or known.category, is_outdated=kind is None and category is None)
+    return Meaning(kind, category or known.category, is_outdated=kind is None and category is None, behavior=kind)
 
 
 def kind_of(node: Node) -> NodeKind | None:
@@ -65,6 +69,16 @@ def kind_of(node: Node) -> NodeKind | None:
     if name is None or (node.category is not None and node.category.raw == "SubTree"):
         return None
     return lookup(name.text, name.quoted, len(node.nodes) if node.children else 0)
+
+
+def wraps(kind: NodeKind, node: Node) -> bool | None:
+    """Whether the first child of a node that takes turns follows its last, as it does without a port that says so; None
+    if an entry determines it."""
+    port = kind.port_for("wraps")
+    value = node.attribute(port.name) if port is not None else None
+    if port is None or value is None:
+        return port is None
+    return None if is_pointer(value.text) else value.text.lower() not in ("false", "0")
 
 
 def tag_of(node: Node) -> str:

@@ -1,7 +1,7 @@
 """The written nodes of a tree, and what each means from a viewpoint.
 
-One invariant: the result depends on the tree and on the categories of the models in scope, so an edit elsewhere leaves
-it the same object unless such a category changes.  Neither other trees nor a model's ports are known here.
+One invariant: the result depends on the tree and on what the models in scope declare, so an edit elsewhere leaves it
+the same object unless such a category changes.  Neither other trees nor a model's ports are known here.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from btq_lang.workspace.placeholders import is_placeholder
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Flow
+    from btq_lang.workspace.inputs import Declared
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
@@ -30,7 +31,7 @@ def tree_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts)
     Args:
         path, facts: where it is written.
     """
-    return ResolvedTree(path, facts, cache(partial(inputs.category, store, viewpoint)))
+    return ResolvedTree(path, facts, cache(partial(inputs.declared, store, viewpoint)))
 
 
 def tree_named(store: Store[Workspace], viewpoint: str, name: str) -> ResolvedTree | None:
@@ -56,12 +57,13 @@ class ResolvedNode:
         children: the nodes below it.
         id, name: of the node, from its attributes if they are not written before.
         is_placeholder: whether it represents a skill (placeholders.py).
-        kind, of_model, category, is_outdated: its meaning (node_names.py).
+        kind, behavior, of_model, category, is_outdated: its meaning (node_names.py).
         is_subtree: whether it runs another tree, under the name that the engine of today has for that.
     """
 
     __slots__ = (
         "_names",
+        "behavior",
         "category",
         "children",
         "id",
@@ -83,7 +85,7 @@ class ResolvedNode:
         within: ResolvedTree,
         parent: ResolvedNode | None,
         index: int,
-        category_of_model: Callable[[str], str | None],
+        declared: Callable[[str], Declared],
     ) -> None:
         self.node: Final = node
         self.within: Final = within
@@ -93,8 +95,9 @@ class ResolvedNode:
         self.id: Final = node.id
         self.name: Final[Word | None] = node.name
         self.is_placeholder: Final = is_placeholder(node)
-        meaning = meaning_of(node, category_of_model)
+        meaning = meaning_of(node, declared)
         self.kind: Final = meaning.kind
+        self.behavior: Final = meaning.behavior
         self.of_model: Final = meaning.of_model
         self.category: Final = meaning.category
         self.is_outdated: Final = meaning.is_outdated
@@ -164,8 +167,8 @@ class ResolvedNode:
 
     @property
     def flow(self) -> Flow:
-        """What the built-in does with its children; empty for a custom node."""
-        return self.kind.flow if self.kind is not None else ""
+        """What it does with its children; empty if nothing is known of that."""
+        return self.behavior.flow if self.behavior is not None else ""
 
     @property
     def tag(self) -> str:
@@ -202,8 +205,8 @@ class ResolvedTree:
 
     __slots__ = ("_by_name", "all", "by_tag", "called", "calls", "facts", "item", "name", "path", "qualities", "root")
 
-    def __init__(self, path: str, facts: Facts, category_of_model: Callable[[str], str | None]) -> None:
-        """category_of_model: returns the category of a node's model in scope, given the node's name."""
+    def __init__(self, path: str, facts: Facts, declared: Callable[[str], Declared]) -> None:
+        """declared: returns what a node's model in scope declares, given the node's name."""
         item = facts.item
         assert isinstance(item, Tree), "only trees have nodes"
         self.path: Final = path
@@ -213,7 +216,7 @@ class ResolvedTree:
         self.by_tag: Final[dict[str, list[ResolvedNode]]] = {}
         self.qualities: Final[dict[int, str]] = {}
         self._by_name: dict[str, list[ResolvedNode]] | None = None
-        self.all: Final = tuple(self._read(category_of_model))
+        self.all: Final = tuple(self._read(declared))
         subtrees = [(node.id, node) for node in self.all if node.category == "SubTree"]
         self.calls: Final = tuple([(called.text, node) for called, node in subtrees if called is not None])
         self.called: Final = tuple([name for name, _ in self.calls])
@@ -244,13 +247,13 @@ class ResolvedTree:
                     for requirement in quality.requirements:
                         self.qualities[id(requirement)] = quality.path.text
 
-    def _read(self, category_of_model: Callable[[str], str | None]) -> Iterator[ResolvedNode]:
+    def _read(self, declared: Callable[[str], Declared]) -> Iterator[ResolvedNode]:
         waiting: list[tuple[Node, ResolvedNode | None, int]] = []
         waiting += [(child, None, at) for at, child in enumerate(self.item.children) if isinstance(child, Node)]
         waiting.reverse()
         while waiting:
             node, parent, index = waiting.pop()
-            found = ResolvedNode(node, self, parent, index, category_of_model)
+            found = ResolvedNode(node, self, parent, index, declared)
             if parent is not None:
                 parent.children.append(found)
             yield found

@@ -6,10 +6,11 @@ One invariant: only names and paths; a file is read when a project names it.
 from __future__ import annotations
 
 import os.path
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from typing import Final
 
 DISTRIBUTIONS: Final = ("humble", "iron", "jazzy", "kilted", "lyrical")
+WITH_VERSION_3: Final = ("humble", "iron")  # of BehaviorTree.CPP; the others come with version 4
 
 _FOLDER: Final = os.path.dirname(os.path.abspath(__file__)).replace(os.sep, "/")
 # The path of the file of each distribution, and the same by the name that a project uses.
@@ -22,3 +23,8 @@ def ports_of(node: str) -> frozenset[str] | None:
     from btq_lang.catalog.nav2.ports import PORTS  # few projects need it
 
     return frozenset(PORTS[node].split()) if node in PORTS else None
+
+
+def distribution_among(paths: Container[str]) -> str | None:
+    """The distribution whose file is among some."""
+    return next((name for name, path in FILES.items() if path in paths), None)
