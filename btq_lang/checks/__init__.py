@@ -15,7 +15,8 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     measures.py, clauses.py, conditions.py, bounds.py, limits.py, odds.py   requirements by themselves
     requirements.py, attached.py, qualities.py, repeated.py, prose.py, unused.py   names of requirements and qualities
     demanded.py, demands.py, budgets.py, signals.py, renewals.py, unenforced.py   requirements at their nodes
-    calls.py, origins.py, wording.py, placeholders.py, suppressions.py, silencing.py   shared, XML, silenced rules
+    calls.py, uncreated.py, origins.py, wording.py, placeholders.py   shared; trees that nothing creates; XML
+    suppressions.py, silencing.py   silenced rules
 """
 
 from __future__ import annotations
@@ -55,6 +56,7 @@ from btq_lang.checks import (
     unreachable,
     unused,
 )
+from btq_lang.checks.uncreated import as_uncreated
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.diagnostics.rules import Severity
@@ -319,7 +321,7 @@ def _reported(store: Store[Workspace], viewpoint: str, facts: Facts, is_alone: b
         found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
     elif not found:
         return None
-    wanted = tuple(configured(view.project, viewpoint, found))
+    wanted = tuple(configured(view.project, viewpoint, as_uncreated(view, entry, found)))
     return Reported(wanted, (viewpoint, facts.item)) if wanted else None
 
 

@@ -37,6 +37,11 @@ def is_missed(store: Store[Workspace], viewpoint: str, tree: str) -> bool:
     return tree in store.ask(_missed, viewpoint)
 
 
+def is_uncreated(store: Store[Workspace], viewpoint: str, tree: str) -> bool:
+    """Whether certainly none of the main trees of a factory runs a tree."""
+    return tree in store.ask(_uncreated, viewpoint)
+
+
 def circle(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...] | None:
     """The shortest way from a tree back to itself, both ends included; of trees that reach each other only the first
     has one: there it is reported."""
@@ -64,6 +69,18 @@ def _missed(store: Store[Workspace], viewpoint: str) -> Set[str]:
     if not known.names & set(mains):
         return frozenset()  # which is reported
     return known.names - frozenset().union(*map(known.reached_from, mains))
+
+
+@hub
+def _uncreated(store: Store[Workspace], viewpoint: str) -> Set[str]:
+    """Those of all trees in scope; an unknown tree matters only if a main tree reaches it."""
+    view = View(store, viewpoint)
+    mains = view.look_up(lookups.main_trees)
+    if not mains or not view.is_complete or not view.is_read:
+        return frozenset()
+    known = view.ask(calls)
+    reached = frozenset().union(*map(known.reached_from, mains))
+    return known.names - reached if known.names >= reached else frozenset()
 
 
 class Calls:

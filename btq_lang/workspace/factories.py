@@ -16,6 +16,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.nav2 import PACKAGED
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
 
@@ -89,16 +90,25 @@ def read_factories(tables: object) -> tuple[tuple[Factory, ...], list[Complaint]
 
 
 def merged(found: Sequence[tuple[Factory | None, tuple[Diagnostic, ...]]]) -> tuple[Diagnostic, ...]:
-    """The diagnostics of a file from each of its factories, in order; those that only some have name them."""
+    """The diagnostics of a file from each of its factories, in order; those that only some have name them.
+
+    What is an error in one is not repeated as a warning of another, which does not create the tree.
+    """
     if len(found) == 1:
         return found[0][1]
     of: dict[Diagnostic, list[str]] = {}
     for factory, diagnostics in found:
         for each in dict.fromkeys(diagnostics):
             of.setdefault(each, []).append(f"`{factory.name}`" if factory is not None else "")
+    errors = {(each.rule, each.span, each.message) for each in of if each.effective_severity is Severity.ERROR}
+    kept = [
+        each
+        for each in of
+        if each.effective_severity is Severity.ERROR or (each.rule, each.span, each.message) not in errors
+    ]
     return tuple(
         _naming(each, of[each]) if len(of[each]) < len(found) else each
-        for each in sorted(of, key=lambda each: each.span)
+        for each in sorted(kept, key=lambda each: each.span)
     )
 
 

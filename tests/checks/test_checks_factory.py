@@ -140,3 +140,42 @@ def test_findings_that_only_some_factories_have_name_them() -> None:
         ("unknown-tree", ("only in the factories `two`, `three`",)),
     ]
     assert merged([(Factory(name), of_each[1]) for name in names]) == of_each[1]
+
+
+REFUSED = """<Timeout mssec="1"><Sequence><SubTree ID="Nope" name="x"/><SubTree ID="Main" name="x"/>
+  <Script code="a := "/><Timeout msec="soon"><AlwaysSuccess/></Timeout><Sequence/></Sequence></Timeout>"""
+
+
+def severities(workspace: Workspace, path: str) -> list[tuple[str, str]]:
+    return [(each.rule, each.effective_severity.value) for each in check(workspace, path)]
+
+
+def test_what_the_engine_refuses_only_in_trees_that_it_creates() -> None:
+    """In a tree that no main tree reaches, it is a warning, and what keeps the file from being loaded an error."""
+    files = ("a.xml: " + tree("Main"), "b.xml: " + tree("Other", REFUSED))
+    at_creation = ["unknown-port", "unknown-tree", "duplicate-instance-name", "script-error", "invalid-literal"]
+    created = severities(factory(*files, main=("Main", "Other")), "b.xml")
+    assert created == [*((rule, "error") for rule in at_creation), ("child-count", "error")]
+    unreached = factory(*files, main=("Main",))
+    assert [each for each in severities(unreached, "b.xml") if each[0] in at_creation] == [
+        (rule, "warning") for rule in at_creation
+    ]
+    assert ("child-count", "error") in severities(unreached, "b.xml")
+    noted = next(each for each in check(unreached, "b.xml") if each.rule == "unknown-tree")
+    assert noted.notes[-1] == "no main tree of the factory `nav` reaches `Other`; the engine would refuse to create it"
+    for unsure in (factory(*files), factory(*files, main=("Mian",)), factory(*files, main=("Main",), lost=("c.xml",))):
+        assert ("script-error", "error") in severities(unsure, "b.xml")
+    reaching_a_gap = factory("a.xml: " + tree("Main", '<SubTree ID="Othr"/>'), files[1], main=("Main",))
+    assert ("script-error", "error") in severities(reaching_a_gap, "b.xml")
+
+
+def test_an_error_in_one_factory_is_not_a_warning_of_another_too() -> None:
+    files = ("a.xml: " + tree("Main"), "b.xml: " + tree("Other", '<Timeout msec="soon"><AlwaysSuccess/></Timeout>'))
+    both = [factory(*files, main=("Main",)), factory(*files, main=("Other",))]
+    other = Factory("other", main=("Other",), files=both[1].registered)
+    both[1] = Workspace(both[1].files, Project(), other)
+    found = merged([(each.factory, check(each, "b.xml")) for each in both])
+    assert [(each.rule, each.effective_severity.value, each.notes[-1:]) for each in found] == [
+        ("unused-tree", "warning", ("only in the factory `nav`",)),
+        ("invalid-literal", "error", ("only in the factory `other`",)),
+    ]
