@@ -9,12 +9,14 @@ Sources: BehaviorTree.CPP 3.8, xml_parsing.cpp; 4.x, migration guide and convert
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final
 
 from btq_lang.btcpp.document import Attribute, Element
-from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
-from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
-from btq_lang.catalog.words import KEPT_FROM_VERSION_3
+from btq_lang.catalog.attributes import OF_VERSION_4
+from btq_lang.catalog.literals import OLD_ENTRY, is_pointer
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS, available
+from btq_lang.catalog.versions import VERSION_3
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
@@ -48,9 +50,21 @@ def translated(root: Element, changes: list[Change]) -> None:
     else:
         changes.append(Change(span, 'BTCPP_format="4" is added'))
     root.attributes = (Attribute("BTCPP_format", "4"), *kept)
+    outputs = dict(_outputs(root))
     for element in root.walk():
+        translator = _Translator(element, changes)
+        if element.tag != "SubTree":  # whose attributes name entries without any sign
+            name = element.get("ID") if element.tag in CATEGORIES else element.tag
+            translator.entries(outputs.get(name, frozenset()))
         if element.tag in _MAY_BE_OLD:
-            _Translator(element, changes).translate()
+            translator.translate()
+
+
+def _outputs(root: Element) -> Iterator[tuple[str | None, frozenset[str | None]]]:
+    """The nodes that have models in the file, with the names of their outputs."""
+    for models in root.elements:
+        for model in models.elements if models.tag == "TreeNodesModel" else ():
+            yield model.get("ID"), frozenset(each.get("name") for each in model.elements if each.tag == "output_port")
 
 
 class _Translator:
@@ -74,13 +88,26 @@ class _Translator:
         if known is not None and known.replacement is not None:
             self.rename(is_explicit, known.replacement)
             identity = known.replacement
-        elif known is not None and known.word in _GONE:
+        elif known is not None and known.until == VERSION_3:
             self.report(f"{known.why}: kept unchanged")
         for attribute in element.attributes:
             port = OLD_PORTS.get((identity or "", attribute.name))
             if port is not None:
                 self.report(f"{attribute.name} of {identity} is now {port}", attribute)
                 self.replace(attribute, self.changed(attribute, name=port))
+
+    def entries(self, outputs: frozenset[str | None]) -> None:
+        """Put braces round the entries that version 3 knows without: `${key}`, and `key` for an output."""
+        for attribute in self.element.attributes:
+            raw = attribute.raw
+            if attribute.name in ("ID", "name"):
+                continue
+            if OLD_ENTRY.fullmatch(raw):
+                self.report(f'{attribute.name}="{raw}" names an entry: now "{raw[1:]}"', attribute)
+                self.replace(attribute, self.changed(attribute, raw=raw[1:]))
+            elif attribute.name in outputs and raw not in ("", "=") and not is_pointer(attribute.value):
+                self.report(f'{attribute.name}="{raw}" names the entry of an output: now "{{{raw}}}"', attribute)
+                self.replace(attribute, self.changed(attribute, raw=f"{{{raw}}}"))
 
     def rename(self, is_explicit: bool, new: str) -> None:
         element = self.element
@@ -154,20 +181,13 @@ def _is_new(element: Element) -> bool:
     """Whether only version 4 understands an element: its tag, or one of its attributes."""
     if element.tag in _NEW_NODES:
         return True
-    return any(attribute.name in _NEW_ATTRIBUTES for attribute in element.attributes)
+    return any(attribute.name in OF_VERSION_4 for attribute in element.attributes)
 
 
 def _is_true(said: str) -> bool:
     return said.strip().lower() in ("true", "1")
 
 
-# Nodes of version 3 that version 4 does not have.
-_GONE: Final = frozenset(
-    ("ManualSelector", "BlackboardCheckInt", "BlackboardCheckDouble", "BlackboardCheckString", "BlackboardCheckBool")
-)
 # The tags of elements that may have to be translated because of their tag or their ID.
 _MAY_BE_OLD: Final = frozenset((*KNOWN_WORDS, *(tag for tag, _ in OLD_PORTS), *CATEGORIES))
-_NEW_NODES: Final = frozenset(BUILTINS) - KEPT_FROM_VERSION_3
-_NEW_ATTRIBUTES: Final = frozenset(
-    kind.name for kind in RESERVED_ATTRIBUTES.values() if kind.is_script or kind.name == "_autoremap"
-)
+_NEW_NODES: Final = frozenset(tag for tag, kind in BUILTINS.items() if not available(kind, VERSION_3))

@@ -73,3 +73,5 @@ _KINDS: Final = (
 
 # By name.
 RESERVED_ATTRIBUTES: Final[Mapping[str, AttributeKind]] = {kind.name: kind for kind in _KINDS}
+# Those that version 3 of the engine does not read.
+OF_VERSION_4: Final = frozenset([kind.name for kind in _KINDS if kind.is_script or kind.group == "engine"])

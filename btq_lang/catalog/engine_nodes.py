@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.kinds import RESULT, Direction, NodeKind, PortKind
+from btq_lang.catalog.versions import VERSION_3
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Role
@@ -55,6 +56,7 @@ _CONTROL: Final = (
         "children count as done; if all are skipped, so is the Sequence.",
         symbols=("->", "→"),
         flow="sequence",
+        since=VERSION_3,
     ),
     NodeKind(
         "Fallback",
@@ -66,6 +68,7 @@ _CONTROL: Final = (
         "interrupt it (ReactiveFallback can). It hides the failure of every child but the last.",
         symbols=("?",),
         flow="fallback",
+        since=VERSION_3,
     ),
     NodeKind(
         "Parallel",
@@ -83,6 +86,7 @@ _CONTROL: Final = (
         ),
         symbols=("||", "⇉"),
         flow="parallel",
+        since=VERSION_3,
     ),
     NodeKind(
         "ParallelAll",
@@ -109,6 +113,7 @@ _CONTROL: Final = (
         flow="sequence",
         reactive=True,
         inspects_children=True,
+        since=VERSION_3,
     ),
     NodeKind(
         "ReactiveFallback",
@@ -121,6 +126,7 @@ _CONTROL: Final = (
         symbols=("R?",),
         flow="fallback",
         reactive=True,
+        since=VERSION_3,
     ),
     NodeKind(
         "SequenceWithMemory",
@@ -167,6 +173,7 @@ _CONTROL: Final = (
         "node requires two or three children, which the engine checks only at the first tick.",
         flow="choice",
         late_count=True,
+        since=VERSION_3,
     ),
     NodeKind(
         "WhileDoElse",
@@ -179,6 +186,7 @@ _CONTROL: Final = (
         flow="choice",
         reactive=True,
         late_count=True,
+        since=VERSION_3,
     ),
     *(
         NodeKind(
@@ -197,6 +205,7 @@ _CONTROL: Final = (
             aliases=("Switch",),
             flow="switch",
             late_count=True,
+            since=VERSION_3,
         )
         for cases in range(2, 7)
     ),
@@ -266,6 +275,7 @@ _DECORATORS: Final = (
         "Turns success into failure and failure into success.",
         "It passes RUNNING and SKIPPED on.",
         flow="invert",
+        since=VERSION_3,
     ),
     NodeKind(
         "ForceSuccess",
@@ -274,6 +284,7 @@ _DECORATORS: Final = (
         "Succeeds whenever its child completes.",
         "It turns a failure of the child into SUCCESS, and passes RUNNING and SKIPPED on.",
         flow="force-success",
+        since=VERSION_3,
     ),
     NodeKind(
         "ForceFailure",
@@ -282,6 +293,7 @@ _DECORATORS: Final = (
         "Fails whenever its child completes.",
         "It turns a success of the child into FAILURE, and passes RUNNING and SKIPPED on.",
         flow="force-failure",
+        since=VERSION_3,
     ),
     NodeKind(
         "KeepRunningUntilFailure",
@@ -292,6 +304,7 @@ _DECORATORS: Final = (
         "with FAILURE or when it is halted: a Sequence never reaches the nodes after it.",
         execution="asynchronous",
         flow="until-failure",
+        since=VERSION_3,
     ),
     NodeKind(
         "Repeat",
@@ -304,6 +317,7 @@ _DECORATORS: Final = (
         (_input("num_cycles", "int", "The number of cycles; -1 means forever", required=True, role="count"),),
         execution="asynchronous",
         flow="repeat",
+        since=VERSION_3,
     ),
     NodeKind(
         "RetryUntilSuccessful",
@@ -317,6 +331,7 @@ _DECORATORS: Final = (
         aliases=("Retry",),
         execution="asynchronous",
         flow="retry",
+        since=VERSION_3,
     ),
     NodeKind(
         "Timeout",
@@ -328,6 +343,7 @@ _DECORATORS: Final = (
         "has no effect. 0 means no limit.",
         (_duration("msec", "The time limit; 0 means no limit"),),
         flow="timeout",
+        since=VERSION_3,
     ),
     NodeKind(
         "Delay",
@@ -338,6 +354,7 @@ _DECORATORS: Final = (
         (_duration("delay_msec", "How long to wait before the child's first tick"),),
         execution="asynchronous",
         flow="delay",
+        since=VERSION_3,
     ),
     NodeKind(
         "RunOnce",
@@ -400,6 +417,7 @@ _LEAVES: Final = (
         "It does nothing else; useful as a placeholder and as a last child.",
         execution="synchronous",
         flow="succeeds",
+        since=VERSION_3,
     ),
     NodeKind(
         "AlwaysFailure",
@@ -409,6 +427,7 @@ _LEAVES: Final = (
         "It does nothing else; useful as a placeholder and for testing failures.",
         execution="synchronous",
         flow="fails",
+        since=VERSION_3,
     ),
     NodeKind(
         "Script",
@@ -448,6 +467,7 @@ _LEAVES: Final = (
         ),
         execution="synchronous",
         flow="succeeds",
+        since=VERSION_3,
     ),
     NodeKind(
         "UnsetBlackboard",
@@ -489,6 +509,7 @@ _LEAVES: Final = (
         "constant, {=} the entry of the same name, {@key} one of the root blackboard. A tree must not contain "
         "itself.",
         (_input("_autoremap", "bool", "Pass every entry under its own name", "false"),),
+        since=VERSION_3,
     ),
 )
 

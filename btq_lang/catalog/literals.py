@@ -49,6 +49,10 @@ def check_literal(port_type: str, text: str, version: str = DEFAULT_VERSION) -> 
     return _check_one(_plain(port_type), text, version)
 
 
+# Another form of it, which version 3 of the engine has.
+OLD_ENTRY: Final = re.compile(r"\$\{[^{}\n]+\}")
+
+
 def is_pointer(text: str) -> bool:
     """Whether the text of a port is `{key}`, a pointer to a blackboard entry, whatever the port's type."""
     return len(text) >= 3 and text[0] == "{" and text[-1] == "}"

@@ -15,6 +15,9 @@ from btq_lang.util.record import Record
 # The lines of the engine that ROS distributions ship; each means its last release (4.6.2, 4.8.4, 4.10.0).
 VERSIONS: Final = ("4.6", "4.8", "4.10")
 DEFAULT_VERSION: Final = VERSIONS[-1]
+# The last line before the present syntax of XML.  Its files are checked, and `btq import` translates them; none is
+# written for it.
+VERSION_3: Final = "3.8"
 
 
 class Change(Record):
@@ -28,6 +31,12 @@ class Change(Record):
         return at_least(version, self.since)
 
 
+ID_IN_COMPACT_FORM: Final = Change("4.0", "refuses an `ID` in the compact form of a node")
+UNDERSCORES: Final = Change("4.0", "takes no attribute that begins with `_` for a port; before, it refuses most")
+ENTRY_WITHOUT_DOLLAR: Final = Change("4.3.4", "takes `${key}` for a text; before, for an entry")
+PORTS_OF_SUBTREE: Final = Change("4.4", "requires the ports without default that the model of a SubTree has")
+OUTPUT_IN_BRACES: Final = Change("4.4.2", "writes an output only to an entry in braces; before, `key` names one too")
+ID_OF_EACH_TREE: Final = Change("4.6", "refuses a tree without an ID beside other trees")
 DEEP_TREES: Final = Change("4.7", "reads trees of any depth; before, no node may have 97 others above it")
 ONE_ASYNC_SEQUENCE: Final = Change("4.7", "refuses a second AsyncSequence in a ReactiveSequence")
 NO_EXPLICIT_CHILD: Final = Change("4.7", "refuses the explicit form of a node directly in a ReactiveSequence")
@@ -47,14 +56,20 @@ TYPED_CONSTANTS: Final = Change("4.9.1", "keeps a number that a SubTree gives to
 def at_least(version: str, since: str) -> bool:
     """Whether `version` is the version `since` or a later one.  Both are numbers with points; `4.8` is older than
     4.10."""
-    return _numbers(version) >= _numbers(since)
+    return numbers(version) >= numbers(since)
+
+
+def is_before_4(version: str) -> bool:
+    """Whether a version reads the syntax of version 3."""
+    return not at_least(version, "4")
 
 
 def targets() -> tuple[str, ...]:
     """Every line of the engine from the first of these versions to the last: `4.6`, `4.7` …"""
-    (major, first), (_, last) = _numbers(VERSIONS[0]), _numbers(VERSIONS[-1])
+    (major, first), (_, last) = numbers(VERSIONS[0]), numbers(VERSIONS[-1])
     return tuple([f"{major}.{minor}" for minor in range(first, last + 1)])
 
 
-def _numbers(version: str) -> tuple[int, ...]:
+def numbers(version: str) -> tuple[int, ...]:
+    """A version as numbers, by which versions are ordered."""
     return tuple(int(part) for part in version.split("."))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.versions import VERSION_3
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ class KnownWord(Record):
         tag: its XML tag.
         why: what it is, or what replaced it, as a sentence.
         replacement: the built-in to write in its place, if there is one that needs no other change; else None.
+        until: the last version of the engine that has it; None if none is known that has.
     """
 
     word: str
@@ -28,14 +30,15 @@ class KnownWord(Record):
     tag: str
     why: str
     replacement: str | None = None
+    until: str | None = None
 
 
 def _custom(word: str, category: Category, why: str) -> KnownWord:
     return KnownWord(word, category, word, why)
 
 
-def _old(word: str, category: Category, why: str, replacement: str | None = None) -> KnownWord:
-    return KnownWord(word, category, word, why, replacement)
+def _old(word: str, category: Category, why: str, replacement: str | None = None, until: str = VERSION_3) -> KnownWord:
+    return KnownWord(word, category, word, why, replacement, until)
 
 
 _WORDS: Final = (
@@ -50,7 +53,7 @@ _WORDS: Final = (
         "ThreadedAction", "Action", "ThreadedAction is a C++ base class, not a node: write the name of your own action"
     ),
     _custom("CoroAction", "Action", "CoroAction is a C++ base class, not a node: write the name of your own action"),
-    _custom("ManualSelector", "Control", "ManualSelector was a node of version 3; version 4 does not build it"),
+    _old("ManualSelector", "Control", "ManualSelector was a node of version 3; version 4 does not build it"),
     _custom("ConsumeQueue", "Decorator", "ConsumeQueue is a C++ template that a program must register; see LoopDouble"),
     _custom("PopFromQueue", "Action", "PopFromQueue is a C++ template that a program must register; see LoopDouble"),
     # C++ names that people take for nodes.
@@ -66,12 +69,13 @@ _WORDS: Final = (
         "SequenceStar is the name of SequenceWithMemory in version 3",
         "SequenceWithMemory",
     ),
-    _old("FallbackStar", "Control", "FallbackStar is the name of Fallback in version 2", "Fallback"),
+    _old("FallbackStar", "Control", "FallbackStar is the name of Fallback in version 2", "Fallback", "2.5"),
     _old(
         "RetryUntilSuccesful",
         "Decorator",
-        "RetryUntilSuccesful is the version 3 misspelling of RetryUntilSuccessful",
+        "RetryUntilSuccesful is the misspelling of RetryUntilSuccessful up to version 3.6.0",
         "RetryUntilSuccessful",
+        "3.6",
     ),
     _old(
         "SubTreePlus",
@@ -103,19 +107,3 @@ PLACEHOLDERS: Final[dict[str, Category]] = {
     "Script": "Action",
     "ScriptCondition": "Condition",
 }
-
-# The built-ins of today that version 3.8 registers too, and those that are only in it.
-KEPT_FROM_VERSION_3: Final = frozenset(
-    (
-        *("Sequence", "Fallback", "Parallel", "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse"),
-        *("Switch2", "Switch3", "Switch4", "Switch5", "Switch6", "Inverter", "ForceSuccess", "ForceFailure"),
-        *("KeepRunningUntilFailure", "Repeat", "RetryUntilSuccessful", "Timeout", "Delay", "AlwaysSuccess"),
-        *("AlwaysFailure", "SetBlackboard", "SubTree"),
-    )
-)
-ONLY_IN_VERSION_3: Final = frozenset(
-    (
-        *("SequenceStar", "SubTreePlus", "ManualSelector"),
-        *("BlackboardCheckInt", "BlackboardCheckDouble", "BlackboardCheckString", "BlackboardCheckBool"),
-    )
-)

@@ -10,6 +10,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     kinds.py, names.py, ports.py, children.py, trees.py, includes.py   what the engine would refuse
     literals.py, constants.py, strings.py, scripts.py, counts.py, empty.py, outputs.py   values
     entries.py, pointers.py, writers.py, misspelt.py, mixed_types.py   blackboard entries
+    engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_nodes.py   what another distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
     measures.py, clauses.py, conditions.py, bounds.py, limits.py, odds.py   requirements by themselves
@@ -55,6 +56,7 @@ from btq_lang.checks import (
     trees,
     unreachable,
     unused,
+    version3,
 )
 from btq_lang.checks.uncreated import as_uncreated
 from btq_lang.checks.view import View
@@ -123,7 +125,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         ports.duplicate_attribute,
         moving.moving_include,
     ),
-    Root: (trees.unknown_tree, empty.empty_text, ports.duplicate_attribute),
+    Root: (trees.unknown_tree, empty.empty_text, ports.duplicate_attribute, version3.version_3_file),
     Tree: (
         trees.unknown_tree,
         trees.duplicate_tree,

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def number_for_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A number that a SubTree passes to a port, or that is a port's default, where a node below expects a text."""
-    if not TYPED_CONSTANTS.holds(view.project.target):
+    if not TYPED_CONSTANTS.holds(view.target):
         return
     for seen in view.seen.subtrees:
         if seen.id is None:

@@ -12,9 +12,9 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
-from btq_lang.catalog.versions import VERSIONS
-from btq_lang.catalog.words import KEPT_FROM_VERSION_3, ONLY_IN_VERSION_3
+from btq_lang.catalog.versions import VERSIONS, at_least
 from btq_lang.checks import lookups
+from btq_lang.checks.engines import old_words
 from btq_lang.checks.view import COUNTS, View, misspelt_clause
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -72,7 +72,7 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         message = f"`{text}` is not built into BehaviorTree.CPP {VERSIONS[0]}–{VERSIONS[-1]}"
         known = KNOWN_WORDS.get(text)
-        if text in ONLY_IN_VERSION_3 and view.is_of_version_3:
+        if _is_of(view, text):
             continue
         if known is not None and (not name.quoted or known.tag == name.text):
             fixes = _of_today(seen, name, known)
@@ -85,26 +85,19 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A built-in that is missing in a version which the project targets, or with which its nodes come."""
-    project = view.project
-    if (new := view.seen.by_tag.keys() - KEPT_FROM_VERSION_3) and view.is_of_version_3:
-        for seen in (each for tag in new for each in view.seen.by_tag[tag]):
-            if seen.id is not None and seen.id.text not in ONLY_IN_VERSION_3:
-                message = f"`{seen.tag}` requires BehaviorTree.CPP 4; your nodes come with version 3"
-                yield Diagnostic("newer-engine-node", seen.id.span, message)
-        return
+    """A built-in that is missing in a version which the project targets."""
     for tagged in view.seen.by_tag.values():
-        missing = [] if tagged[0].kind is None else _missing(tagged[0].kind.tag, project.engines)
+        missing = [] if tagged[0].kind is None else _missing(tagged[0].kind.tag, view.engines)
         for seen in tagged if missing else ():
-            if seen.kind is None or seen.id is None:
+            if seen.kind is None or seen.id is None or _is_of(view, seen.id.text):
                 continue
-            pin = f'if you run {project.target}, set `engine = "{project.target}"` in btq.toml'
+            pin = f'if you run {view.target}, set `engine = "{view.target}"` in btq.toml'
             yield Diagnostic(
                 "newer-engine-node",
                 seen.id.span,
                 f"`{seen.kind.tag}` requires BehaviorTree.CPP {seen.kind.since}; {missing[0]} does not have it",
-                notes=() if project.pinned else (pin,),
-                severity=None if project.pinned else Severity.WARNING,
+                notes=() if view.is_pinned else (pin,),
+                severity=None if view.is_pinned else Severity.WARNING,
             )
 
 
@@ -248,6 +241,14 @@ def way_in(view: View) -> tuple[str, ...]:
     return ("`btq import` converts the file to .btq in the syntax of version 4",)
 
 
+def _is_of(view: View, word: str) -> bool:
+    """Whether the engine that the file is for has the node of an older engine's word, or is said to be an older one."""
+    known = KNOWN_WORDS.get(word)
+    if known is None or known.until is None:
+        return False
+    return at_least(known.until, view.target) or known.tag in view.ask(old_words)
+
+
 def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
     """The fix that replaces an older engine's node by its successor."""
     if known.replacement is not None:
@@ -351,7 +352,7 @@ def _tree_as_node(view: View, seen: ResolvedNode, name: Word) -> Diagnostic:
 
 def _is_refused(view: View, seen: ResolvedNode, name: Word) -> bool:
     """Whether the name itself is the mistake, which is reported."""
-    target = view.project.target
+    target = view.target
     return seen.node.category is None and model_name_problem(name.text, target) is not None
 
 

@@ -8,10 +8,11 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.kinds import RESULT
-from btq_lang.catalog.literals import check_literal, is_pointer
+from btq_lang.catalog.literals import OLD_ENTRY, check_literal, is_pointer
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, PortKind, port_type
 from btq_lang.catalog.units import a_dimension, convert, parse_unit
+from btq_lang.catalog.versions import ENTRY_WITHOUT_DOLLAR
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from btq_lang.workspace.resolved import ResolvedNode
 
 _NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
-_OLD_ENTRY = re.compile(r"\$\{[^{}\n]+\}")  # as version 3 of the engine has entries too
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")
 
 
@@ -47,15 +47,15 @@ class _Target(Record):
 
 def old_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`${key}`, an entry of the blackboard to version 3 of the engine, and a text to version 4."""
+    if not ENTRY_WITHOUT_DOLLAR.holds(view.target):
+        return
     pairs = (pair for seen in view.seen.given for pair in seen.node.attributes)
     begun = [(pair.key, pair.value) for pair in pairs if pair.value is not None and "${" in pair.value.raw[:3]]
-    values = [value for key, value in begun if _OLD_ENTRY.fullmatch(value.text) and is_port_name(key.text)]
-    if values and view.is_of_version_3:
-        return
+    values = [value for key, value in begun if OLD_ENTRY.fullmatch(value.text) and is_port_name(key.text)]
     typed = {value.span: target for target, value in _values(view, entry)} if values else {}
     for value in values:
         key, target = value.text[1:], typed.get(value.span)
-        refused = target is not None and check_literal(target.type, value.text, view.project.target) is not None
+        refused = target is not None and check_literal(target.type, value.text, view.target) is not None
         yield Diagnostic(
             "old-entry",
             value.span,
@@ -68,7 +68,7 @@ def old_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A literal that the port's type refuses, or whose end the engine drops."""
-    version = view.project.target
+    version = view.target
     for target, value in _values(view, entry):
         if target.is_output:
             continue
@@ -76,7 +76,7 @@ def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield from _converted(target, value, version)
             continue
         text = value.text
-        if _OLD_ENTRY.fullmatch(text):
+        if OLD_ENTRY.fullmatch(text):
             continue  # which old_entry reports
         if target.port == "_autoremap" and is_pointer(text):
             note = "the engine reads this attribute before any entry exists: write `true`, or remove it"
@@ -113,7 +113,7 @@ def quantity_on_unitless_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         unit = quantity[1]
         wanted = parse_unit(target.unit) if target.unit is not None else None
         if wanted is None:
-            as_text = check_literal(target.type, value.raw, view.project.target) is None
+            as_text = check_literal(target.type, value.raw, view.target) is None
             # No fix: without its unit the number may mean something else, and not every node reads the text.
             yield Diagnostic(
                 "quantity-on-unitless-port",
@@ -183,7 +183,7 @@ def _target(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> _Target 
     builtin = BUILTINS["SubTree"] if seen.is_subtree and key == "_autoremap" else seen.kind
     if builtin is not None:
         port = builtin.port(key)
-        return _of_builtin(port, view.project.target) if port is not None else None
+        return _of_builtin(port, view.target) if port is not None else None
     ports = subtree_ports(view, seen) if seen.is_subtree else view.model_ports(seen)
     declared = port_named(ports, key)
     if declared is not None:

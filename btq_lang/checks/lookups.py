@@ -168,6 +168,16 @@ def node_paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
 
 
 @of_viewpoint
+def declared_format(workspace: Workspace, viewpoint: str) -> str | None:
+    """The BTCPP_format of an XML file, empty if it has none; None for a file in this language."""
+    file = workspace.files[viewpoint]
+    if file.origin is None:
+        return None
+    given = [pair for root in file.of_type(Root) for pair in root.attributes if pair.key.text == "BTCPP_format"]
+    return next((pair.value.text.strip() for pair in given if pair.value is not None), "")
+
+
+@of_viewpoint
 def has_palette(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file."""
     scope = workspace.scope(viewpoint)

@@ -230,7 +230,7 @@ def _add(found: dict[str, list[_Meeting]], key: str, meeting: _Meeting) -> None:
 def _port_type(view: View, seen: ResolvedNode, port: str) -> str:
     if seen.kind is not None:
         builtin = seen.kind.port(port)
-        type_ = port_type(builtin, view.project.target) if builtin is not None else ""
+        type_ = port_type(builtin, view.target) if builtin is not None else ""
     else:
         type_ = declared_type(view.model_ports(seen), port)
     return plain_type(type_) if type_ not in _ANYTHING else ""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import instance_name_problem, legal_name, model_name_problem, port_name_problem
-from btq_lang.catalog.versions import UNIQUE_SUBTREES
+from btq_lang.catalog.versions import ID_OF_EACH_TREE, UNIQUE_SUBTREES
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
@@ -25,17 +25,11 @@ _NO_NAMESPACES = ("it does not support XML namespaces: the prefix is part of the
 
 def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """The name of a tree, a node, an instance or a SubTree's port that the engine refuses at load."""
-    found = [*_forbidden(view, entry)]
-    if found and not view.is_of_version_3:
-        yield from found
-
-
-def _forbidden(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    version = view.project.target
+    version = view.target
     item = entry.item
     if isinstance(item, Tree):
         if item.name is None:
-            yield from _nameless(view, entry, item)
+            yield from _nameless(view, entry, item) if ID_OF_EACH_TREE.holds(version) else ()
         elif reason := model_name_problem(item.name.text, version):
             yield _tree_name(view, item.name, reason, _renamed(view, item.name))
         nodes = view.seen
@@ -60,7 +54,7 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if name is None or (name.text == "" and not seen.is_subtree):
             continue
         text = name.text
-        is_subtree = seen.is_subtree and UNIQUE_SUBTREES.holds(view.project.target)
+        is_subtree = seen.is_subtree and UNIQUE_SUBTREES.holds(view.target)
         if seen.id is not None and text == seen.id.text and not is_subtree:
             continue  # the engine distinguishes such nodes by number
         if seen.is_placeholder and legal_name(text) == text:
@@ -69,7 +63,7 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if other is name:
             continue
         related = (Related(Place(other.span), "the first one"),)
-        if is_subtree and not view.is_of_version_3:
+        if is_subtree:
             message = f"the engine refuses two SubTrees with the name `{text}` in one tree"
             severity = Severity.ERROR if view.is_xml else Severity.WARNING
             renames = ("`btq build` writes the second one under another name",)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.catalog.versions import OUTPUT_IN_BRACES
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
@@ -28,11 +29,13 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
     Some programs take such a value for the name of an entry, so if a file does so as a rule, that is reported once, as
     a hint.
     """
+    if not OUTPUT_IN_BRACES.holds(view.target):
+        return
     for seen, pair, type_ in outputs(view):
         value = pair.value
         if value is None or not _is_literal(value):
             continue
-        problem = check_literal(type_, value.text, view.project.target)
+        problem = check_literal(type_, value.text, view.target)
         is_refused = problem is not None and problem.kind == "refused"
         is_custom = not is_refused and view.ask(_is_custom)
         if is_custom and not _is_first_value(view, pair):

@@ -13,6 +13,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nav2 import ports_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
+from btq_lang.catalog.versions import ID_IN_COMPACT_FORM, PORTS_OF_SUBTREE, UNDERSCORES, is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import model_related, way_in
 from btq_lang.checks.view import View, subtree_ports
@@ -34,7 +35,7 @@ _OWN = frozenset(("ID", "name"))
 def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A port that the built-in, the model or the tree of a SubTree does not have."""
     for seen in view.seen.given:
-        yield from _forbidden_id(seen)
+        yield from _forbidden_id(seen) if ID_IN_COMPACT_FORM.holds(view.target) else ()
         ports = _ports(view, seen)
         if ports is None or not (meant := _meant(seen, ports)) or _may_have_more(view, seen):
             continue
@@ -45,8 +46,6 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for key, likely in meant.items():
             if key.text in (of_nav2 or ()):
                 continue  # the model may be one of another program, or a short one
-            if seen.kind is not None and (seen.kind.tag, key.text) in OLD_PORTS and view.is_of_version_3:
-                continue
             # The engine takes any port of a SubTree, a model without ports is often an unfinished one, and a program
             # may register another node than the one that another file of the project declares.
             harmless = (seen.is_subtree and not required.intersection(likely)) or not (known or seen.kind)
@@ -117,13 +116,19 @@ def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in view.seen.given:
         for pair in seen.node.attributes:
             key = pair.key.text
-            if is_port_name(key) or key in _OWN or key in _KEPT:
+            if is_port_name(key) or key in _OWN:
+                continue
+            if not UNDERSCORES.holds(view.target):
+                is_refused = seen.category != "SubTree" and key != "_description"
+                yield from _taken_for_port(view, seen, pair.key) if is_refused else ()
+                continue
+            if key in _KEPT:
                 continue
             likely = (_OF_TODAY[key],) if key in _OF_TODAY else near(key, _KEPT)
             if not likely:
                 kept = "from 4.7 on the engine keeps it for the node's own code"
-                refused = f"{view.project.target} reads it as a port, and refuses a node without a port of that name"
-                is_port = is_port_name(key, view.project.target)
+                refused = f"{view.target} reads it as a port, and refuses a node without a port of that name"
+                is_port = is_port_name(key, view.target)
                 yield Diagnostic(
                     "unknown-attribute",
                     pair.key.span,
@@ -131,10 +136,15 @@ def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
                     notes=(refused if is_port else kept,),
                     severity=Severity.WARNING if is_port else Severity.HINT,
                 )
-            elif not (key in _OF_TODAY and (_is_off(pair.value) or view.is_of_version_3)):
+            elif not (key in _OF_TODAY and _is_off(pair.value)):
                 fixes = tuple(replace_fix(f"Replace `{key}` with `{name}`", pair.key.span, name) for name in likely)
                 message = f"the engine silently ignores `{key}`{did_you_mean(likely)}"
                 yield Diagnostic("unknown-attribute", pair.key.span, message, fixes=fixes)
+
+
+def _taken_for_port(view: View, seen: ResolvedNode, key: Word) -> Iterator[Diagnostic]:
+    message = f"{view.target} takes `{key.text}` for a port, and refuses {seen.shown_kind}"
+    yield Diagnostic("unknown-attribute", key.span, message, severity=Severity.ERROR)
 
 
 def duplicate_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -217,13 +227,15 @@ def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
     """The ports of a node; None if unknown."""
     if seen.is_placeholder:
         return None
+    if seen.is_subtree and not PORTS_OF_SUBTREE.holds(view.target):
+        return None
     if seen.is_subtree:
         # The engine reads `default = ""` as none, and requires outputs too.
         declared = subtree_ports(view, seen)
         ports = tuple(_declared_port(port, not (port.default and port.default.text)) for port in declared)
         return KnownPorts(ports) if ports else None
     if seen.kind is not None:
-        return _builtin_ports(seen.kind.tag)
+        return _builtin_ports(seen.kind.tag, is_before_4(view.target))
     return view.ask(_model_ports, seen.id.text) if seen.is_defined and seen.id is not None else None
 
 
@@ -281,10 +293,14 @@ def _needed(view: View, seen: ResolvedNode, missing: list[KnownPort]) -> list[Kn
 
 
 @cache
-def _builtin_ports(tag: str) -> KnownPorts:
+def _builtin_ports(tag: str, has_old_names: bool) -> KnownPorts:
     ports = BUILTINS[tag].ports
+    old = {today: name for (owner, name), today in OLD_PORTS.items() if owner == tag and has_old_names}
     return KnownPorts(
-        tuple(KnownPort(port.name, port.required, f"{port.doc[0].lower()}{port.doc[1:]}") for port in ports)
+        tuple(
+            KnownPort(old.get(port.name, port.name), port.required, f"{port.doc[0].lower()}{port.doc[1:]}")
+            for port in ports
+        )
     )
 
 

@@ -31,7 +31,7 @@ def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in view.seen.of_flow("sequence", "fallback"):
         if seen.kind is None or not seen.kind.reactive:
             continue
-        refused = _second_async_sequence(seen, view.project.target)
+        refused = _second_async_sequence(seen, view.target)
         if refused is not None:
             yield refused
             continue
@@ -54,11 +54,9 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
     Source: BehaviorTree.CPP 4.7 to 4.10, xml_parsing.cpp, where the tags of these children are looked up as nodes.
     """
-    target = view.project.target
+    target = view.target
     nodes = view.seen
     if not any(inspects_children(tag) for tag in nodes.by_tag) or not NO_EXPLICIT_CHILD.holds(target):
-        return
-    if view.is_of_version_3:
         return
     for seen in nodes.all:
         parent, category, name = seen.parent, seen.node.category, seen.id

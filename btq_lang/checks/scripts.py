@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """What is wrong with a script, in any version that the project targets: script-error, empty-script,
     script-version."""
-    project = view.project
     for seen in view.seen.given:
         for pair in seen.node.attributes:
             expects_value = _expects_value(seen, pair)
@@ -32,8 +31,8 @@ def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 found = moved(problem, pair.value)
                 if problem.rule == "empty-script":
                     yield _empty(seen, pair.key.text, pair.value, found)
-                elif problem.rule == "script-version" and not project.pinned:
-                    pin = f'if you run {project.target}, set `engine = "{project.target}"` in btq.toml'
+                elif problem.rule == "script-version" and not view.is_pinned:
+                    pin = f'if you run {view.target}, set `engine = "{view.target}"` in btq.toml'
                     yield replace(found, notes=(*found.notes, pin))
                 else:
                     older: tuple[str, ...] = ()
@@ -62,7 +61,7 @@ def _expects_value(seen: ResolvedNode, pair: Pair) -> bool | None:
 def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic, ...]:
     from btq_lang.syntax.script import check_script  # most files have no script, and it is large
 
-    versions = view.project.engines
+    versions = view.engines
     return check_script(view.script(script), versions=versions, expects_value=expects_value)
 
 

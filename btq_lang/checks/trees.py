@@ -64,21 +64,21 @@ def _nowhere(view: View) -> str:
 
 def nested_too_deep(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A node deeper than 4.6 reads; what no version reads is reported by the parser."""
-    nodes, project = view.nodes, view.project
-    if len(nodes) <= _DEEPEST_OF_4_6 or DEEP_TREES.holds(project.engines[0]):
+    nodes = view.nodes
+    if len(nodes) <= _DEEPEST_OF_4_6 or DEEP_TREES.holds(view.engines[0]):
         return
     levels: dict[int, int] = {}
     for seen in nodes:
         level = levels[id(seen)] = 1 if seen.parent is None else levels[id(seen.parent)] + 1
         if level <= _DEEPEST_OF_4_6:
             continue
-        pin = f'if you run a later version, set `engine = "{project.target}"` in btq.toml'
+        pin = f'if you run a later version, set `engine = "{view.target}"` in btq.toml'
         yield Diagnostic(
             "nested-too-deep",
             seen.node.head.span,
             f"BehaviorTree.CPP 4.6 reads at most {_DEEPEST_OF_4_6} levels of nodes",
-            notes=(OF_ITS_OWN,) if project.pinned else (OF_ITS_OWN, pin),
-            severity=None if project.pinned else Severity.WARNING,
+            notes=(OF_ITS_OWN,) if view.is_pinned else (OF_ITS_OWN, pin),
+            severity=None if view.is_pinned else Severity.WARNING,
         )
         return
 

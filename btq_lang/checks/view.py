@@ -12,10 +12,11 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nav2 import WITH_VERSION_3
 from btq_lang.catalog.nodes import BUILTINS, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
+from btq_lang.catalog.versions import VERSIONS
 from btq_lang.checks import lookups
+from btq_lang.checks.engines import engines_of
 from btq_lang.checks.sorted_nodes import NO_NODES, SortedNodes, sorted_nodes
 from btq_lang.diagnostics.model import Related
 from btq_lang.grammar.attributes import meant_clause
@@ -106,11 +107,6 @@ class View:
         name = tree.name.text if isinstance(tree, Tree) and tree.name is not None else ""
         is_only_one = self.ask(_is_main_tree, name)
         return bool(is_only_one) or (is_only_one is not None and self.defines_here(Kind.TREE, name))
-
-    @property
-    def is_of_version_3(self) -> bool:
-        """Whether the nodes in scope are those of a library that comes with version 3 of the engine."""
-        return self.look_up(lookups.distribution) in WITH_VERSION_3
 
     def is_first_use(self, node: Node, name: str) -> bool:
         """Whether no earlier node of the file has an ID."""
@@ -220,6 +216,21 @@ class View:
         return inputs.project(self.store)
 
     @property
+    def engines(self) -> tuple[str, ...]:
+        """The versions of the engine that the file must hold for, oldest first."""
+        return self.ask(engines_of)
+
+    @property
+    def target(self) -> str:
+        """The newest of them, for which the file is written."""
+        return self.engines[-1]
+
+    @property
+    def is_pinned(self) -> bool:
+        """Whether the file is for other versions than all that are known."""
+        return self.engines != VERSIONS
+
+    @property
     def is_xml(self) -> bool:
         """Whether the file is XML that the engine loads as it is, without a build."""
         return self.look_up(lookups.is_xml)
@@ -294,8 +305,8 @@ class View:
         Args:
             accepts: whether a version accepts it.
         """
-        older = [version for version in self.project.engines if accepts(version)]
-        if not older or self.project.pinned or not self.is_xml:
+        older = [version for version in self.engines if accepts(version)]
+        if not older or self.is_pinned or not self.is_xml:
             return ()
         return (f'{older[-1]} accepts it: if you run that, set `engine = "{older[-1]}"` in btq.toml',)
 

@@ -14,6 +14,7 @@ from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.outputs import Output, Places, outputs, sources, without_tree
 from btq_lang.btcpp.side_file import is_side_file, side_path
 from btq_lang.btcpp.source import Remark
+from btq_lang.catalog.versions import is_before_4
 from btq_lang.commands.building import errors, for_target
 from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
 from btq_lang.commands.output import is_coloured, tell
@@ -88,6 +89,9 @@ def build(options: Namespace, files: Files) -> Outcome:
     )
     tell(problems)
     if usage := no_mission_below(options.paths, groups):
+        print(f"btq build: {usage}", file=sys.stderr)
+    elif not options.target and any(is_before_4(group.workspace.project.target) for group in groups):
+        usage = "btq writes XML for version 4 of the engine, and btq.toml names an older one: choose one with --target"
         print(f"btq build: {usage}", file=sys.stderr)
     if problems or usage:  # an unreadable file may be part of any other
         return Outcome(2, watched)

@@ -53,9 +53,9 @@ def _write_xsd(options: Namespace) -> int:
 
 
 def _target(groups: Iterable[Group], paths: list[str]) -> str:
-    """The newest version of the engine that the projects are for."""
+    """The newest version of the engine that the projects are for, if it has a schema."""
     targets = {group.workspace.project.target for group in groups} or {find_project(paths[0]).project.target}
-    return next(version for version in reversed(engine_lines()) if version in targets)
+    return next(version for version in reversed(engine_lines()) if version in targets or version == engine_lines()[0])
 
 
 def unknown_nodes(file: File, found: Iterable[Diagnostic]) -> frozenset[str]:

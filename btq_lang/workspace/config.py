@@ -1,6 +1,6 @@
 """The project file: `btq.toml`, or the table `[tool.btq]` of a pyproject.toml.
 
-    engine = "4.10"                   # or a list; without it files must hold for every known version
+    engine = "4.10"                   # or a list; without it files must hold for every known version of 4
     qualities = "iso25010-2023"       # or "iso25010-2011"
     include-paths = ["missions"]      # where includes are searched, after the including file's own folder
     nodes = ["nav2-jazzy"]            # declared in all files: nodes that btq knows
@@ -31,7 +31,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from btq_lang.catalog.versions import VERSIONS, at_least
+from btq_lang.catalog.versions import VERSION_3, VERSIONS, at_least, numbers
 from btq_lang.diagnostics.rules import RULES, UNREADABLE, Severity
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
@@ -68,7 +68,9 @@ class Project(Record):
         evidence: its table about logs, if it has one.
         factories: what each of its programs registers.
         node_files: files of btq whose models count in all files.
-        moves_to: the distribution of Nav2 that its trees are checked for besides their own.
+        moves_to: the distribution of Nav2, or the version of the engine, for which its trees are checked besides
+            their own.
+        has_moved: whether all of its files are taken as the engine takes them, whatever they are written for.
     """
 
     root: str = "."
@@ -88,6 +90,7 @@ class Project(Record):
     factories: tuple[Factory, ...] = ()
     node_files: tuple[str, ...] = ()
     moves_to: str | None = None
+    has_moved: bool = False
 
     def shown(self, path: str) -> str:
         """A path for display: relative to a working folder if it is inside one, else as it is."""
@@ -205,15 +208,15 @@ def _engines(key: str, value: object) -> _Read:
     if complaints:
         trap = ": TOML reads 4.10 as 4.1" if isinstance(value, float) else ""
         return None, [_Complaint(f'`{key}` must be a string such as "4.10", or a list of them{trap}')]
-    known = tuple(filter(is_engine, wanted))
+    known = tuple(version for version in wanted or () if version == VERSION_3 or is_engine(version))
     complaints = [
-        _Complaint(f"unknown engine version `{version}`{_meant_engine(version)} {SUPPORTED}", value=version)
+        _Complaint(f"unknown engine version `{version}`{_meant_engine(version)} {_CHECKED}", value=version)
         for version in wanted
         if version not in known
     ]
     if not wanted:
-        complaints = [_Complaint(f"`{key}` must name at least one version; {SUPPORTED}")]
-    return tuple(sorted(set(known), key=lambda version: int(version[2:]))) or None, complaints
+        complaints = [_Complaint(f"`{key}` must name at least one version; {_CHECKED}")]
+    return tuple(sorted(set(known), key=numbers)) or None, complaints
 
 
 def _meant_engine(version: str) -> str:
@@ -371,6 +374,7 @@ def _syntax_problem(text: str, error: Exception) -> ProjectProblem:
 
 _BTQ_TABLE = re.compile(r"""(?m)^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[].]""")
 SUPPORTED = f"btq supports {VERSIONS[0]} to {VERSIONS[-1]}"
+_CHECKED = f"btq supports {VERSION_3} and {VERSIONS[0]} to {VERSIONS[-1]}"
 _RELEASE_LINE = re.compile(r"4\.(0|[1-9][0-9]?)")
 _DIGITS = re.compile(r"\d+")
 

@@ -392,6 +392,50 @@ def test_version_3_says_it_as_version_4_does() -> None:
     )
 
 
+def test_entries_that_version_3_knows_without_braces_get_them() -> None:
+    assert_import(
+        """
+        <root main_tree_to_execute="T">
+          <BehaviorTree ID="T">
+            <Sequence>
+              <Action ID="Find" dock="dock" start="here" rest="="/>
+              <Find dock="{dock}" start="${pose}" name="${n}"/>
+              <SubTreePlus ID="T" a="${dock}" b="dock"/>
+            </Sequence>
+          </BehaviorTree>
+          <TreeNodesModel>
+            <Action ID="Find">
+              <output_port name="dock"/>
+              <output_port name="rest"/>
+              <input_port name="start"/>
+            </Action>
+          </TreeNodesModel>
+        </root>
+        """,
+        """
+        Root T
+
+        BehaviorTree T
+            ->
+                Action Find (dock = {dock} start = "here" rest = "=")
+                Find (dock = {dock} start = {pose} name = "${n}")
+                SubTree T (a = {dock} b = "dock")
+
+        TreeNodesModel
+            Action Find
+                output dock
+                output rest
+                input start
+        """,
+        '1:2 BTCPP_format="4" is added',
+        '4:25 dock="dock" names the entry of an output: now "{dock}"',
+        '5:27 start="${pose}" names an entry: now "{pose}"',
+        "6:8 SubTreePlus is now SubTree",
+        '6:27 a="${dock}" names an entry: now "{dock}"',
+        keep_v3=False,
+    )
+
+
 @pytest.mark.parametrize(
     "root",
     [

@@ -16,7 +16,6 @@ NAMING = {
     "btcpp/enforcement.py": "writes these",
     "btcpp/guards.py": "writes these",
     "btcpp/wrappers.py": "writes these",
-    "btcpp/version3.py": "lists the nodes that version 3 had",
     "ide/refactor.py": "offers nodes to put around another one, and writes them",
     "syntax/script/__init__.py": "exports a class Script",
 }

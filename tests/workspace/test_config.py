@@ -109,14 +109,17 @@ def test_engines_are_sorted_as_versions(engine: str, engines: tuple[str, ...]) -
             ['1:1: `engine` must be a string such as "4.10", or a list of them: TOML reads 4.10 as 4.1'],
         ),
         ("engine = 4", ['1:1: `engine` must be a string such as "4.10", or a list of them']),
-        ('engine = "4.11"', ["1:10: unknown engine version `4.11`; did you mean `4.10`? btq supports 4.6 to 4.10"]),
+        (
+            'engine = "4.11"',
+            ["1:10: unknown engine version `4.11`; did you mean `4.10`? btq supports 3.8 and 4.6 to 4.10"],
+        ),
         (
             'engine = ["4.6",\n  "4.5"]',
-            ["2:3: unknown engine version `4.5`; did you mean `4.6`? btq supports 4.6 to 4.10"],
+            ["2:3: unknown engine version `4.5`; did you mean `4.6`? btq supports 3.8 and 4.6 to 4.10"],
         ),
-        ('engine = "3.8"', ["1:10: unknown engine version `3.8`; btq supports 4.6 to 4.10"]),
-        ("engine = []", ["1:1: `engine` must name at least one version; btq supports 4.6 to 4.10"]),
-        ('engine = "4.09"', ["1:10: unknown engine version `4.09`; btq supports 4.6 to 4.10"]),
+        ('engine = "3.7"', ["1:10: unknown engine version `3.7`; btq supports 3.8 and 4.6 to 4.10"]),
+        ("engine = []", ["1:1: `engine` must name at least one version; btq supports 3.8 and 4.6 to 4.10"]),
+        ('engine = "4.09"', ["1:10: unknown engine version `4.09`; btq supports 3.8 and 4.6 to 4.10"]),
         ("qualities = 2023", ['1:1: `qualities` must be "iso25010-2023" or "iso25010-2011"']),
         ('exclude = "x"', ["1:1: `exclude` must be a list of strings"]),
         ('exclude = ["x", 1]', ["1:1: `exclude` must be a list of strings"]),
@@ -177,7 +180,7 @@ def test_problems_and_their_places(text: str, expected: list[str]) -> None:
     [
         (
             '[tool.btq]\nengine = "4.1"',
-            ["2:10: unknown engine version `4.1`; did you mean `4.10`? btq supports 4.6 to 4.10"],
+            ["2:10: unknown engine version `4.1`; did you mean `4.10`? btq supports 3.8 and 4.6 to 4.10"],
         ),
         ("[engine]\n[tool.btq]\nengine = 1", ['3:1: `engine` must be a string such as "4.10", or a list of them']),
         ('[tool.btq.rules]\nzebra = "off"', ["2:1: unknown rule `zebra`"]),

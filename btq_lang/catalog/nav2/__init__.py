@@ -10,7 +10,14 @@ from collections.abc import Container, Mapping
 from typing import Final
 
 DISTRIBUTIONS: Final = ("humble", "iron", "jazzy", "kilted", "lyrical")
-WITH_VERSION_3: Final = ("humble", "iron")  # of BehaviorTree.CPP; the others come with version 4
+# The version of the engine in each.
+ENGINES: Final[Mapping[str, str]] = {
+    "humble": "3.8.7",
+    "iron": "3.8.7",
+    "jazzy": "4.9.1",
+    "kilted": "4.9",
+    "lyrical": "4.10",
+}
 
 _FOLDER: Final = os.path.dirname(os.path.abspath(__file__)).replace(os.sep, "/")
 # The path of the file of each distribution, and the same by the name that a project uses.

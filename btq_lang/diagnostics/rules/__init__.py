@@ -92,6 +92,7 @@ _TABLE = (
     Rule("unknown-attribute", _W, "an `_attribute` that the engine ignores silently"),
     Rule("invalid-literal", _E, "a value that the port's type does not accept"),
     Rule("trailing-text-in-number", _W, "text after a number that the engine drops silently"),
+    Rule("version-3-file", _W, "XML for version 3 of the engine in a project that does not say so"),
     Rule("old-entry", _W, "`${key}`, which is an entry only to version 3 of the engine"),
     Rule("number-for-text", _E, "a number that a SubTree passes to a string port below it"),
     Rule("entry-with-two-types", _E, "a blackboard entry that is connected to ports of two types"),

@@ -1,0 +1,41 @@
+"""Files for version 3 of the engine in a project that does not say that they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from btq_lang.catalog.versions import DEFAULT_VERSION, VERSION_3
+from btq_lang.checks.engines import old_words
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.rules import Severity
+from btq_lang.util.text import Span
+
+if TYPE_CHECKING:
+    from btq_lang.checks.view import View
+    from btq_lang.syntax.tree import Entry
+
+
+def version_3_file(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """What says that a file is for version 3, once: all else that version 4 refuses in it follows."""
+    words = view.ask(old_words)
+    if not words:
+        return
+    project = view.project
+    shown = ", ".join(f"`{word}`" for word in words[:_SHOWN]) + (" …" if len(words) > _SHOWN else "")
+    declared = f", but btq.toml names {project.target}" if project.pinned else ""
+    start = entry.item.start
+    yield Diagnostic(
+        "version-3-file",
+        Span(start, start + len("Root")),
+        f"this file is for version 3 of the engine: it has {shown}{declared}",
+        notes=(
+            f'if the robot runs version 3, write `engine = "{VERSION_3}"` or `nodes = ["nav2-humble"]` into btq.toml',
+            f"`btq check --target {DEFAULT_VERSION}` finds what version 4 refuses or takes otherwise, and `btq import` "
+            "translates the file",
+        ),
+        severity=Severity.ERROR if project.pinned else None,
+    )
+
+
+_SHOWN = 4
