@@ -14,9 +14,11 @@ from btq_lang.commands.files import Files, Group, no_mission_below, usage_proble
 from btq_lang.commands.output import form_problem, tell, write_output
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
+from btq_lang.util.record import replace
 from btq_lang.workspace.file import File
 from btq_lang.workspace.loader import find_project, shown
 from btq_lang.workspace.project_schema import project_schema
+from btq_lang.workspace.workspace import Workspace
 
 
 def run(options: Namespace) -> int:
@@ -41,6 +43,8 @@ def _write_xsd(options: Namespace) -> int:
         return 2
     if empty := no_mission_below(paths, groups, "no .btq file and no BehaviorTree.CPP XML"):
         print(f"btq schema: {empty}; the schema has only the nodes of the engine", file=sys.stderr)
+    # A schema is of version 4, also for files that are not.
+    groups = tuple(replace(group, workspace=_of_version_4(group.workspace)) for group in groups)
     checked = [(group, path, check(group.workspace, path)) for group in groups for path in group.given]
     unknown = frozenset().union(*(unknown_nodes(group.workspace.files[path], found) for group, path, found in checked))
     text = xsd([group.workspace for group in groups], options.target or _target(groups, paths), unknown)
@@ -50,6 +54,10 @@ def _write_xsd(options: Namespace) -> int:
     for path in unread:
         print(f"btq schema: {shown(path)} has errors, so nodes may be missing; run btq check", file=sys.stderr)
     return int(bool(unread))
+
+
+def _of_version_4(workspace: Workspace) -> Workspace:
+    return workspace.with_project(replace(workspace.project, has_moved=True))
 
 
 def _target(groups: Iterable[Group], paths: list[str]) -> str:

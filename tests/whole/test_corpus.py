@@ -55,8 +55,9 @@ def verdicts(shared: Path) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def found(corpus: dict[str, str]) -> dict[str, tuple[Diagnostic, ...]]:
-    """The diagnostics of each file."""
-    return {name: check(Workspace({name: file_of(name, text)}, Project()), name) for name, text in corpus.items()}
+    """The diagnostics of each file, by version 4 of the engine."""
+    project = Project(has_moved=True)
+    return {name: check(Workspace({name: file_of(name, text)}, project), name) for name, text in corpus.items()}
 
 
 @pytest.fixture(scope="module")
