@@ -12,7 +12,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
-from btq_lang.catalog.versions import VERSIONS, at_least
+from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.engines import old_words
 from btq_lang.checks.view import COUNTS, View, misspelt_clause
@@ -91,11 +91,12 @@ def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for seen in tagged if missing else ():
             if seen.kind is None or seen.id is None or _is_of(view, seen.id.text):
                 continue
+            since = "4" if is_before_4(missing[0]) else seen.kind.since
             pin = f'if you run {view.target}, set `engine = "{view.target}"` in btq.toml'
             yield Diagnostic(
                 "newer-engine-node",
                 seen.id.span,
-                f"`{seen.kind.tag}` requires BehaviorTree.CPP {seen.kind.since}; {missing[0]} does not have it",
+                f"`{seen.kind.tag}` requires BehaviorTree.CPP {since}; {missing[0]} does not have it",
                 notes=() if view.is_pinned else (pin,),
                 severity=None if view.is_pinned else Severity.WARNING,
             )

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.nav2 import ENGINES
 from btq_lang.catalog.versions import DEFAULT_VERSION, VERSION_3
+from btq_lang.checks import lookups
 from btq_lang.checks.engines import old_words
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
@@ -23,7 +25,12 @@ def version_3_file(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
     project = view.project
     shown = ", ".join(f"`{word}`" for word in words[:_SHOWN]) + (" …" if len(words) > _SHOWN else "")
-    declared = f", but btq.toml names {project.target}" if project.pinned else ""
+    distribution = view.look_up(lookups.distribution)
+    declared = ""
+    if project.pinned:
+        declared = f", but btq.toml names {project.target}"
+    elif distribution is not None:
+        declared = f", but {distribution.title()} has {ENGINES[distribution]}"
     start = entry.item.start
     yield Diagnostic(
         "version-3-file",
@@ -34,7 +41,7 @@ def version_3_file(view: View, entry: Entry) -> Iterator[Diagnostic]:
             f"`btq check --target {DEFAULT_VERSION}` finds what version 4 refuses or takes otherwise, and `btq import` "
             "translates the file",
         ),
-        severity=Severity.ERROR if project.pinned else None,
+        severity=Severity.ERROR if declared else None,
     )
 
 

@@ -112,7 +112,7 @@ def test_what_version_3_refuses() -> None:
 </root>
 """
     assert shown(xml, Project(engines=("3.8",))) == [
-        "4:8 error newer-engine-node `Script` requires BehaviorTree.CPP 4.6; 3.8 does not have it",
+        "4:8 error newer-engine-node `Script` requires BehaviorTree.CPP 4; 3.8 does not have it",
         "5:17 error unknown-port `Parallel` has no port `success_count`",
         "5:41 error unknown-attribute 3.8 takes `_skipIf` for a port, and refuses `Wait`",
         "6:8 warning not-an-engine-node `RetryUntilSuccesful` is not built into BehaviorTree.CPP 4.6–4.10",
