@@ -115,7 +115,7 @@ def test_words_of_version_3_are_right_where_the_nodes_come_with_it() -> None:
     assert found(OF_VERSION_3, "humble") == []
     assert found(OF_VERSION_3, "iron") == []
     assert found(OF_VERSION_3, "jazzy") == [
-        '1:2 error version-3-file «root main_tree_to_execute="Main"» this file is for version 3 of the engine: it has '
+        "1:2 error version-3-file «root» this file is for version 3 of the engine: it has "
         "`SequenceStar`, `SubTreePlus`, `__autoremap`, `__shared_blackboard` …, but Jazzy has 4.9.1"
     ]
 
