@@ -11,11 +11,13 @@ import posixpath
 import shlex
 import sys
 from argparse import Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.commands.files import Files
+from btq_lang.commands.nav2_used import nav2_line
+from btq_lang.commands.xml_patterns import patterns
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.file import GROOT_SUFFIX
@@ -50,11 +52,15 @@ def run(options: Namespace) -> int:
         files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
         if code := convert(Namespace(files=files, output=None, force=False, keep_v3=False)):
             return code
-        trees = [path for path, file in workspace.files.items() if file.of_type(Tree)]
-        excluded = [f"/{each}.xml" for each in _patterns(workspace, trees, folder)]
+        trees, models = _by_kind(workspace)
+        excluded = [f"/{each}.xml" for each in patterns(folder, trees, models)]
     ending = ".btq" if options.convert else ".xml"
     try:
-        head = _HEAD + (_EXCLUDED.format(json.dumps(excluded, ensure_ascii=False)) if excluded else "")
+        head = (
+            _HEAD
+            + nav2_line(workspace)
+            + (_EXCLUDED.format(json.dumps(excluded, ensure_ascii=False)) if excluded else "")
+        )
         write_whole(target, "\n".join((head, *(each.written(ending) for each in factories))))
     except OSError as error:
         print(f"btq init: {shown(target)}: {error.strerror}", file=sys.stderr)
@@ -105,8 +111,10 @@ def _xml_below(folder: str) -> Workspace:
 
 def _factories(workspace: Workspace, folder: str) -> Iterator[_Together]:
     """What belongs together; files of which two define one tree do not, whatever refers to them."""
-    models = [path for path, file in workspace.files.items() if not file.of_type(Tree)]
-    nodes = tuple(posixpath.relpath(path, folder) for path in models)
+    trees_in, models = _by_kind(workspace)
+    of_groot = (posixpath.relpath(path, folder) for path in models if path.endswith(GROOT_SUFFIX))
+    xml = [path for path in models if not path.endswith(GROOT_SUFFIX)]
+    nodes = (*(f"{each}.xml" for each in patterns(folder, xml, trees_in)), *of_groot)
     names: set[str] = set()
     for paths in _connected(workspace):
         trees = [name for path in paths for name in workspace.files[path].names_of(Kind.TREE)]
@@ -121,7 +129,14 @@ def _factories(workspace: Workspace, folder: str) -> Iterator[_Together]:
         items = [facts for path in paths for facts in workspace.files[path].facts.values()]
         called = {other for facts in items if isinstance(facts.item, Tree) for other in facts.runs}
         main = tuple(sorted(each for each in trees if each not in called))
-        yield _Together(name, tuple(_patterns(workspace, paths, folder)), main, nodes)
+        others = [path for path in trees_in if path not in paths]
+        yield _Together(name, tuple(patterns(folder, paths, others)), main, nodes)
+
+
+def _by_kind(workspace: Workspace) -> tuple[list[str], list[str]]:
+    """The files with trees, and those without, which have only models."""
+    trees = [path for path, file in workspace.files.items() if file.of_type(Tree)]
+    return trees, [path for path in workspace.files if path not in trees]
 
 
 def _connected(workspace: Workspace) -> list[list[str]]:
@@ -148,16 +163,3 @@ def _connected(workspace: Workspace) -> list[list[str]]:
     needed = [sorted(each) for each in groups.values() if not needing.isdisjoint(each)]
     with_trees = [[path for path in each if workspace.files[path].of_type(Tree)] for each in needed]
     return [each for each in with_trees if len(each) > 1]
-
-
-def _patterns(workspace: Workspace, paths: Sequence[str], folder: str) -> Iterator[str]:
-    """Patterns for some files, without suffix: one for a folder whose files are all among them."""
-    for place in dict.fromkeys(map(posixpath.dirname, paths)):
-        here = [
-            path for path, file in workspace.files.items() if posixpath.dirname(path) == place and file.of_type(Tree)
-        ]
-        relative = "" if place == folder else f"{posixpath.relpath(place, folder)}/"
-        if set(here) <= {*paths}:
-            yield f"{relative}*"
-        else:
-            yield from (f"{relative}{posixpath.basename(path)[:-4]}" for path in paths if path in here)

@@ -91,3 +91,52 @@ def test_nothing_to_start_from(tmp_path: Path) -> None:
     assert run_btq("init", "--from-xml", cwd=tmp_path) == (2, "", nothing)
     assert run_btq("init", "--convert", cwd=tmp_path) == (2, "", "btq init: --convert goes with --from-xml\n")
     assert [*tmp_path.iterdir()] == []
+
+
+def test_a_folder_with_one_kind_of_files_is_a_pattern(tmp_path: Path, write: Write) -> None:
+    write("trees/main.xml", "Main: Dock")
+    write("trees/dock/dock.xml", "Dock: Align")
+    write("trees/dock/align.xml", "Align")
+    write("more/a.xml", "Other: Align")
+    write("more/b.xml", "Alone")
+    for name in ("models/a.xml", "models/b.xml", "trees/dock/models/one.xml"):
+        write(name)
+        model = '<root><TreeNodesModel><Action ID="Go"/></TreeNodesModel></root>'
+        (tmp_path / name).write_text(model)
+    run_btq("init", "--from-xml", cwd=tmp_path)
+    text = (tmp_path / "btq.toml").read_text()
+    assert 'load = ["more/a.xml", "trees/dock/*.xml", "trees/main.xml"]\n' in text
+    assert text.endswith('nodes = ["models/*.xml", "trees/dock/models/one.xml"]\n')
+    (tmp_path / "trees" / "dock" / "models" / "one.xml").unlink()
+    (tmp_path / "btq.toml").unlink()
+    run_btq("init", "--from-xml", cwd=tmp_path)
+    assert 'load = ["more/a.xml", "trees/**/*.xml"]\n' in (tmp_path / "btq.toml").read_text()
+    assert run_btq("check", cwd=tmp_path)[:2] == (0, "No problems found in 7 files\n")
+
+
+@pytest.mark.parametrize(
+    ("root", "nodes", "line"),
+    [
+        ("<root>", "<FollowPath path='{p}' goal_checker_id='a'/>", "they fit humble, iron"),
+        ('<root BTCPP_format="4">', "<FollowPath path='{p}' goal_checker_id='a'/>", "they fit jazzy, kilted, lyrical"),
+        ("<root>", "<Spin spin_dist='1' error_code_id='{e}'/>", "nav2-iron"),
+        (
+            '<root BTCPP_format="4">',
+            "<IsStopped duration_stopped='1'/>",
+            "nav2-kilted",
+        ),
+        ("<root>", "<IsStopped duration_stopped='1'/>", "no distribution has all of these nodes and ports"),
+        ("<root>", "<Sequence><Wait/><Spin angle='3'/></Sequence>", ""),
+    ],
+)
+def test_the_distribution_of_nav2(tmp_path: Path, root: str, nodes: str, line: str) -> None:
+    """Named if only one has the nodes with their ports; else a comment says which may be meant."""
+    (tmp_path / "nav.xml").write_text(f'{root}<BehaviorTree ID="Main">{nodes}</BehaviorTree></root>\n')
+    run_btq("init", "--from-xml", cwd=tmp_path)
+    said = (tmp_path / "btq.toml").read_text().removeprefix(HEAD)
+    if line.startswith("nav2"):
+        assert said == f'nodes = ["{line}"]  # the only distribution of Nav2 with the nodes and ports of the trees\n'
+    else:
+        what = f'# nodes = ["nav2-DISTRIBUTION"]  # the trees use nodes of Nav2; name yours: {line}\n'
+        assert said == (what if line else "")
+    assert run_btq("check", cwd=tmp_path)[0] < 2
