@@ -30,7 +30,7 @@ ROWS = (
     ("workspace",),
     ("formatter", "requirements"),
     ("btcpp", "graph"),
-    ("checks",),
+    ("checks", "nav2"),
     ("diff", "render"),
     ("evidence",),
     ("ide", "trace"),
@@ -51,6 +51,7 @@ ONLY_IN = {
     "lsprotocol": {"lsp", "server"},
     "tree_sitter": {"cpp"},
     "tree_sitter_cpp": {"cpp"},
+    "yaml": {"nav2"},
 }
 
 

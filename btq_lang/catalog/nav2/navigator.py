@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.util.record import Record
+
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Direction
 
@@ -75,3 +77,57 @@ def outside_entries(
     if letter in "kl":
         codes = tuple(f"{prefix}_error_{part}" for prefix in codes for part in ("code", "msg"))
     return (*found.items(), *((code, "inout") for code in codes))
+
+
+class Parameter(Record):
+    """A parameter that not every distribution reads.
+
+    Attributes:
+        of: the distributions that do.
+        instead: what to do where it is not read, for a message.
+        refused_in: the distributions that do not start with it.
+    """
+
+    of: str
+    instead: str = ""
+    refused_in: str = ""
+
+
+# By name; `*` is a navigator.
+PARAMETERS: Final[Mapping[str, Parameter]] = {
+    "navigators": Parameter("ijkl"),
+    "*.plugin": Parameter("ijkl"),
+    "error_code_names": Parameter("ij", "write `error_code_name_prefixes`, without `_error_code`", "kl"),
+    "error_code_name_prefixes": Parameter("kl", "write `error_code_names`, with `_error_code`"),
+    "bt_search_directories": Parameter("l", "there each tree is loaded from one file and what that includes"),
+    "goal_blackboard_id": Parameter("hijk", "write `navigate_to_pose.goal_blackboard_id`"),
+    "goals_blackboard_id": Parameter("hijk", "write `navigate_through_poses.goals_blackboard_id`"),
+    "path_blackboard_id": Parameter("hijk", "write it below each navigator: `navigate_to_pose.path_blackboard_id`"),
+    "waypoint_statuses_blackboard_id": Parameter(
+        "k", "write `navigate_through_poses.waypoint_statuses_blackboard_id` in Lyrical"
+    ),
+    "*.goal_blackboard_id": Parameter("l", "write `goal_blackboard_id` without the navigator"),
+    "*.goals_blackboard_id": Parameter("l", "write `goals_blackboard_id` without the navigator"),
+    "*.path_blackboard_id": Parameter("l", "write `path_blackboard_id` without the navigator"),
+    "*.waypoint_statuses_blackboard_id": Parameter("l", "write it without the navigator in Kilted"),
+    "*.enable_groot_monitoring": Parameter("jkl"),
+    "*.groot_server_port": Parameter("jkl"),
+    "default_cancel_timeout": Parameter("jkl"),
+    "bt_log_idle_transitions": Parameter("l"),
+    "action_server_result_timeout": Parameter("ij"),
+    "service_introspection_mode": Parameter("k", "write `introspection_mode` in Lyrical"),
+    "introspection_mode": Parameter("l", "write `service_introspection_mode` in Kilted"),
+}
+# The navigators: the parameter that names a tree, the file in nav2_bt_navigator that counts without it, and the class,
+# which Iron writes with `/` and later ones with `::`.
+NAVIGATORS: Final[Mapping[str, tuple[str, str, str]]] = {
+    "navigate_to_pose": (
+        *("default_nav_to_pose_bt_xml", "navigate_to_pose_w_replanning_and_recovery.xml"),
+        "NavigateToPoseNavigator",
+    ),
+    "navigate_through_poses": (
+        *("default_nav_through_poses_bt_xml", "navigate_through_poses_w_replanning_and_recovery.xml"),
+        "NavigateThroughPosesNavigator",
+    ),
+}
+OWN_PACKAGE: Final = "nav2_bt_navigator"  # with its trees in the folder `behavior_trees`

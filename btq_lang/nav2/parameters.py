@@ -1,0 +1,167 @@
+"""What a parameter file says of bt_navigator, and of which distribution it is.
+
+One invariant: a parameter is found as ROS 2 finds it: below `bt_navigator`, in a namespace or not, or below `/**`, as
+`a: b:` or as `a.b:`; the last one counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.catalog.nav2 import DISTRIBUTIONS
+from btq_lang.catalog.nav2.libraries import LIBRARIES
+from btq_lang.catalog.nav2.navigator import NAVIGATORS, PARAMETERS, RENAMED, outside_entries
+from btq_lang.nav2.yaml_reader import Value, read_yaml
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.nav2.navigator import OutsideEntry
+
+
+class Text(Record):
+    """A string of a parameter and its place."""
+
+    text: str
+    span: Span
+
+
+class Parameters(Record):
+    """The parameters of bt_navigator.
+
+    Attributes:
+        values: by name, `a.b` for one below another; each with its key.
+        place: of the name of the node; None if the file has no such node.
+        has_client_nodes: whether it sets parameters of the nodes that only Humble configures by themselves.
+    """
+
+    values: dict[str, tuple[Value, Value]]
+    place: Span | None
+    has_client_nodes: bool = False
+
+    def text(self, name: str) -> Text | None:
+        """The value of a parameter that is a string."""
+        _, value = self.values.get(name, (None, None))
+        return None if value is None or value.text is None else Text(value.text, value.span)
+
+    def texts(self, name: str) -> tuple[Text, ...] | None:
+        """The values of a parameter that is a list of strings; None if it is not set."""
+        if name not in self.values:
+            return None
+        _, value = self.values[name]
+        return tuple(Text(each.text, each.span) for each in value.items if each.text is not None)
+
+    def key(self, name: str) -> Span | None:
+        """The place of a parameter's name."""
+        return self.values[name][0].span if name in self.values else None
+
+    @property
+    def navigators(self) -> tuple[str, ...]:
+        """The names of the navigators."""
+        given = self.texts("navigators")
+        return tuple(NAVIGATORS) if given is None else tuple(each.text for each in given)
+
+    def unread(self, distribution: str) -> Iterator[tuple[str, str]]:
+        """The parameters that a distribution does not read, each with its row in the table."""
+        for name in self.values:
+            row = self._row(name)
+            if row is not None and distribution[0] not in PARAMETERS[row].of:
+                yield name, row
+
+    @property
+    def distribution(self) -> str | None:
+        """The only distribution that the parameters can be for, if there is one."""
+        letters = {each[0] for each in DISTRIBUTIONS}
+        for name in self.values:
+            row = self._row(name)
+            letters &= {*PARAMETERS[row].of} if row is not None else letters
+        for parameter, _, _ in NAVIGATORS.values():
+            named = self.text(parameter)
+            letters &= {"l"} if named is not None and is_id(named.text) else letters
+        for _, plugin in self.plugins:
+            letters &= {*("i" if "/" in plugin.text else "jkl" if "::" in plugin.text else letters)}
+        for library in self.texts("plugin_lib_names") or ():
+            _, known, loaded = LIBRARIES.get(library.text, ((), "", ""))
+            letters &= {*known} or letters
+            letters = letters - ({*loaded} & {*_ADDING}) or letters  # twice only by mistake
+        if any(each.text == "follow_object" for each in self.texts("error_code_name_prefixes") or ()):
+            letters &= {"l"}
+        if self.has_client_nodes and "h" in letters:
+            letters = {"h"}
+        return next(each for each in DISTRIBUTIONS if each[0] in letters) if len(letters) == 1 else None
+
+    @property
+    def plugins(self) -> Iterator[tuple[str, Text]]:
+        """The navigators whose class is named, and its name."""
+        for navigator in self.navigators:
+            if (plugin := self.text(f"{navigator}.plugin")) is not None:
+                yield navigator, plugin
+
+    def entries(self, distribution: str) -> tuple[OutsideEntry, ...]:
+        """The entries of the blackboard that bt_navigator sets or reads."""
+        is_of_navigator = distribution[0] == "l"
+        renamed: dict[str, str] = {}
+        for parameter, entry in RENAMED.items():
+            for name in (f"{each}.{parameter}" for each in NAVIGATORS) if is_of_navigator else (parameter,):
+                if (given := self.text(name)) is not None:
+                    renamed[entry] = given.text
+        codes = self.texts("error_code_names" if distribution[0] in "ij" else "error_code_name_prefixes")
+        return outside_entries(distribution, None if codes is None else tuple(each.text for each in codes), renamed)
+
+    def _row(self, name: str) -> str | None:
+        navigator, _, rest = name.partition(".")
+        found = f"*.{rest}" if rest and navigator in (*NAVIGATORS, *self.navigators) else name
+        return found if found in PARAMETERS else None
+
+
+def is_id(named: str) -> bool:
+    """Whether Lyrical reads the name of a tree as its ID and not as a file; earlier ones know files only."""
+    return bool(named) and not named.endswith(".xml") and "$(" not in named and "/" not in named
+
+
+def read_parameters(text: str) -> Parameters:
+    """The parameters of bt_navigator in a file.
+
+    Raises:
+        YamlProblem: it is not YAML.
+        YamlMissing: PyYAML is not installed.
+    """
+    nodes = [*_nodes(read_yaml(text))]
+    values: dict[str, tuple[Value, Value]] = {}
+    place = None
+    for key, node in sorted(nodes, key=lambda each: _last(each[0]) == _NODE):  # what names the node counts most
+        if _last(key) in (_NODE, "*", "**"):
+            place = key.span if _last(key) == _NODE else place
+            for name, value in _flat(node):
+                values[".".join(each.text or "" for each in name)] = name[-1], value
+    return Parameters(values, place, any(_last(key).startswith(f"{_NODE}_navigate_") for key, _ in nodes))
+
+
+def _nodes(top: Value) -> Iterator[tuple[Value, Value]]:
+    """The names of nodes with their parameters, whatever the namespaces around them."""
+    waiting, seen = [top], {id(top)}
+    for value in waiting:
+        for key, below in value.entries:
+            parameters = below.get("ros__parameters")
+            if parameters is not None:
+                yield key, parameters
+            elif id(below) not in seen:  # an alias may name it many times
+                seen.add(id(below))
+                waiting.append(below)
+
+
+def _flat(node: Value) -> Iterator[tuple[tuple[Value, ...], Value]]:
+    """The parameters of a node, and those one level below: there are no others that matter."""
+    for key, value in node.entries:
+        yield (key,), value
+        for name, below in value.entries:
+            yield (key, name), below
+
+
+def _last(key: Value) -> str:
+    return (key.text or "").rpartition("/")[2]
+
+
+_NODE: Final = "bt_navigator"
+_ADDING: Final = "jkl"  # the distributions that add the named libraries to their own
