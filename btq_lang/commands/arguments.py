@@ -118,6 +118,12 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
         metavar="NODES",
         help="also what this distribution of Nav2 changes for trees of an earlier one: nav2-iron … nav2-lyrical",
     )
+    parser.add_argument(
+        "--nav2-params",
+        action="append",
+        metavar="FILE",
+        help="also a parameter file of Nav2, and the trees as it loads them; a FILE.yaml among the paths is one too",
+    )
     parser.add_argument("--fix", action="store_true", help="apply the safe fixes")
     parser.add_argument(
         "--diff", action="store_true", help="write nothing, show what --fix would change; exit 1 if there is anything"

@@ -14,15 +14,16 @@ from btq_lang.commands.output import is_coloured, tell
 from btq_lang.commands.reporting import FOR_PEOPLE, form_of, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.render import Finding, Report, Trouble
-from btq_lang.util.record import replace
+from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
 from btq_lang.workspace.config import Project, unknown_rule
 from btq_lang.workspace.factories import Factory, merged
-from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
-from btq_lang.workspace.loader import LoadProblem
+from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES, YAML_SUFFIXES
+from btq_lang.workspace.loader import LoadProblem, absolute
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
+    from btq_lang.commands.nav2_factory import ParameterFile
     from btq_lang.commands.options import CheckOptions
     from btq_lang.diagnostics.model import Diagnostic
 
@@ -75,18 +76,23 @@ class _Refused(Exception):
 
 def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     """Check once; returns the exit code and the files that another run depends on."""
-    groups, problems = files.groups(options.paths, options.stdin_filename, with_xml=True, for_checks=True)
+    trees = [path for path in options.paths if not path.endswith(YAML_SUFFIXES)]
+    named = (*options.nav2_params, *(path for path in options.paths if path not in trees))
+    files.nav2_params = tuple(dict.fromkeys(map(absolute, named)))
+    groups, problems = files.groups(trees, options.stdin_filename, with_xml=True, for_checks=True)
     groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
-    empty = no_mission_below(options.paths, groups, "no .btq file and no BehaviorTree.CPP XML")
+    empty = no_mission_below(trees, groups, "no .btq file and no BehaviorTree.CPP XML")
     try:
         groups = _chosen(groups, options)
+        parameter_files = _parameter_files(files, options)
     except _Refused as reason:
         print(f"btq check: {reason}", file=sys.stderr)
         return 2, _watched(groups)
+    watched = tuple(each.path for each in files.parameter_files)
     mended = 0
     if options.diff:
         tell(problems)
-        return _show_fixes(groups, options, bool(problems)), _watched(groups)
+        return _show_fixes(groups, options, bool(problems)), (*_watched(groups), *watched)
     if options.fix:
         from btq_lang.commands.fixing import fix, write_fixes
 
@@ -95,26 +101,75 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         problems += trouble
         mended = 0 if trouble else mended  # fixes that could not be written do not count
     tell(problems)
+    why_empty = None if parameter_files else empty
+    code = _report(groups, parameter_files, options, files, _Outcome(problems, mended, why_empty))
+    return code, (*_watched(groups), *watched)
+
+
+class _Outcome(Record):
+    """What was found out before the check: what could not be read or written, how many fixes were applied, and why
+    there is nothing to check."""
+
+    problems: tuple[LoadProblem, ...]
+    mended: int
+    empty: str | None
+
+
+def _report(
+    groups: tuple[Group, ...],
+    parameter_files: tuple[ParameterFile, ...],
+    options: CheckOptions,
+    files: Files,
+    before: _Outcome,
+) -> int:
+    """Check, leave out what is known, and write the report; returns the exit code."""
+    problems, empty = before.problems, before.empty
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     findings, checked = _findings(groups, texts, options)
+    every = groups
+    if parameter_files:
+        from btq_lang.commands.nav2_check import as_groups, nav2_findings
+
+        more, others = nav2_findings(parameter_files, files, checked, lambda project: _selecting(project, options))
+        findings += [each for each in more if _is_wanted(each.diagnostic, options)]
+        findings.sort(key=lambda each: (each.path, each.diagnostic.span))
+        texts, checked = {**others, **texts}, (*checked, *(each.path for each in parameter_files))
+        every = (*groups, *as_groups(parameter_files))
     known = 0
-    if _has_baseline(groups, options):
+    if _has_baseline(every, options):
         from btq_lang.commands.baseline import compared
 
-        findings, known, trouble = compared(findings, groups, options, is_whole=not problems)
+        findings, known, trouble = compared(findings, every, options, is_whole=not problems)
         tell(trouble)
         problems += trouble
     if options.add_ignore is not None:
         return _add_ignores(groups, findings, options, files)
     why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)
     report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), why_empty, known)
-    is_written = write_report(report, options, mended)
+    is_written = write_report(report, options, before.mended)
     if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
         print(f"btq check: {empty}", file=sys.stderr)
     if problems or empty or not is_written:
-        return 2, _watched(groups)
+        return 2
     fails = any(finding.diagnostic.effective_severity in _FAILS for finding in findings)
-    return int(fails and not options.exit_zero), _watched(groups)
+    return int(fails and not options.exit_zero)
+
+
+def _parameter_files(files: Files, options: CheckOptions) -> tuple[ParameterFile, ...]:
+    """The parameter files of Nav2 to check.
+
+    Raises:
+        _Refused: it is not known what has changed.
+    """
+    if not files.parameter_files:
+        return ()
+    from btq_lang.commands.git import GitTrouble
+    from btq_lang.commands.nav2_check import requested
+
+    try:
+        return requested(files, options)
+    except GitTrouble as reason:
+        raise _Refused(f"--since: {reason}") from reason
 
 
 def _chosen(groups: tuple[Group, ...], options: CheckOptions) -> tuple[Group, ...]:
@@ -147,9 +202,7 @@ def _has_baseline(groups: tuple[Group, ...], options: CheckOptions) -> bool:
     return options.baseline is not None or any(group.workspace.project.baseline for group in groups)
 
 
-def _add_ignores(
-    groups: tuple[Group, ...], findings: list[Finding], options: CheckOptions, files: Files
-) -> tuple[int, tuple[str, ...]]:
+def _add_ignores(groups: tuple[Group, ...], findings: list[Finding], options: CheckOptions, files: Files) -> int:
     """`--add-ignore`: write the comments and check again."""
     from copy import copy  # as all here only where it is needed
 
@@ -160,8 +213,8 @@ def _add_ignores(
     print(f"Added {counted(count, 'comment')}", file=sys.stderr)
     again = copy(options)
     again.add_ignore = None
-    code, watched = _check(again, files)
-    return 2 if trouble else code, watched
+    code, _ = _check(again, files)  # --add-ignore watches nothing
+    return 2 if trouble else code
 
 
 def _findings(
@@ -229,11 +282,14 @@ def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...
 
 def _configured(workspace: Workspace, options: CheckOptions) -> Workspace:
     """The workspace with the command line's selection of rules on top of the project file's."""
-    project: Project = workspace.project
-    select, ignore = _rules(options.select), _rules(options.ignore)
-    if not select and not ignore:
+    if not options.select and not options.ignore:
         return workspace
-    return workspace.with_project(replace(project, select=select or project.select, ignore=project.ignore + ignore))
+    return workspace.with_project(_selecting(workspace.project, options))
+
+
+def _selecting(project: Project, options: CheckOptions) -> Project:
+    select, ignore = _rules(options.select), _rules(options.ignore)
+    return replace(project, select=select or project.select, ignore=project.ignore + ignore)
 
 
 def _rules(given: Iterable[str]) -> tuple[str, ...]:

@@ -26,8 +26,8 @@ from btq_lang.workspace.loader import (
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
+    from btq_lang.commands.nav2_factory import ParameterFile
     from btq_lang.commands.xml_below import XmlBelow
-    from btq_lang.workspace.config import Project
     from btq_lang.workspace.factories import Factory
 
 STDIN = "-"
@@ -88,9 +88,13 @@ class Files:
         overlay: texts that replace files on the disk, by path: standard input, an editor's buffers.
         stdin: the path assigned to standard input, once it was read.
         folders: the bases of paths that are shown: the current folder, or an editor's folders.
+        nav2_params: parameter files of Nav2 besides those that projects name.
+        parameter_files: all of them that were read for the last request.
     """
 
     def __init__(self) -> None:
+        self.nav2_params: tuple[str, ...] = ()
+        self.parameter_files: list[ParameterFile] = []
         self.overlay: dict[str, str] = {}
         self.stdin: str | None = None
         self._of_stdin: LoadProblem | None = None
@@ -118,6 +122,7 @@ class Files:
         """
         problems: list[LoadProblem] = []
         projects: dict[str, Found] = {}
+        self.parameter_files.clear()
         members: dict[str, dict[str, str]] = {}  # each with the folder that was requested
 
         def project_of(path: str) -> Found:
@@ -154,7 +159,10 @@ class Files:
             )
             groups += found_groups
             problems += found_problems
-        return tuple(groups), tuple(problems)
+        for path in self.nav2_params:  # also where no tree is checked
+            if all(each.path != path for each in self.parameter_files):
+                problems += self._factories(project_of(path))[1]
+        return tuple(groups), tuple(dict.fromkeys(problems))
 
     def _groups_of(
         self, tops: Mapping[str, str], home: Found, project_of: Callable[[str], Found], for_checks: bool
@@ -165,7 +173,7 @@ class Files:
             tops: those files, each with the folder in which it was requested.
             project_of: returns the project of a file.
         """
-        factories = self._factories(home.project)
+        factories, problems_of_factories = self._factories(home)
         groot: tuple[Factory, ...] = ()
         pools: dict[str, tuple[str, ...]] = {}
         if for_checks and (xml := {path: top for path, top in tops.items() if self._may_be_xml(path)}):
@@ -175,6 +183,7 @@ class Files:
             registered = {path for factory in factories for path in factory.files}
             groot = tuple(groot_projects(pools.values(), xml.keys() - registered))
         group, problems = self._load(tuple(tops), home, factories + groot)
+        problems += problems_of_factories
         lacking = [each for each in factories if not each.files]
         problems += [LoadProblem(home.path or "", f"the factory `{each.name}` loads no file") for each in lacking]
         groups: list[Group] = []
@@ -198,13 +207,41 @@ class Files:
         suffixes = (*SUFFIXES, *XML_SUFFIXES)
         return {pool: collect([pool], home.project, suffixes)[0] for pool in sorted(pools)}
 
-    def _factories(self, project: Project) -> tuple[Factory, ...]:
+    def _factories(self, home: Found) -> tuple[tuple[Factory, ...], list[LoadProblem]]:
         """The factories of a project with their files."""
-        if not project.factories:
-            return ()
+        if not home.project.factories and not self.nav2_params:
+            return (), []
         from btq_lang.commands.factory_files import resolved  # few projects have any
 
-        return tuple(resolved(factory, project.root, self.xml) for factory in project.factories)
+        factories: list[Factory] = []
+        problems: list[LoadProblem] = []
+        for factory in (*home.project.factories, *self._requested_factories(home)):
+            found = resolved(factory, home.project.root, self.xml)
+            if not factory.nav2:
+                factories.append(found)
+                continue
+            from btq_lang.commands.nav2_factory import parameter_file  # few projects are for Nav2
+
+            file, problem = parameter_file(found, home.project, home.path, self.overlay.get)
+            problems += [problem] if problem is not None else []
+            if file is not None:
+                self.parameter_files.append(file)
+                factories += [each for _, each in file.factories if each.files]
+        return tuple(factories), problems
+
+    def _requested_factories(self, home: Found) -> Iterator[Factory]:
+        """A factory for each requested parameter file that the project does not name."""
+        from btq_lang.workspace.factories import Factory  # few projects have any
+
+        root = home.project.root
+        named = {absolute(os.path.join(root, each.nav2)) for each in home.project.factories if each.nav2}
+        for path in self.nav2_params:
+            if path not in named:
+                yield Factory(os.path.basename(path), nav2=path)
+
+    def workspace_of(self, factory: Factory, home: Found) -> Workspace:
+        """The workspace of all files of a factory, requested or not."""
+        return self._load((), home, (factory,))[0].workspace.of_factory(factory)
 
     def _with_pools(
         self, group: Group, pools: Mapping[str, tuple[str, ...]], project_of: Callable[[str], Found]
@@ -285,10 +322,7 @@ def _by_factory(group: Group, factories: Iterable[Factory], in_each: bool) -> It
     taken: set[str] = set()
     whole = group.workspace
     for factory in factories:
-        named = (*factory.files, *factory.node_files, *whole.project.node_files)
-        files = [path for path in named if path in whole.files]
-        inside = dict.fromkeys(each for path in files for each in whole.closure(path))
-        workspace = Workspace({path: whole.files[path] for path in inside}, whole.project, factory)
+        workspace = whole.of_factory(factory)
         registered = workspace.registered
         given = tuple(path for path in group.given if path in registered and path not in taken)
         if given:

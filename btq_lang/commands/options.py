@@ -24,6 +24,7 @@ class CheckOptions:
     ignore: Sequence[str] = []
     severity = "hint"
     target: str | None = None
+    nav2_params: Sequence[str] = []
     since: str | None = None
     baseline: str | None = None
     update_baseline = False

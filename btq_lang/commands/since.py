@@ -1,8 +1,8 @@
 """`btq check --since REV`: the files that changed since a revision, and those that depend on such a file.
 
 A file depends on itself; on the project file; on what it includes, directly or not, also where an included file is not
-there any more; in a factory on all files of it; and XML on the files of its pool that define the trees and nodes it
-uses, or did so at the revision.
+there any more; in a factory on all files of it, and on the parameter file of Nav2 that names them;
+and XML on the files of its pool that define the trees and nodes it uses, or did so at the revision.
 
 One invariant: a file that is left out has the findings that it had at the revision, as far as they depend on files.
 """
@@ -50,6 +50,16 @@ def affected(groups: Iterable[Group], revision: str) -> tuple[Group, ...]:
     return tuple(done)
 
 
+def has_changed(paths: Iterable[str], revision: str) -> bool:
+    """Whether any of some files has changed since a revision.
+
+    Raises:
+        GitTrouble: as above.
+    """
+    first, *others = paths
+    return not revisions(revision, posixpath.dirname(first)).changed_paths().isdisjoint((first, *others))
+
+
 class _Concerned:
     """Whether a change of some files concerns a file of a workspace."""
 
@@ -75,6 +85,8 @@ class _Concerned:
         """What a file itself depends on; paths that are not there too."""
         workspace = self._workspace
         yield from workspace.scope(path).paths
+        if workspace.factory is not None and workspace.factory.nav2:
+            yield workspace.factory.nav2
         for include, is_of_package in workspace.files[path].included_paths:
             if not is_of_package:
                 yield from include_candidates(workspace.project, path, include)

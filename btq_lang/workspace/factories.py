@@ -5,6 +5,7 @@
     load = ["trees/*.xml", "package://docking/trees/*.xml"]    # in the order in which the program registers them
     main = ["Navigate", "Dock"]                                # a tree, or a list of them
     nodes = ["nav2-jazzy", "models/*.xml"]                     # where the nodes are declared that it registers
+    nav2 = "config/nav2_params.yaml"                           # what bt_navigator loads; `load` is then for goals
 
 One invariant: what is wrong is left out and reported, and the rest is kept.  Not known here: which files the patterns
 match, which the loader fills in, and what is in them.
@@ -36,9 +37,11 @@ class Factory(Record):
         load: patterns of the files that it registers.
         main: the trees that it may create; empty: unknown.
         nodes: patterns of files whose models declare the nodes that it registers, and names of nodes that btq knows.
+        nav2: the parameter file of a bt_navigator, which is a factory for each tree that it creates.
         files: those of `load`, in order, each once.
         node_files: those of `nodes` that are not in `files`.
         lost: the patterns that match no file, so that it is not known what the program registers.
+        has_gaps: whether bt_navigator registers files that are not here; what is wrong is said of its parameter file.
         entries: of the root blackboard, which the program sets or reads, if it is known to be bt_navigator.
     """
 
@@ -46,9 +49,11 @@ class Factory(Record):
     load: tuple[str, ...] = ()
     main: tuple[str, ...] = ()
     nodes: tuple[str, ...] = ()
+    nav2: str = ""
     files: tuple[str, ...] = ()
     node_files: tuple[str, ...] = ()
     lost: tuple[str, ...] = ()
+    has_gaps: bool = False
     entries: tuple[OutsideEntry, ...] = ()
 
 
@@ -66,13 +71,7 @@ def read_factories(tables: object) -> tuple[tuple[Factory, ...], list[Complaint]
         values = {key: _strings(table.get(key, []), key) for key in KEYS}
         for key, value in values.items():
             if value is None:
-                form = (
-                    "a string"
-                    if key == "name"
-                    else "a list of strings"
-                    if key != "main"
-                    else "a tree or a list of trees"
-                )
+                form = _FORMS.get(key, "a list of strings")
                 complaints.append((f"`factory.{key}` must be {form}", (*at, key), None))
         for source in values["nodes"] or ():
             if _is_name(source) and source not in PACKAGED:
@@ -85,7 +84,8 @@ def read_factories(tables: object) -> tuple[tuple[Factory, ...], list[Complaint]
         elif any(name == each.name for each in factories):
             complaints.append((f"duplicate factory `{name}`", (*at, "name"), name))
         elif name:
-            factories.append(Factory(name, values["load"] or (), values["main"] or (), values["nodes"] or ()))
+            nav2 = (values["nav2"] or ("",))[0]
+            factories.append(Factory(name, values["load"] or (), values["main"] or (), values["nodes"] or (), nav2))
     return tuple(factories), complaints
 
 
@@ -124,17 +124,19 @@ def _is_name(source: str) -> bool:
 
 def _strings(value: object, key: str) -> tuple[str, ...] | None:
     """The strings of a value; None if it is anything else."""
-    if isinstance(value, str) and key in ("name", "main"):
-        return (value,)
-    if not isinstance(value, list) or (key == "name" and value):
+    if isinstance(value, str) and key in _FORMS:
+        return (value,) if value or key != "nav2" else None
+    if not isinstance(value, list) or (key in ("name", "nav2") and value):
         return None
     return tuple(value) if all(isinstance(each, str) and each for each in value) else None
 
 
+_FORMS: Final = {"name": "a string", "main": "a tree or a list of trees", "nav2": "the name of a file"}
 # Each key with a line for editors.
 KEYS: Final = {
     "name": "the name of the factory in messages",
     "load": "patterns of the files that the program registers, in order; also package://NAME/…",
     "main": "the tree that the program creates, or a list of them",
     "nodes": "patterns of the files that declare the program's nodes, and names such as nav2-jazzy",
+    "nav2": "the parameter file of Nav2's bt_navigator, which says which trees and libraries it loads",
 }

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 SUFFIXES = (".btq", ".qualitybtcpp")  # of files in this language; the second is that of the classic form
 GROOT_SUFFIX = ".btproj"  # of a project of Groot2: includes and models
 XML_SUFFIXES = (".xml", GROOT_SUFFIX)
+YAML_SUFFIXES = (".yaml", ".yml")  # of parameters
 SIDE_SUFFIX = ".qreq.json"  # of what a build writes beside XML
 
 

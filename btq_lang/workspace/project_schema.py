@@ -77,7 +77,7 @@ def _signal() -> Json:
 
 def _factory() -> Json:
     texts = _list(_form("text"))
-    forms = {"name": _form("text"), "main": {"anyOf": [_form("text"), texts]}}
+    forms = {"name": _form("text"), "nav2": _form("text"), "main": {"anyOf": [_form("text"), texts]}}
     keys = {key: {"description": doc, "allOf": [forms.get(key, texts)]} for key, doc in FACTORY_KEYS.items()}
     return {**_table(keys), "required": ["name"]}
 

@@ -110,6 +110,12 @@ class Workspace:
     def with_project(self, project: Project) -> Workspace:
         return Workspace(self.files, project, self.factory)
 
+    def of_factory(self, factory: Factory) -> Workspace:
+        """The workspace of a factory: those of the files that it registers."""
+        named = (*factory.files, *factory.node_files, *self.project.node_files)
+        inside = dict.fromkeys(each for path in named if path in self.files for each in self.closure(path))
+        return Workspace({path: self.files[path] for path in inside}, self.project, factory)
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Workspace) and (self.files, self.project, self.factory) == (
             other.files,
@@ -202,7 +208,8 @@ class Workspace:
         registered = dict.fromkeys(
             each for path in self.factory.files if path in self.files for each in self.closure(path)
         )
-        return self._scope(tuple(registered), self.factory.node_files, is_known=not self.factory.lost)
+        is_known = not self.factory.lost and not self.factory.has_gaps
+        return self._scope(tuple(registered), self.factory.node_files, is_known)
 
     @cached_property
     def included_files(self) -> frozenset[str]:

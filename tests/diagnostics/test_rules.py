@@ -6,12 +6,16 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
+from pathlib import Path
 
 import pytest
-from check_asserts import MARKER, assert_marked
+from check_asserts import MARKER, announced, assert_marked
+from nav2_robot import findings_in, make_robot
 from rule_pages import BLOCK, PAGES, blocks
 
 from btq_lang.diagnostics.rules import RULES, page
+from btq_lang.util.text import LineIndex
 
 
 def test_there_is_a_page_for_every_rule_and_a_rule_for_every_page() -> None:
@@ -30,6 +34,19 @@ def test_a_page_shows_its_rule_at_work_and_a_clean_file(rule: str) -> None:
 
 
 @pytest.mark.parametrize(("rule", "language", "block"), blocks())
-def test_the_examples_of_a_page(rule: str, language: str, block: str) -> None:
+def test_the_examples_of_a_page(rule: str, language: str, block: str, tmp_path: Path) -> None:
     """The announced diagnostics and no others; each of their fixes mends, a safe one adds nothing."""
-    assert_marked(block, f"main.{language}")
+    if language == "yaml":
+        make_robot(tmp_path)
+        found = Counter(
+            (
+                "nav2_params.yaml",
+                LineIndex(block).position(each.span.start).line,
+                each.effective_severity.value,
+                each.rule,
+            )
+            for _, each in findings_in(tmp_path, block)
+        )
+        assert found == announced("nav2_params.yaml", block)
+    else:
+        assert_marked(block, f"main.{language}")

@@ -11,7 +11,7 @@ import pytest
 from in_process import run_btq
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "xml-teams.md"
-BLOCK = re.compile(r"^```(xml|toml|console)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(r"^```(xml|toml|yaml|console)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
 @pytest.mark.usefixtures("terminal")
@@ -20,13 +20,13 @@ def test_the_commands_print_what_the_page_shows(tmp_path: Path, update: bool) ->
 
     def made(block: re.Match[str]) -> str:
         language, text = block.groups()
-        if language == "xml":
+        if language == "xml" or (language == "yaml" and text.startswith("# ")):
             path = tmp_path / text.split()[1]
             path.parent.mkdir(exist_ok=True)
             path.write_text(text, encoding="utf-8")
         elif language == "toml":
             (tmp_path / "btq.toml").write_text(text, encoding="utf-8")
-        else:
+        elif language == "console":
             commands = [line for line in text.splitlines() if line.startswith("$ ")]
             text = "".join(f"{command}\n{shown(command[2:], tmp_path)}" for command in commands)
         return f"```{language}\n{text}```"

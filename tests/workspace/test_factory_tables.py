@@ -19,6 +19,7 @@ nodes = ["models.xml"]
 [[factory]]
 name = "arm"
 main = ["Pick", "Place"]
+nav2 = "params.yaml"
 """
 
 
@@ -27,7 +28,7 @@ def test_every_key() -> None:
     assert problems == ()
     assert project.factories == (
         Factory("nav", ("trees/*.xml", "package://docking/trees/*.xml"), ("Navigate",), ("models.xml",)),
-        Factory("arm", main=("Pick", "Place")),
+        Factory("arm", main=("Pick", "Place"), nav2="params.yaml"),
     )
 
 
@@ -40,7 +41,8 @@ def test_every_key() -> None:
             "[[factory]]\nlaod = []",
             ["2:1: unknown key `factory.laod`; did you mean `load`?", "1:3: a factory needs a `name`"],
         ),
-        ('[[factory]]\nname = "a"\nnav2 = "p.yaml"', ["3:1: unknown key `factory.nav2`"]),
+        ('[[factory]]\nname = "a"\nnav2 = ["p.yaml"]', ["3:1: `factory.nav2` must be the name of a file"]),
+        ('[[factory]]\nname = "a"\nnav2 = ""', ["3:1: `factory.nav2` must be the name of a file"]),
         ('[[factory]]\nname = "a"\nload = "x"', ["3:1: `factory.load` must be a list of strings"]),
         ('[[factory]]\nname = ["a"]', ["2:1: `factory.name` must be a string"]),
         ('[[factory]]\nname = "a"\nmain = 3', ["3:1: `factory.main` must be a tree or a list of trees"]),

@@ -184,6 +184,15 @@ _TABLE = (
     Rule("while-skip-is-success", _W, "`_while` halts the node and the parent continues as if it had succeeded"),
     Rule("target-breaks", _E, "what the distribution of `--target` refuses"),
     Rule("target-differs", _W, "what means something else in the distribution of `--target`"),
+    Rule("yaml-syntax", _E, "a parameter file that is not YAML"),
+    Rule("nav2-distribution", _H, "a parameter file of Nav2 that does not tell for which distribution it is"),
+    Rule("nav2-parameter", _W, "a parameter of bt_navigator that the distribution does not read, or refuses"),
+    Rule("unknown-library", _E, "a library of nodes that Nav2 does not have in the distribution"),
+    Rule("library-loaded-twice", _E, "a library of nodes that bt_navigator loads twice"),
+    Rule("unloaded-node", _E, "a node in a tree of which bt_navigator does not load the library"),
+    Rule("missing-nav2-tree", _E, "a tree or a folder that bt_navigator does not find"),
+    Rule("skipped-tree-file", _W, "a file in a search directory that bt_navigator skips"),
+    Rule("refused-tree-file", _E, "a file that keeps bt_navigator from loading any tree"),
     Rule("skipped-condition", _W, "a condition of IfThenElse or WhileDoElse that may be skipped: the engine throws"),
     Rule("unreachable-child", _W, "a child that can never run"),
     Rule(
@@ -199,6 +208,6 @@ RULES = {rule.name: rule for rule in _TABLE}
 UNREADABLE = frozenset(
     (
         *("syntax-error", "inconsistent-indentation", "unclosed-bracket", "unclosed-string", "unclosed-comment"),
-        *("misplaced-comment", "unknown-unit", "xml-syntax", "xml-root"),
+        *("misplaced-comment", "unknown-unit", "xml-syntax", "xml-root", "yaml-syntax"),
     )
 )

@@ -1,0 +1,75 @@
+"""The findings of `btq check` in parameter files of Nav2, and in trees because of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from btq_lang.commands.files import Group
+from btq_lang.commands.nav2_factory import ParameterFile, findings_of
+from btq_lang.render import Finding
+from btq_lang.util.record import replace
+from btq_lang.workspace.loader import Found, absolute, excluder, read
+from btq_lang.workspace.workspace import Workspace
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Container
+
+    from btq_lang.commands.files import Files
+    from btq_lang.commands.options import CheckOptions
+    from btq_lang.workspace.config import Project
+    from btq_lang.workspace.factories import Factory
+
+
+def requested(files: Files, options: CheckOptions) -> tuple[ParameterFile, ...]:
+    """The parameter files that were named, or that are in a requested folder and not excluded.
+
+    Raises:
+        GitTrouble: it is not known what has changed.
+    """
+    folders = [absolute(path).rstrip("/") + "/" for path in options.paths]
+
+    def is_requested(file: ParameterFile) -> bool:
+        if file.path in files.nav2_params:
+            return True
+        return file.path.startswith(tuple(folders)) and not excluder(file.project)(file.path)
+
+    found = tuple({each.path: each for each in files.parameter_files if is_requested(each)}.values())
+    if options.since:
+        from btq_lang.commands.since import has_changed
+
+        found = tuple(each for each in found if has_changed((*each.used, each.project_file or ""), options.since))
+    return found
+
+
+def as_groups(found: Iterable[ParameterFile]) -> tuple[Group, ...]:
+    """Parameter files as groups without any tree, for what looks at the paths of groups."""
+    return tuple(Group(Workspace({}, each.project), (each.path,), (), (), each.project_file) for each in found)
+
+
+def nav2_findings(
+    found: Iterable[ParameterFile], files: Files, checked: Container[str], configured: Callable[[Project], Project]
+) -> tuple[list[Finding], dict[str, str]]:
+    """What is wrong with parameter files, and with trees that are checked; and the texts of files that this names.
+
+    Args:
+        checked: the paths of those trees.
+        configured: returns a project with what the command line selects.
+    """
+    findings: list[Finding] = []
+    texts: dict[str, str] = {}
+    for file in found:
+        texts[file.path] = file.text
+        home = Found(file.project, file.project_file)
+
+        def workspace_of(factory: Factory, home: Found = home) -> Workspace:
+            workspace = files.workspace_of(factory, home)
+            texts.update((path, each.source) for path, each in workspace.files.items())
+            return workspace
+
+        for path, diagnostic in findings_of(replace(file, project=configured(file.project)), workspace_of):
+            if path == file.path or path in checked:
+                findings.append(Finding(path, texts[path], diagnostic))
+                for other in [each.place.path for each in diagnostic.related if each.place.path is not None]:
+                    texts[other] = texts.get(other) or read(other)[0] or ""
+    return findings, texts

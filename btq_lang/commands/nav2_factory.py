@@ -1,0 +1,122 @@
+"""The factories that a parameter file of Nav2 describes, and what is wrong with it.
+
+bt_navigator has a factory for each navigator, so a tree that one of them creates by default, or for a goal that names
+it, sees what is read for that tree and nothing else.
+"""
+
+from __future__ import annotations
+
+import os.path
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+from btq_lang.catalog.nav2 import FILES, distribution_among
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.nav2.findings import Loaded, distribution_unknown, findings
+from btq_lang.nav2.loaded import Load, loads
+from btq_lang.nav2.parameters import Parameters, read_parameters
+from btq_lang.nav2.yaml_reader import YamlMissing, YamlProblem
+from btq_lang.util.record import Record, replace
+from btq_lang.util.text import Span
+from btq_lang.workspace.config import configured
+from btq_lang.workspace.loader import LoadProblem, absolute, read
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.config import Project
+    from btq_lang.workspace.factories import Factory
+    from btq_lang.workspace.workspace import Workspace
+
+
+class ParameterFile(Record):
+    """A parameter file and what it loads.
+
+    Attributes:
+        project: that names it, or in whose files it is looked at.
+        project_file: of that project.
+        factories: one for each tree that is created, with what is read for it; None: nothing is known of that.
+        problem: why it could not be read.
+    """
+
+    path: str
+    text: str
+    project: Project
+    project_file: str | None
+    parameters: Parameters | None
+    distribution: str | None
+    factories: tuple[tuple[Load, Factory], ...] = ()
+    problem: Diagnostic | None = None
+
+    @property
+    def used(self) -> frozenset[str]:
+        """The files that its findings depend on, besides the project file."""
+        loads = [load for load, _ in self.factories]
+        places = [each for load in loads for each in (*load.refused, *(skipped.place for skipped in load.skipped))]
+        named = [each.path for each in places if each.path is not None]
+        return frozenset((self.path, *named, *(path for load in loads for path in load.files)))
+
+
+def parameter_file(
+    factory: Factory, project: Project, project_file: str | None, known: Callable[[str], str | None]
+) -> tuple[ParameterFile | None, LoadProblem | None]:
+    """The parameter file of a factory, or why it could not be read.
+
+    Args:
+        factory: with its files resolved; they are those that goals name.
+        known: returns the text of an open file.
+    """
+    path = absolute(os.path.join(project.root, factory.nav2))
+    text, problem = (known(path), None) if known(path) is not None else read(path)
+    if text is None:
+        return None, problem
+    distribution = distribution_among((*factory.node_files, *project.node_files))
+    empty = ParameterFile(path, text, project, project_file, None, distribution)
+    try:
+        parameters = read_parameters(text)
+    except YamlMissing:
+        return None, LoadProblem(path, "YAML is read with PyYAML; install it with pip install 'btq-lang[nav2]'")
+    except YamlProblem as error:
+        at = min(error.offset, len(text))
+        return replace(empty, problem=Diagnostic("yaml-syntax", Span(at, at), error.message)), problem
+    distribution = distribution or parameters.distribution
+    found = loads(
+        parameters, distribution or "", project.root, factory.files, lambda file: known(file) or read(file)[0]
+    )
+    factories = tuple((load, _factory_of(load, factory, parameters, distribution, path)) for load in found)
+    return replace(empty, parameters=parameters, distribution=distribution, factories=factories), problem
+
+
+def findings_of(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) -> Iterator[tuple[str, Diagnostic]]:
+    """All that is wrong with a parameter file and with what it loads, with the file that it is in.
+
+    Args:
+        workspace_of: returns the workspace of a factory.
+    """
+    for path, diagnostic in _found(file, workspace_of):
+        yield from ((path or file.path, each) for each in configured(file.project, path or file.path, (diagnostic,)))
+
+
+def _found(
+    file: ParameterFile, workspace_of: Callable[[Factory], Workspace]
+) -> Iterator[tuple[str | None, Diagnostic]]:
+    if file.problem is not None:
+        yield None, file.problem
+    if file.parameters is not None and file.distribution is None:
+        yield None, distribution_unknown(file.parameters)
+    elif file.parameters is not None and file.distribution is not None:
+        loaded = [Loaded(load, workspace_of(factory)) for load, factory in file.factories]
+        yield from findings(file.parameters, file.distribution, loaded)
+
+
+def _factory_of(load: Load, factory: Factory, parameters: Parameters, distribution: str | None, path: str) -> Factory:
+    nodes = factory.node_files
+    if distribution is not None and distribution_among(nodes) is None:
+        nodes = (*nodes, FILES[distribution])
+    return replace(
+        factory,
+        name=f"{factory.name} ({load.label})",
+        files=load.files,
+        node_files=nodes,
+        nav2=path,
+        has_gaps=distribution is None or not load.is_whole or bool(load.refused),
+        entries=parameters.entries(distribution) if distribution is not None else (),
+    )

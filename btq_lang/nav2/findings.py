@@ -1,0 +1,239 @@
+"""What is wrong with a parameter file, and with what bt_navigator loads by it.
+
+One invariant: without a distribution nothing is said that depends on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nav2 import DISTRIBUTIONS
+from btq_lang.catalog.nav2.navigator import NAVIGATORS, OWN_PACKAGE, PARAMETERS
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS
+from btq_lang.diagnostics.model import Diagnostic, Place, Related
+from btq_lang.diagnostics.rules import Severity
+from btq_lang.nav2.libraries import NAMES, Libraries
+from btq_lang.nav2.loaded import Load, Skipped
+from btq_lang.nav2.parameters import Parameters
+from btq_lang.syntax.tree import Tree, Word
+from btq_lang.util.record import Record
+from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.util.text import Span
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.workspace import Workspace
+
+
+class Loaded(Record):
+    """A tree that bt_navigator creates, with the files that it registers for it."""
+
+    load: Load
+    workspace: Workspace
+
+
+def distribution_unknown(parameters: Parameters) -> Diagnostic:
+    """Says that nothing tells for which distribution a file is."""
+    choices = ", ".join(f'"nav2-{each}"' for each in DISTRIBUTIONS)
+    return Diagnostic(
+        "nav2-distribution",
+        parameters.place or Span(0, 0),
+        "the parameters of bt_navigator do not tell for which distribution of ROS 2 they are",
+        notes=(f"write `nodes = [...]` with one of {choices} into btq.toml",),
+    )
+
+
+def findings(
+    parameters: Parameters, distribution: str, found: Iterable[Loaded]
+) -> Iterator[tuple[str | None, Diagnostic]]:
+    """All that is wrong, with the file that it is in; None: the parameter file.
+
+    Args:
+        found: all trees that bt_navigator creates.
+    """
+    found = tuple(found)
+    libraries = Libraries(parameters, distribution)
+    of_file = [*_parameters(parameters, distribution), *libraries.findings()]
+    for each in found:
+        of_file += _places(each)
+        of_file += _unloaded(each, parameters, libraries)
+    of_file += _folders(found, parameters)
+    yield from ((None, each) for each in dict.fromkeys(of_file))
+    yield from dict.fromkeys(finding for each in found for finding in _of_goals(each, libraries))
+
+
+def _parameters(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]:
+    shown = distribution.capitalize()
+    if parameters.place is None:
+        yield Diagnostic("nav2-parameter", Span(0, 0), "this file has no parameters of bt_navigator")
+    for name, row in parameters.unread(distribution):
+        parameter = PARAMETERS[row]
+        notes = (parameter.instead,) if parameter.instead else ()
+        key = parameters.key(name) or Span(0, 0)
+        if distribution[0] in parameter.refused_in:
+            message = f"bt_navigator refuses to start with `{name}` in {shown}"
+            yield Diagnostic("nav2-parameter", key, message, notes=notes, severity=Severity.ERROR)
+        else:
+            yield Diagnostic("nav2-parameter", key, f"Nav2 does not read `{name}` in {shown}", notes=notes)
+    for navigator, plugin in parameters.plugins if distribution[0] != "h" else ():
+        class_ = NAVIGATORS[navigator][2] if navigator in NAVIGATORS else ""
+        right, wrong = (
+            f"{OWN_PACKAGE}{sign}{class_}" for sign in (("/", "::") if distribution[0] == "i" else ("::", "/"))
+        )
+        if plugin.text == wrong:
+            message = f"the class of this navigator is called `{right}` in {shown}"
+            yield Diagnostic("nav2-parameter", plugin.span, message, severity=Severity.ERROR)
+
+
+# ---- trees and folders ----
+
+
+def _places(found: Loaded) -> Iterator[Diagnostic]:
+    """What parameters name, and is not there."""
+    load = found.load
+    for place in (load.tree, *load.folders):
+        if place is None or not place.problem or place.named is None:
+            continue
+        is_folder = place is not load.tree
+        what = "folder" if is_folder else "tree"
+        message = f"cannot find the {what} `{place.named.text}`: {place.problem}"
+        notes: tuple[str, ...] = ()
+        if place.is_certain:
+            effect = (
+                "without this folder bt_navigator loads no tree at all"
+                if is_folder
+                else "bt_navigator refuses to start"
+            )
+            notes = (effect,)
+        severity = None if place.is_certain else Severity.HINT
+        yield Diagnostic("missing-nav2-tree", place.named.span, message, notes=notes, severity=severity)
+    if load.main is not None and load.is_whole and not _defines(found.workspace, load.main.text):
+        likely = did_you_mean(near(load.main.text, _tree_names(found.workspace), 1))
+        message = f"no file in the search directories has a tree `{load.main.text}`{likely}"
+        notes = ("a file is named by a path that ends in `.xml`",)
+        yield Diagnostic("missing-nav2-tree", load.main.span, message, notes=notes)
+
+
+def _folders(found: Iterable[Loaded], parameters: Parameters) -> Iterator[Diagnostic]:
+    """The files that bt_navigator skips or refuses, each once."""
+    seen: set[str | None] = set()
+    for load in (each.load for each in found):
+        for place in load.refused:
+            if place.path not in seen:
+                name = _name(place)
+                which = "nothing says which of its trees is the main one"
+                message = f"`{name}` keeps bt_navigator from loading any tree: {which}"
+                notes = ("write `main_tree_to_execute`, or one tree into each file",)
+                span = _span(place, load, parameters)
+                yield Diagnostic("refused-tree-file", span, message, (Related(place, "second tree"),), notes)
+        for skipped in load.skipped:
+            if skipped.place.path not in seen:
+                yield _skipped(skipped, load, parameters)
+        seen.update(each.path for each in (*load.refused, *(skipped.place for skipped in load.skipped)))
+
+
+def _skipped(skipped: Skipped, load: Load, parameters: Parameters) -> Diagnostic:
+    name, other = _name(skipped.place), _name(skipped.other)
+    if name == other:  # in two folders
+        name, other = (_name(each, 2) for each in (skipped.place, skipped.other))
+    related: tuple[Related, ...] = (Related(skipped.place, "this file"),)
+    message = f"bt_navigator skips `{name}`, which has no tree with an ID"
+    notes: tuple[str, ...] = ()
+    if skipped.other is not None:
+        message = f"bt_navigator skips `{name}` or `{other}`: both have a tree `{skipped.id}`"
+        notes = ("folders are read in no defined order, and a file is skipped as a whole",)
+        if load.tree is not None and skipped.other.path == load.tree.path:
+            message = f"bt_navigator skips `{name}`: `{other}` has a tree `{skipped.id}` too"
+            notes = ("a file is skipped as a whole",)
+        related = (*related, Related(skipped.other, "other file"))
+    severity = None if skipped.loses else Severity.HINT
+    span = _span(skipped.place, load, parameters)
+    return Diagnostic("skipped-tree-file", span, message, related, notes, severity=severity)
+
+
+def _span(file: Place, load: Load, parameters: Parameters) -> Span:
+    """Where the parameters name a file, or the folder that it is in."""
+    path = file.path or ""
+    for place in (load.tree, *load.folders):
+        if place is None or place.path is None or place.named is None:
+            continue
+        if path == place.path or path.startswith(f"{place.path}/"):
+            return place.named.span
+    return parameters.place or Span(0, 0)
+
+
+def _name(place: Place | None, parts: int = 1) -> str:
+    """The name of a file, or the end of its path with some folders."""
+    return "/".join(((place.path if place is not None else None) or "").split("/")[-parts:])
+
+
+# ---- nodes ----
+
+
+def _unloaded(found: Loaded, parameters: Parameters, libraries: Libraries) -> Iterator[Diagnostic]:
+    """Nodes that nothing registers."""
+    span = parameters.key(NAMES) or parameters.place or Span(0, 0)
+    for name, place in _strangers(found.workspace).items():
+        if name in libraries.nodes:
+            continue
+        related = (Related(place, "used here"),)
+        library = libraries.library_of(name)
+        if library is not None:
+            message = f"bt_navigator does not load the library of `{name}`: add `{library}`"
+            yield Diagnostic("unloaded-node", span, message, related)
+        elif libraries.are_all_known:
+            message = f"no library that bt_navigator loads has a node `{name}`"
+            yield Diagnostic("unloaded-node", span, message, related, (f"name its library in `{NAMES}`",))
+
+
+def _strangers(workspace: Workspace) -> dict[str, Place]:
+    """The nodes in registered files that are not the engine's, each with the place where it is first used."""
+    found: dict[str, Place] = {}
+    for path in workspace.registered:
+        names = {
+            name
+            for name in workspace.files[path].used(Kind.MODEL)
+            if name not in BUILTINS and name not in KNOWN_WORDS and not _defines(workspace, name)
+        }
+        for reference in workspace.uses_in(path) if names else ():
+            if reference.use.kind is Kind.MODEL and reference.use.name in names:
+                found.setdefault(reference.use.name, Place(workspace.files[path].on_disk(reference.span), path))
+    return found
+
+
+def _of_goals(found: Loaded, libraries: Libraries) -> Iterator[tuple[str, Diagnostic]]:
+    """The trees that nodes name for the goals that they send, and that are not there; before Lyrical they are files."""
+    workspace = found.workspace
+    if not found.load.folders or not found.load.is_whole:
+        return
+    for path in workspace.registered:
+        file = workspace.files[path]
+        for tree in file.of_type(Tree) if _PORT in file.text else ():
+            for name in _named_in(tree, libraries):
+                if _defines(workspace, name.text):
+                    continue
+                span = file.on_disk(name.span.shifted(file.start_of(tree)))
+                likely = did_you_mean(near(name.text, _tree_names(workspace), 1))
+                message = f"no file that bt_navigator reads has a tree `{name.text}`{likely}"
+                yield path, Diagnostic("missing-nav2-tree", span, message)
+
+
+def _named_in(tree: Tree, libraries: Libraries) -> Iterator[Word]:
+    """The IDs that nodes of Nav2 name in a tree."""
+    for node in tree.walk():
+        for pair in node.attributes if node.kind is not None and node.kind.text in libraries.nodes else ():
+            value = pair.value if pair.key.text == _PORT else None
+            if value is not None and value.text and "{" not in value.text and not value.text.endswith(".xml"):
+                yield value
+
+
+def _defines(workspace: Workspace, tree: str) -> bool:
+    return any(workspace.files[path].defines(Kind.TREE, tree) for path in workspace.registered)
+
+
+def _tree_names(workspace: Workspace) -> list[str]:
+    return [name for path in workspace.registered for name in workspace.files[path].names_of(Kind.TREE)]
+
+
+_PORT: Final = "behavior_tree"

@@ -1,0 +1,204 @@
+"""The trees that bt_navigator creates, and the files that it reads for them.
+
+One invariant: a file or folder that is not on this machine is a mistake only if the package that should have it is
+installed here: what a launch file or a build puts in its place is not known.
+"""
+
+from __future__ import annotations
+
+import os.path
+import re
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+from btq_lang.btcpp.listed_trees import listed_trees
+from btq_lang.catalog.nav2.navigator import NAVIGATORS, OWN_PACKAGE
+from btq_lang.diagnostics.model import Place
+from btq_lang.nav2.parameters import Parameters, Text, is_id
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
+from btq_lang.workspace.loader import absolute, matching, package_folder
+
+if TYPE_CHECKING:
+    ReadFile: TypeAlias = Callable[[str], str | None]
+
+
+class Located(Record):
+    """A file or folder that parameters name.
+
+    Attributes:
+        named: as it is written, and where; None: it counts because nothing is written.
+        path: where it is; None if it is not here.
+        problem: why it is not here, for a message; empty if nothing is wrong with that.
+        is_certain: whether it is not on the robot either.
+    """
+
+    named: Text | None
+    path: str | None = None
+    problem: str = ""
+    is_certain: bool = False
+
+
+class Skipped(Record):
+    """A file that bt_navigator passes over.
+
+    Attributes:
+        place: of its first tree, or of the one that another file has too.
+        id: of that tree, and where it is in the other file; None: no tree has an ID.
+        loses: whether that makes a difference: it has a tree that no other file has, or either file may be skipped.
+    """
+
+    place: Place
+    id: str | None
+    other: Place | None
+    loses: bool
+
+
+class Load(Record):
+    """A tree that bt_navigator creates, and what it reads for it.
+
+    Attributes:
+        label: the navigator, or the file of a tree that goals name.
+        tree: the file with the tree; None if an ID names it.
+        main: that ID.
+        files: that it registers, in order.
+        skipped: files that it passes over, with why.
+        refused: files that keep it from loading anything: nothing says which of their trees is the main one; the
+            place is that of the second tree.
+        folders: that it searches.
+    """
+
+    label: str
+    tree: Located | None
+    main: Text | None
+    files: tuple[str, ...]
+    skipped: tuple[Skipped, ...] = ()
+    refused: tuple[Place, ...] = ()
+    folders: tuple[Located, ...] = ()
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all that it reads is known."""
+        places = (*self.folders, *([self.tree] if self.tree is not None else ()))
+        return all(each.path is not None for each in places)
+
+
+def loads(
+    parameters: Parameters, distribution: str | None, root: str, of_goals: Iterable[str], read: ReadFile
+) -> tuple[Load, ...]:
+    """The trees that bt_navigator creates: by default, and for goals that name one.
+
+    Args:
+        root: a folder in the workspace with the packages.
+        of_goals: the files that goals name.
+        read: returns the text of a file.
+    """
+    folders = tuple(_folders(parameters, root)) if distribution == "lyrical" else None
+    found = []
+    for navigator, (parameter, default, _) in NAVIGATORS.items():
+        if navigator not in parameters.navigators:
+            continue
+        named = parameters.text(parameter)
+        if folders is not None and named is not None and is_id(named.text):
+            found.append(_searched(navigator, None, named, folders, read))
+            continue
+        tree = located(named, root) if named is not None else _of_nav2(f"behavior_trees/{default}", root)
+        found.append(_searched(navigator, tree, None, folders, read))
+    for path in of_goals:
+        found.append(_searched(os.path.basename(path), Located(None, path), None, folders, read))
+    return tuple(found)
+
+
+def located(named: Text, root: str, is_folder: bool = False) -> Located:
+    """The file or folder that a string names."""
+    lost: list[str] = []
+    packages: list[str] = []
+
+    def share(match: re.Match[str]) -> str:
+        folder = package_folder(match[1], root)
+        packages.extend([folder] if folder is not None else [])
+        lost.extend([match[1]] if folder is None else [])
+        return folder or ""
+
+    text = _SHARE.sub(share, named.text)
+    if lost:
+        return Located(named, None, f"neither the workspace nor AMENT_PREFIX_PATH has the package `{lost[0]}`")
+    if "$(" in text:
+        return Located(named)
+    if not os.path.isabs(text):
+        return Located(named, None, "a relative path counts from the folder in which bt_navigator runs")
+    path = absolute(text)
+    if os.path.isdir(path) if is_folder else os.path.isfile(path):
+        return Located(named, path)
+    for package in packages:
+        if _is_installed(package):
+            return Located(named, None, f"the package in {package} has no such {_KINDS[is_folder]}", True)
+        if (elsewhere := _elsewhere(package, path, is_folder)) is not None:
+            return Located(named, elsewhere)
+    return Located(named, None, f"this machine has no such {_KINDS[is_folder]}")
+
+
+def _folders(parameters: Parameters, root: str) -> Iterator[Located]:
+    given = parameters.texts("bt_search_directories")
+    if given is None:
+        yield _of_nav2("behavior_trees", root)
+    for each in given or ():
+        yield located(each, root, is_folder=True)
+
+
+def _of_nav2(inside: str, root: str) -> Located:
+    """A file or folder of Nav2 itself, which is not here without Nav2."""
+    package = package_folder(OWN_PACKAGE, root)
+    path = f"{package}/{inside}"
+    return Located(None, path if package is not None and os.path.exists(path) else None)
+
+
+def _is_installed(package: str) -> bool:
+    return os.path.basename(os.path.dirname(package)) == "share"
+
+
+def _elsewhere(package: str, path: str, is_folder: bool) -> str | None:
+    """The only file or folder of a name in a package that is not built: a build may install it elsewhere."""
+    found = {
+        os.path.dirname(each) if is_folder else each
+        for each in matching(package, f"**/{os.path.basename(path)}{'/*.xml' if is_folder else ''}")
+    }
+    return found.pop() if len(found) == 1 else None
+
+
+def _searched(
+    label: str, tree: Located | None, named: Text | None, folders: tuple[Located, ...] | None, read: ReadFile
+) -> Load:
+    """What is read for a tree: its file, then those in the folders; None: no folder is ever searched."""
+    first = tree.path if tree is not None else None
+    if folders is None:
+        return Load(label, tree, None, (first,) if first is not None else ())
+    paths = [first] if first is not None else []
+    for folder in folders:
+        paths += matching(folder.path, "*.xml") if folder.path is not None else ()
+    skipped: list[Skipped] = []
+    refused: list[Place] = []
+    owners: dict[str, Place] = {}
+    for path in dict.fromkeys(paths):
+        text = read(path) or ""
+        listed = listed_trees(text)
+        ids = listed.ids if listed is not None else ()
+        clash = next((each for each in ids if each in owners), None)
+        places = [Place(Span(*match.span()), path) for match in _TREE.finditer(text)] or [Place(Span(0, 0), path)]
+        if listed is not None and not listed.main and (len(ids) > 1 or (path == first and not ids)):
+            refused.append(places[min(1, len(places) - 1)])
+        elif not ids:
+            skipped.append(Skipped(places[0], None, None, text.find("<BehaviorTree") >= 0))
+        elif clash is not None:
+            at = next((each for each in places if f'"{clash}"' in text[each.span.start : each.span.end]), places[0])
+            is_certain = owners[clash].path == first  # else the other file may be the one that is skipped
+            skipped.append(Skipped(at, clash, owners[clash], not is_certain or not owners.keys() >= {*ids}))
+        else:
+            owners.update(zip(ids, [*places, *[places[-1]] * len(ids)], strict=False))
+    files = tuple(dict.fromkeys(each.path for each in owners.values() if each.path is not None))
+    return Load(label, tree, named, files, tuple(skipped), tuple(refused), folders)
+
+
+_SHARE: Final = re.compile(r"""\$\(find-pkg-share\s+["']?([\w-]+)["']?\s*\)""")
+_TREE: Final = re.compile(r"<BehaviorTree\b[^>]*>")
+_KINDS: Final = ("file", "folder")

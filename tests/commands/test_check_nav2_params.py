@@ -1,0 +1,180 @@
+"""Parameter files of Nav2 in `btq check`: in a factory of the project file, by an option, and among the paths."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+from shutil import rmtree
+
+import pytest
+from in_process import run_btq
+from nav2_robot import make_robot
+
+from btq_lang.nav2 import yaml_reader
+
+PARAMETERS = """\
+bt_navigator:
+  ros__parameters:
+    default_nav_to_pose_bt_xml: $(find-pkg-share my_robot)/trees/main.xml
+    plugin_lib_names: [nav2_spin_action_bt_node]
+    goal_blackboard_id: target
+"""
+MAIN = """\
+<root BTCPP_format="4" main_tree_to_execute="Main">
+  <BehaviorTree ID="Main">
+    <Sequence>
+      <ComputePathToPose goal="{target}" path="{path}"/>
+      <FollowPath path="{path}"/>
+      <DockRobot dock_pose="{targt}"/>
+      <SubTree ID="Dock"/>
+    </Sequence>
+  </BehaviorTree>
+</root>
+"""
+TWICE = (
+    "nav2_params.yaml:4:24: error[library-loaded-twice] Nav2 loads `nav2_spin_action_bt_node` by itself in Jazzy; "
+    "loaded twice, its nodes are registered twice"
+)
+UNLOADED = (
+    "nav2_params.yaml:4:5: error[unloaded-node] bt_navigator does not load the library of `DockRobot`: add "
+    "`opennav_dock_action_bt_node`"
+)
+TREE = "trees/main.xml:7:20: error[unknown-tree] unknown tree `Dock`; no file of its factory defines it"
+MISSPELT = (
+    "trees/main.xml:6:30: warning[misspelt-entry] nothing writes `targt`, which is read here; did you mean `target`?"
+)
+JAZZY = 'nodes = ["nav2-jazzy"]\n'
+FACTORY = '[[factory]]\nname = "navigation"\nnav2 = "nav2_params.yaml"\n'
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    make_robot(tmp_path)
+    for folder in ("same", "several"):
+        rmtree(tmp_path / folder)
+    (tmp_path / "trees/main.xml").write_text(MAIN)
+    (tmp_path / "nav2_params.yaml").write_text(PARAMETERS)
+    (tmp_path / "btq.toml").write_text(JAZZY + FACTORY)
+    return tmp_path
+
+
+def check(folder: Path, *arguments: str) -> list[str]:
+    _, out, err = run_btq("check", "--output-format", "concise", *arguments, cwd=folder)
+    return [line for line in (*out.splitlines()[:-1], *err.splitlines()) if "navigate.xml" not in line]
+
+
+def test_a_factory_of_the_project(robot: Path) -> None:
+    """`Dock` is in the folder, but Jazzy reads one file only; `target` is set by bt_navigator."""
+    assert check(robot) == [UNLOADED, TWICE, MISSPELT, TREE]
+    assert check(robot, "nav2_params.yaml") == [UNLOADED, TWICE]
+    assert check(robot, "trees/main.xml") == [MISSPELT, TREE]
+    (robot / "btq.toml").write_text(JAZZY)
+    assert check(robot) == []  # in the folder's XML the tree is found, and `target` is set by nothing that is known
+
+
+def test_an_option(robot: Path) -> None:
+    (robot / "btq.toml").write_text(JAZZY)
+    assert check(robot, "--nav2-params", "nav2_params.yaml") == [UNLOADED, TWICE, MISSPELT, TREE]
+    assert check(robot, "trees/dock.xml", "--nav2-params", "nav2_params.yaml") == [UNLOADED, TWICE]
+    assert check(robot, "nav2_params.yaml") == [UNLOADED, TWICE]
+    (robot / "trees/main.xml").unlink()
+    assert check(robot, "nav2_params.yaml") != []  # no tree need be there
+
+
+def test_lyrical_reads_the_folder(robot: Path) -> None:
+    parameters = PARAMETERS.replace("    goal_blackboard_id: target\n", "").replace("nav2_spin", "opennav_dock")
+    folder = "    bt_search_directories: [$(find-pkg-share my_robot)/trees]\n"
+    (robot / "nav2_params.yaml").write_text(parameters + folder)
+    (robot / "btq.toml").write_text(FACTORY)  # the parameters tell that this is Lyrical
+    assert check(robot) == []
+    (robot / "trees/dock.xml").unlink()
+    assert check(robot) == [TREE]
+
+
+def test_trees_that_goals_name(robot: Path) -> None:
+    (robot / "btq.toml").write_text(f'{JAZZY}{FACTORY}load = ["trees/dock.xml"]\n')
+    parameters = PARAMETERS.replace("main.xml", "navigate.xml").replace("[nav2_spin_action_bt_node]", "[]")
+    (robot / "nav2_params.yaml").write_text(parameters)
+    assert check(robot, "nav2_params.yaml") == [UNLOADED]
+
+
+def test_what_holds_for_other_files_holds_for_these(robot: Path) -> None:
+    assert check(robot, "--select", "unloaded-node") == [UNLOADED]
+    assert check(robot, "--ignore", "unloaded-node,unknown-tree") == [TWICE, MISSPELT]
+    assert check(robot, "--severity", "error") == [UNLOADED, TWICE, TREE]
+    more = (
+        '[[overrides]]\ninclude = ["*.yaml"]\nignore = ["unloaded-node"]\nrules = { library-loaded-twice = "hint" }\n'
+    )
+    (robot / "btq.toml").write_text(JAZZY + FACTORY + more)
+    assert check(robot, "nav2_params.yaml") == [TWICE.replace("error", "hint")]
+    (robot / "btq.toml").write_text(f'exclude = ["*.yaml"]\n{JAZZY}{FACTORY}')
+    assert check(robot) == [MISSPELT, TREE]
+
+
+def test_a_baseline(robot: Path) -> None:
+    assert check(robot, "--baseline", "known.json", "--update-baseline") == ["known.json: 4 added, 0 removed, 0 kept"]
+    assert check(robot, "--baseline", "known.json") == []
+    assert check(robot, "nav2_params.yaml", "--baseline", "known.json") == []
+    (robot / "nav2_params.yaml").write_text(PARAMETERS.replace("spin", "wait"))  # another line is another finding
+    assert check(robot, "--baseline", "known.json") == [UNLOADED, TWICE.replace("spin", "wait")]
+
+
+def test_since(robot: Path) -> None:
+    def git(*words: str) -> None:
+        identity = ("-c", "user.name=a", "-c", "user.email=a@b")
+        subprocess.run(["git", "-C", str(robot), *identity, *words], check=True, capture_output=True)
+
+    git("init")
+    git("add", ".")
+    git("commit", "-m", "first")
+    assert check(robot, "--since", "HEAD") == []
+    (robot / "trees/main.xml").write_text(f"{MAIN}\n")
+    assert check(robot, "--since", "HEAD") == [UNLOADED, TWICE, MISSPELT, TREE]
+    git("commit", "-am", "second")
+    (robot / "trees/dock.xml").write_text('<root BTCPP_format="4"/>\n')
+    assert check(robot, "--since", "HEAD") == []
+    (robot / "nav2_params.yaml").write_text(f"{PARAMETERS}# more\n")
+    assert check(robot, "--since", "HEAD") == [UNLOADED, TWICE, MISSPELT, TREE]
+    assert check(robot, "nav2_params.yaml", "--since", "nowhere") == [
+        "btq check: --since: git does not know the revision `nowhere`"
+    ]
+
+
+@pytest.mark.parametrize("form", ["full", "concise", "json", "sarif", "github", "gitlab", "junit"])
+def test_every_format_has_them(robot: Path, form: str) -> None:
+    code, out, _ = run_btq("check", "--output-format", form, cwd=robot)
+    assert code == 1
+    assert "unloaded-node" in out
+    assert "nav2_params.yaml" in out
+    if form == "json":
+        found = next(each for each in json.loads(out)["diagnostics"] if each["rule"] == "unloaded-node")
+        places = [(each["path"], *each["range"]["start"].values()) for each in (found, *found["related"])]
+        assert places == [("nav2_params.yaml", 4, 5), ("trees/main.xml", 6, 8)]
+
+
+def test_bad_yaml(robot: Path) -> None:
+    (robot / "nav2_params.yaml").write_text("bt_navigator:\n  ros__parameters: [\n    a: b: c\n")
+    message = "expected ',' or ']', but got ':'"
+    assert check(robot, "nav2_params.yaml") == [f"nav2_params.yaml:3:9: error[yaml-syntax] {message}"]
+    assert check(robot, "nav2_params.yaml", "--ignore", "yaml-syntax") != []  # nothing silences what cannot be read
+    (robot / "nav2_params.yaml").write_bytes(b"bt_navigator: {ros__parameters: {a: \xff}}\n")
+    assert "btq: nav2_params.yaml:1:37: this is not UTF-8: byte 0xff" in check(robot, "nav2_params.yaml")
+
+
+def test_no_file(robot: Path) -> None:
+    (robot / "nav2_params.yaml").unlink()
+    code, _, err = run_btq("check", cwd=robot)
+    assert (code, err) == (2, "btq: nav2_params.yaml: cannot be read: No such file or directory\n")
+    code, _, err = run_btq("check", "--nav2-params", "other.yml", "trees/dock.xml", cwd=robot / "..")
+    assert code == 2
+
+
+def test_without_the_extra(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing() -> None:
+        raise yaml_reader.YamlMissing
+
+    monkeypatch.setattr(yaml_reader, "_yaml", missing)
+    code, _, err = run_btq("check", cwd=robot)
+    message = "YAML is read with PyYAML; install it with pip install 'btq-lang[nav2]'"
+    assert (code, err) == (2, f"btq: nav2_params.yaml: {message}\n")
