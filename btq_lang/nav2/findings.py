@@ -98,7 +98,7 @@ def _places(found: Loaded) -> Iterator[Diagnostic]:
         is_folder = place is not load.tree
         what = "folder" if is_folder else "tree"
         message = f"cannot find the {what} `{place.named.text}`: {place.problem}"
-        notes: tuple[str, ...] = ()
+        notes: tuple[str, ...] = ("a launch file may put another value here",)
         if place.is_certain:
             effect = (
                 "without this folder bt_navigator loads no tree at all"

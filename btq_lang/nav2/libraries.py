@@ -7,9 +7,9 @@ from typing import Final
 
 from btq_lang.catalog.nav2.libraries import LIBRARIES
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
-from btq_lang.nav2.parameters import Parameters
+from btq_lang.nav2.parameters import Parameters, Text
 from btq_lang.util.spelling import did_you_mean, near
-from btq_lang.util.text import Span
+from btq_lang.util.text import Span, counted
 
 NAMES: Final = "plugin_lib_names"
 
@@ -38,14 +38,11 @@ class Libraries:
 
     def findings(self) -> Iterator[Diagnostic]:
         """What is wrong with the libraries that the parameters name."""
+        named = self._named or ()
+        yield from self._loaded_by_nav2([each for each in named if each.text in self._built_in])
         first: dict[str, Span] = {}
-        for each in self._named or ():
-            if each.text in self._built_in:
-                message = (
-                    f"Nav2 loads `{each.text}` by itself in {self._shown}; loaded twice, its nodes are registered twice"
-                )
-                yield Diagnostic("library-loaded-twice", each.span, message, notes=(_REFUSED,))
-            elif each.text in first:
+        for each in named:
+            if each.text in first and each.text not in self._built_in:
                 related = (Related(Place(first[each.text]), "first one"),)
                 message = f"`{each.text}` is named twice, so its nodes are registered twice"
                 yield Diagnostic("library-loaded-twice", each.span, message, related, (_REFUSED,))
@@ -53,6 +50,16 @@ class Libraries:
                 message = f"Nav2 has no library `{each.text}` in {self._shown}{meant}"
                 yield Diagnostic("unknown-library", each.span, message, notes=(_REFUSED,))
             first.setdefault(each.text, each.span)
+
+    def _loaded_by_nav2(self, named: list[Text]) -> Iterator[Diagnostic]:
+        """The libraries that Nav2 loads without a name: one finding, as a file of another distribution names all."""
+        if not named:
+            return
+        first, *others = named
+        more = f" and {counted(len(others), 'other')} of these libraries" if others else ""
+        message = f"Nav2 loads `{first.text}`{more} by itself in {self._shown}, so nodes are registered twice"
+        related = tuple(Related(Place(each.span), "this one too") for each in others[:_SHOWN])
+        yield Diagnostic("library-loaded-twice", first.span, message, related, (_REFUSED,))
 
     def _meant(self, name: str) -> str | None:
         """What a library that is not Nav2's in this distribution may mean, for a message; None: it is another's."""
@@ -67,4 +74,5 @@ class Libraries:
 
 
 _REPLACING: Final = "hi"  # the distributions in which the named libraries take the place of Nav2's own
+_SHOWN: Final = 3  # of many that are equally wrong
 _REFUSED: Final = "bt_navigator refuses to configure"

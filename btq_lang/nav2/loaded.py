@@ -125,6 +125,8 @@ def located(named: Text, root: str, is_folder: bool = False) -> Located:
         return Located(named, None, f"neither the workspace nor AMENT_PREFIX_PATH has the package `{lost[0]}`")
     if "$(" in text:
         return Located(named)
+    if not text:
+        return Located(named, None, "it is empty")
     if not os.path.isabs(text):
         return Located(named, None, "a relative path counts from the folder in which bt_navigator runs")
     path = absolute(text)

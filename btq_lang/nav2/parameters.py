@@ -6,12 +6,13 @@ One invariant: a parameter is found as ROS 2 finds it: below `bt_navigator`, in 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.nav2 import DISTRIBUTIONS
 from btq_lang.catalog.nav2.libraries import LIBRARIES
-from btq_lang.catalog.nav2.navigator import NAVIGATORS, PARAMETERS, RENAMED, outside_entries
+from btq_lang.catalog.nav2.navigator import NAVIGATORS, OWN_PACKAGE, PARAMETERS, RENAMED, outside_entries
 from btq_lang.nav2.yaml_reader import Value, read_yaml
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
@@ -75,12 +76,13 @@ class Parameters(Record):
         letters = {each[0] for each in DISTRIBUTIONS}
         for name in self.values:
             row = self._row(name)
-            letters &= {*PARAMETERS[row].of} if row is not None else letters
+            letters &= {*PARAMETERS[row].of} or letters if row is not None else letters
         for parameter, _, _ in NAVIGATORS.values():
             named = self.text(parameter)
             letters &= {"l"} if named is not None and is_id(named.text) else letters
         for _, plugin in self.plugins:
-            letters &= {*("i" if "/" in plugin.text else "jkl" if "::" in plugin.text else letters)}
+            package = plugin.text[len(OWN_PACKAGE) :] if plugin.text.startswith(OWN_PACKAGE) else ""
+            letters &= {*("i" if package.startswith("/") else "jkl" if package.startswith("::") else letters)}
         for library in self.texts("plugin_lib_names") or ():
             _, known, loaded = LIBRARIES.get(library.text, ((), "", ""))
             letters &= {*known} or letters
@@ -117,7 +119,7 @@ class Parameters(Record):
 
 def is_id(named: str) -> bool:
     """Whether Lyrical reads the name of a tree as its ID and not as a file; earlier ones know files only."""
-    return bool(named) and not named.endswith(".xml") and "$(" not in named and "/" not in named
+    return not named.endswith(".xml") and _ID.fullmatch(named) is not None
 
 
 def read_parameters(text: str) -> Parameters:
@@ -163,5 +165,6 @@ def _last(key: Value) -> str:
     return (key.text or "").rpartition("/")[2]
 
 
+_ID: Final = re.compile(r"[\w.-]+")  # what a launch file replaces is often a sentence
 _NODE: Final = "bt_navigator"
 _ADDING: Final = "jkl"  # the distributions that add the named libraries to their own

@@ -33,8 +33,8 @@ MAIN = """\
 </root>
 """
 TWICE = (
-    "nav2_params.yaml:4:24: error[library-loaded-twice] Nav2 loads `nav2_spin_action_bt_node` by itself in Jazzy; "
-    "loaded twice, its nodes are registered twice"
+    "nav2_params.yaml:4:24: error[library-loaded-twice] Nav2 loads `nav2_spin_action_bt_node` by itself in Jazzy, "
+    "so nodes are registered twice"
 )
 UNLOADED = (
     "nav2_params.yaml:4:5: error[unloaded-node] bt_navigator does not load the library of `DockRobot`: add "

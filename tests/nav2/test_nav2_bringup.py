@@ -52,7 +52,7 @@ _UNREAD = "Nav2 does not read `{}` in {}"
 EXPECTED = {
     "humble": ({}, set()),  # its trees have none of the nodes that Iron adds
     "iron": (
-        {"library-loaded-twice": 51, "nav2-parameter": 2},
+        {"library-loaded-twice": 1, "nav2-parameter": 2},
         {_CLASS.format("NavigateToPose"), _CLASS.format("NavigateThroughPoses")},
     ),
     "jazzy": (

@@ -8,6 +8,7 @@ import pytest
 from nav2_robot import findings_in, make_robot, shown
 
 HEAD = "bt_navigator:\n  ros__parameters:\n"
+QUOTE = "'"
 HERE = "$(find-pkg-share my_robot)"
 UNLOADED = "bt_navigator does not load the library of `{}`: add `{}`"
 DOCKING = "    plugin_lib_names: [opennav_dock_action_bt_node]\n"
@@ -43,9 +44,7 @@ def test_humble_and_iron_load_only_what_is_named(robot: Path) -> None:
     assert shown(robot, text, "humble") == shown(robot, text, "iron") == [missing]
     without = text.partition("    plugin")[0]
     assert shown(robot, without, "humble") == shown(robot, without, "lyrical") == []
-    twice = (
-        "Nav2 loads `nav2_follow_path_action_bt_node` by itself in Jazzy; loaded twice, its nodes are registered twice"
-    )
+    twice = "Nav2 loads `nav2_follow_path_action_bt_node` by itself in Jazzy, so nodes are registered twice"
     assert shown(robot, text, "jazzy") == [f"4:24 error library-loaded-twice {twice}"]
 
 
@@ -91,6 +90,8 @@ def test_a_build_may_install_a_file_elsewhere(robot: Path) -> None:
     [
         (f"{HERE}/trees/gone.xml", "this machine has no such file"),
         ("/home/robot/gone.xml", "this machine has no such file"),
+        ("''", "it is empty"),
+        ("see the launch file", "a relative path counts from the folder in which bt_navigator runs"),
         ("replace/me.xml", "a relative path counts from the folder in which bt_navigator runs"),
         (
             "$(find-pkg-share yours)/a.xml",
@@ -100,8 +101,8 @@ def test_a_build_may_install_a_file_elsewhere(robot: Path) -> None:
 )
 def test_what_is_not_here(robot: Path, value: str, problem: str) -> None:
     text = f"{HEAD}    default_nav_to_pose_bt_xml: {value}\n"
-    message = f"3:33 hint missing-nav2-tree cannot find the tree `{value}`: {problem}"
-    assert shown(robot, text, "jazzy") == [message]
+    message = f"3:33 hint missing-nav2-tree cannot find the tree `{value.strip(QUOTE)}`: {problem}"
+    assert shown(robot, text, "jazzy") == shown(robot, text, "lyrical") == [message]
 
 
 def test_what_nobody_can_know(robot: Path) -> None:
@@ -166,3 +167,21 @@ def test_the_tree_of_a_goal(robot: Path) -> None:
     message = "no file that bt_navigator reads has a tree `Navigat`; did you mean `Navigate`?"
     assert shown(robot, text, "lyrical") == [f"trip.xml:1:103 error missing-nav2-tree {message}"]
     assert shown(robot, text.replace("bt_search_directories", "bt_other"), "kilted") == []  # a file, perhaps
+
+
+def test_a_list_from_humble_is_one_finding(robot: Path) -> None:
+    names = [
+        f"nav2_{each}_bt_node"
+        for each in ("spin_action", "wait_action", "back_up_action", "spin_cancel", "wait_cancel")
+    ]
+    text = f"{HEAD}    plugin_lib_names: [{', '.join(names)}, my_own_bt_node]\n"
+    ((_, found),) = findings_in(robot, text, "jazzy")
+    message = "Nav2 loads `nav2_spin_action_bt_node` and 4 others of these libraries by itself in Jazzy, so nodes are"
+    assert found.message == f"{message} registered twice"
+    assert [text[each.place.span.start : each.place.span.end] for each in found.related] == names[1:4]
+
+
+def test_parameters_of_earlier_distributions(robot: Path) -> None:
+    text = f"{HEAD}    enable_groot_monitoring: true\n"
+    message = "3:5 warning nav2-parameter Nav2 does not read `enable_groot_monitoring` in Humble"
+    assert shown(robot, text, "humble") == [message]

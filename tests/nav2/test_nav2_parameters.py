@@ -75,6 +75,9 @@ NEW_CLASS = 'navigate_to_pose: {plugin: "nav2_bt_navigator::NavigateToPoseNaviga
         (("bt_search_directories: [/a]",), "lyrical"),
         (("default_nav_to_pose_bt_xml: Navigate",), "lyrical"),
         (("default_nav_to_pose_bt_xml: /a/b",), None),
+        (("default_nav_to_pose_bt_xml: see the launch file",), None),
+        (("navigators: [mine]", "mine: {plugin: my_robot/Mine}"), None),
+        (("enable_groot_monitoring: true", "bt_search_directories: [/a]"), "lyrical"),
         (("plugin_lib_names: [validate_path_action_bt_node]",), "lyrical"),  # which loads it by itself, too
         (("error_code_names: [a]", "bt_search_directories: [/a]"), None),  # of none
     ],

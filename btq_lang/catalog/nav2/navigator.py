@@ -95,6 +95,10 @@ class Parameter(Record):
 
 # By name; `*` is a navigator.
 PARAMETERS: Final[Mapping[str, Parameter]] = {
+    "default_bt_xml_filename": Parameter("", "write `default_nav_to_pose_bt_xml`"),  # of distributions before these
+    "enable_groot_monitoring": Parameter("", "write it below each navigator, from Jazzy on"),
+    "groot_zmq_publisher_port": Parameter("", "write `navigate_to_pose.groot_server_port`, from Jazzy on"),
+    "groot_zmq_server_port": Parameter("", "write `navigate_to_pose.groot_server_port`, from Jazzy on"),
     "navigators": Parameter("ijkl"),
     "*.plugin": Parameter("ijkl"),
     "error_code_names": Parameter("ij", "write `error_code_name_prefixes`, without `_error_code`", "kl"),
