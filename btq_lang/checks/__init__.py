@@ -13,6 +13,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_nodes.py   what another distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
+    resets.py, unread.py   traps of Nav2's nodes
     measures.py, clauses.py, conditions.py, bounds.py, limits.py, odds.py   requirements by themselves
     requirements.py, attached.py, qualities.py, repeated.py, prose.py, unused.py   names of requirements and qualities
     demanded.py, demands.py, budgets.py, signals.py, renewals.py, unenforced.py   requirements at their nodes
@@ -52,9 +53,11 @@ from btq_lang.checks import (
     reactive,
     repeated,
     requirements,
+    resets,
     scripts,
     trees,
     unreachable,
+    unread,
     unused,
     version3,
 )
@@ -176,6 +179,10 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         preconditions.while_skip_is_success,
         preconditions.skipped_condition,
         unreachable.unreachable_child,
+        resets.memory_lost,
+        resets.last_success_lost,
+        unread.default_instead,
+        unread.error_code_not_collected,
         moving.moving_on,
         measures.unresolved,
         demands.demands,

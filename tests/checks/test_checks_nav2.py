@@ -126,3 +126,129 @@ def test_nodes_of_version_4_are_not_in_version_3() -> None:
         "3:9 error newer-engine-node «Script» `Script` requires BehaviorTree.CPP 4; 3.8 does not have it"
     ]
     assert found(text, "jazzy") == []
+
+
+# ---- memory ----
+
+KEEPING = ("WhileDoElse", "    {}", "    IsStuck", "    IsStuck")
+LOSING = ("R?", "    {}", "    Wait")
+
+
+def within(lines: tuple[str, ...], *child: str) -> str:
+    """A tree of these lines, with a child for `{}`."""
+    found: list[str] = []
+    for line in lines:
+        margin = line[: len(line) - len(line.lstrip())]
+        found += [line] if "{}" not in line else [f"{margin}{each}" for each in child]
+    return tree(*found)
+
+
+def lost(text: str, distribution: str = "jazzy") -> list[str]:
+    return [line.split("» ")[1] for line in found(text, distribution) if "memory-lost" in line]
+
+
+def test_what_waits_for_a_change_is_kept_only_as_a_condition_that_is_asked_again() -> None:
+    never = "`GoalUpdated` never succeeds here: `{}` resets it before it ticks it again"
+    assert lost(within(KEEPING, "GoalUpdated")) == []
+    assert lost(within(LOSING, "GoalUpdated")) == [never.format("R?")]
+    for parent in ("PipelineSequence", "->", "?", "||", "IfThenElse", "RoundRobin", "RecoveryNode"):
+        assert lost(within((parent, "    {}", "    Wait"), "GoalUpdated")) == [never.format(parent)]
+    for parent in ("Inverter", "ForceSuccess", "Timeout (msec = 100)", "PathLongerOnApproach (path = {p})"):
+        assert lost(tree(parent, "    GoalUpdated")) == [never.format(parent.split()[0])]
+
+
+def test_a_throttle_is_kept_in_a_pipeline_before_its_last_child() -> None:
+    rate = ("RateController", "    Spin")
+    assert lost(within(KEEPING, *rate)) == []
+    assert lost(within(("PipelineSequence", "    {}", "    Wait"), *rate)) == []
+    nothing = "`RateController` holds nothing back here: `{}` resets it before it ticks it again"
+    assert lost(within(("PipelineSequence", "    Wait", "    {}"), *rate)) == [nothing.format("PipelineSequence")]
+    assert lost(within(("Inverter", "    {}"), *rate)) == [nothing.format("Inverter")]
+    assert lost(within(("RecoveryNode", "    {}", "    Wait"), *rate)) == [nothing.format("RecoveryNode")]
+    trigger = lost(within(("->", "    {}", "    Wait"), "SingleTrigger", "    Spin"))
+    assert trigger == ["`SingleTrigger` holds nothing back here: `->` resets it before it ticks it again"]
+
+
+def test_a_decorator_of_nav2_leaves_its_child_as_it_is_but_version_3_does_not() -> None:
+    text = tree("R->", "    GoalUpdater (input_goal = {goal} output_goal = {g})", "        GoalUpdated", "    Wait")
+    assert lost(text, "jazzy") == []
+    assert lost(text, "humble") == [
+        "`GoalUpdated` never succeeds here: `GoalUpdater` resets it before it ticks it again"
+    ]
+
+
+def test_of_nodes_that_are_not_known_nothing_is_said() -> None:
+    assert lost("Control Own\n" + tree("Own", "    GoalUpdated")) == []
+    assert lost(tree("GoalUpdated")) == []
+
+
+# ---- the last success ----
+
+
+def test_the_success_that_is_lost() -> None:
+    robin = ("RoundRobin", "    Spin", "    Wait")
+    message = (
+        "2:5 warning last-success-lost «RoundRobin» `RoundRobin` fails after its last child, `Wait`, even if that "
+        "succeeds"
+    )
+    assert found(tree(*robin), "lyrical") == [message]
+    assert found(tree(*robin), "kilted") == []
+    assert found(tree("RoundRobin (wrap_around = false)", *robin[1:]), "lyrical") == [message]
+    assert found(tree("RoundRobin (wrap_around = true)", *robin[1:]), "lyrical") == []
+    assert found(tree(*robin[:2], "    AlwaysFailure"), "lyrical") == []
+
+
+# ---- values that are never read ----
+
+
+def test_an_entry_that_is_read_before_it_is_written() -> None:
+    text = tree("PipelineSequence", "    DistanceController (distance = {d})", "        Spin", "    Wait")
+    message = (
+        "3:40 warning default-instead «{d}» `distance` of `DistanceController` is read only when the tree is created, "
+        "when nothing has written `d`"
+    )
+    assert found(text, "jazzy") == [message]
+    given = f"{text.replace('Main', 'Sub')}BehaviorTree Main\n    SubTree Sub (d = {{}})\nRoot Main\n"
+    assert found(given.replace("{}", "2.0"), "jazzy") == []
+    assert found(given.replace("{}", "{e}"), "jazzy") == [message]
+    assert found(given.replace("(d = {})", "(_autoremap = true)"), "jazzy") == [message]
+    through = given.replace("{}", "{e}").replace("Root Main", "BehaviorTree Top\n    SubTree Main (e = 2.0)\nRoot Top")
+    assert found(through, "jazzy") == []
+    declared = text.replace("BehaviorTree Main\n", "BehaviorTree Main\n    input d : double = 2.0\n")
+    assert found(declared, "jazzy") == []
+
+
+def test_bt_navigator_sets_some_entries_before() -> None:
+    assert found(tree("Spin (server_timeout = {bt_loop_duration})"), "jazzy") == []
+    assert len(found(tree("Spin (server_timeout = {later})"), "jazzy")) == 1
+    service = 'ClearEntireCostmap (service_name = "clear" server_timeout = {later})'
+    assert [len(found(tree(service), each)) for each in ("humble", "jazzy", "kilted", "lyrical")] == [1, 1, 0, 0]
+
+
+def test_a_number_that_must_not_be_negative() -> None:
+    text = tree("RecoveryNode (number_of_retries = -1)", "    Spin", "    Wait")
+    assert found(text, "iron") == []
+    assert found(text, "jazzy") == [
+        "2:39 warning default-instead «-1» `number_of_retries` of `RecoveryNode` must not be negative: the node cannot "
+        "read `-1`"
+    ]
+    assert [line.split()[2] for line in found(text.replace("-1", '"a"'), "jazzy")] == ["invalid-literal"]
+
+
+# ---- error codes ----
+
+
+def test_an_error_code_that_nobody_reads() -> None:
+    message = (
+        "2:27 hint error-code-not-collected «{{{}}}» nothing reads `{}`, and the result of a goal does not have it"
+    )
+    for name, where in {"spin_code": "ijkl", "spin_error_code": "ij", "smoother_error_code": ""}.items():
+        for distribution in ("iron", "jazzy", "kilted", "lyrical"):
+            expected = [message.format(name, name)] if distribution[0] in where else []
+            assert found(tree(f"Spin (error_code_id = {{{name}}})"), distribution) == expected
+    read = tree(
+        "->",
+        "    Spin (error_code_id = {code})",
+        '    AreErrorCodesPresent (error_code = {code} error_codes_to_check = "1")',
+    )
+    assert found(read, "jazzy") == []

@@ -55,6 +55,15 @@ ERROR_CODES: Final[Mapping[str, tuple[str, ...]]] = {
     "l": (*_PREFIXES, "follow_object"),
 }
 
+# The outputs of nodes that it collects through their entries, and the parameter that names these.
+COLLECTED: Final = frozenset(("error_code_id", "error_msg"))
+COLLECTING: Final[Mapping[str, str]] = {
+    **dict.fromkeys("ij", "error_code_names"),
+    **dict.fromkeys("kl", "error_code_name_prefixes"),
+}
+# What the parameters of nav2_bringup add to these, from which many projects start.
+OF_BRINGUP: Final = tuple(f"{prefix}_error_{part}" for prefix in ("route", "smoother") for part in ("code", "msg"))
+
 
 def outside_entries(
     distribution: str, codes: tuple[str, ...] | None = None, renamed: Mapping[str, str] | None = None

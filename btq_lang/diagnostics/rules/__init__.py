@@ -182,6 +182,12 @@ _TABLE = (
         "a precondition `_failureIf` or `_successIf` on a long-running node: it is checked only when the node starts",
     ),
     Rule("while-skip-is-success", _W, "`_while` halts the node and the parent continues as if it had succeeded"),
+    Rule("memory-lost", _W, "a node that needs its memory, below one that resets it before it ticks it again"),
+    Rule("last-success-lost", _W, "a node that fails after its last child, even if that succeeds"),
+    Rule("default-instead", _W, "a value that a node never reads, so that its default counts"),
+    Rule(
+        "error-code-not-collected", _H, "an error code in an entry that neither a node nor the result of a goal reads"
+    ),
     Rule("target-breaks", _E, "what the distribution of `--target` refuses"),
     Rule("target-differs", _W, "what means something else in the distribution of `--target`"),
     Rule("yaml-syntax", _E, "a parameter file that is not YAML"),

@@ -1,0 +1,90 @@
+"""What a node forgets because its parent resets it, and a success that is lost at its end.
+
+Sources: what BehaviorTree.CPP 3.8.7, 4.6.2 and 4.10.0 and the branches of Nav2 do with children that have ended.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.catalog.versions import is_before_4
+from btq_lang.checks.ports import adding_fix
+from btq_lang.checks.results import result
+from btq_lang.checks.statuses import SUCCESS
+from btq_lang.checks.view import View, called
+from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
+from btq_lang.syntax.tree import Entry, Node
+from btq_lang.workspace.node_names import wraps
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.kinds import Flow
+    from btq_lang.workspace.resolved import ResolvedNode
+
+_REMEMBERING: Final[tuple[Flow, ...]] = ("notices", "throttle", "throttle-or-fail", "pass-once")
+# They leave their child as it is when that has ended; in version 3, the engine itself resets the child of a decorator.
+_LEAVING: Final[frozenset[Flow]] = frozenset(("pass", "throttle", "throttle-or-fail", "pass-once", "pause"))
+# They tick children that have succeeded again, while a later one runs.
+_REPEATING: Final[frozenset[Flow]] = frozenset(("pipeline", "together"))
+
+
+def memory_lost(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A node that has an effect only if it is ticked again as it was left, below one that resets it before."""
+    for seen in view.seen.of_flow(*_REMEMBERING):
+        parent = seen.parent
+        if parent is None or not parent.flow or _keeps(view, parent, seen):
+            continue
+        effect = "never succeeds" if seen.flow == "notices" else "holds nothing back"
+        yield Diagnostic(
+            "memory-lost",
+            seen.node.head.span,
+            f"{seen.shown} {effect} here: {parent.shown} resets it before it ticks it again",
+            related=(Related(Place(parent.node.head.span), "resets it"),),
+            notes=(_kept_elsewhere(seen),),
+        )
+
+
+def last_success_lost(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A node that takes turns and fails after its last child, though that may succeed."""
+    for seen in view.seen.of_flow("rotate"):
+        last = seen.node.children[-1] if seen.node.children else None
+        port = seen.behavior.port_for("wraps") if seen.behavior is not None else None
+        if seen.behavior is None or port is None or not isinstance(last, Node):
+            continue
+        if wraps(seen.behavior, seen.node) is not False or not result(view, last).ever & SUCCESS:
+            continue
+        value = seen.node.attribute(port.name)
+        title, text = f"Let the first child follow the last one: `{port.name} = true`", f'{port.name} = "true"'
+        yield Diagnostic(
+            "last-success-lost",
+            seen.node.head.span,
+            f"{seen.shown} fails after its last child, {called(last)}, even if that succeeds",
+            related=(Related(Place(last.head.span), "its success is lost"),),
+            notes=(f"it succeeds with its last child only with `{port.name}`",),
+            fixes=(replace_fix(title, value.span, "true"),) if value else adding_fix(view, seen.node, title, text),
+        )
+
+
+def _keeps(view: View, parent: ResolvedNode, child: ResolvedNode) -> bool:
+    """Whether a node may tick a child again after its end without a reset."""
+    if parent.flow in _LEAVING:
+        return not (parent.category == "Decorator" and is_before_4(view.target))
+    if parent.flow == "choice":
+        return child.index == 0 and parent.behavior is not None and parent.behavior.reactive
+    if parent.flow in _REPEATING:
+        is_last = child.index == len(parent.node.children) - 1
+        return child.behavior is not None and child.behavior.memory == "success" and not is_last
+    return parent.flow == "resume"  # with a number instead of an entry, it begins there at every tick
+
+
+def _kept_elsewhere(seen: ResolvedNode) -> str:
+    """Where a node would keep its memory."""
+    choice = next(kind.tag for kind in BUILTINS.values() if kind.flow == "choice" and kind.reactive)
+    found = f"the condition of a {choice}"
+    if seen.behavior is not None and seen.behavior.memory == "success":
+        from btq_lang.catalog.nav2.nodes import NODES  # only for nodes of Nav2
+
+        pipeline = next(kind.tag for kind in NODES.values() if kind.flow == "pipeline")
+        found = f"a child of a {pipeline} before its last one, and {found}"
+    return f"not reset: {found}"

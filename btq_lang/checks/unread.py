@@ -1,0 +1,129 @@
+"""Values that a node never reads, and outputs that nothing reads, of the nodes of Nav2.
+
+Sources: the tables of `catalog/nav2`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from btq_lang.catalog.literals import check_literal, is_pointer
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nav2 import FILES
+from btq_lang.catalog.versions import is_before_4
+from btq_lang.checks import lookups
+from btq_lang.checks.entries import blackboards
+from btq_lang.checks.pointers import pointed_at, remaps_all
+from btq_lang.checks.view import View, declared_ports
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.syntax.tree import port_named
+from btq_lang.util.spelling import distance
+from btq_lang.workspace.queries import on_circle
+
+if TYPE_CHECKING:
+    from btq_lang.syntax.tree import Entry, Pair, Word
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.resolved import ResolvedNode
+    from btq_lang.workspace.workspace import Workspace
+
+
+def default_instead(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """An entry for an input that is read before anything can have written it, and a number that the node's code refuses
+    though the port's type does not: the node goes on with its default."""
+    distribution = view.look_up(lookups.distribution)
+    if distribution is None:
+        return
+    from btq_lang.catalog.nav2.read_once import is_read_once  # only for Nav2
+
+    for seen, name, tree in _of_nav2(view, distribution):
+        ports = {port.id.text for port in view.model_ports(seen) if port.id is not None}
+        for pair in seen.node.attributes:
+            port, value = pair.key.text, pair.value
+            key = pointed_at(port, value.text) if value is not None else None
+            if value is None:
+                continue
+            if key is not None and is_read_once(distribution, name, port, ports):
+                if not view.ask(_is_set_before, tree, key):
+                    what = f"is read only when the tree is created, when nothing has written `{key}`"
+                    yield _default(view, seen, pair, value, what)
+            elif _is_refused(view, seen, pair, value):
+                yield _default(view, seen, pair, value, f"must not be negative: the node cannot read `{value.text}`")
+
+
+def error_code_not_collected(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """An error code in an entry that neither a node reads nor the result of a goal has."""
+    distribution = view.look_up(lookups.distribution)
+    if distribution is None:
+        return
+    from btq_lang.catalog.nav2.navigator import COLLECTED, COLLECTING, OF_BRINGUP  # only for Nav2
+
+    for seen, _, tree in _of_nav2(view, distribution):
+        for pair in seen.node.attributes:
+            if pair.key.text not in COLLECTED or pair.value is None:
+                continue
+            name = pointed_at(pair.key.text, pair.value.text)
+            if name is None or name in OF_BRINGUP or view.ask(_is_read, tree, name):
+                continue
+            if any(distance(name, entry, 1) < 2 for entry, _ in view.look_up(lookups.outside_entries)):
+                continue  # it is misspelt, which is reported
+            message = f"nothing reads `{name}`, and the result of a goal does not have it"
+            note = f"bt_navigator puts into the result what its parameter `{COLLECTING[distribution[0]]}` names"
+            yield Diagnostic("error-code-not-collected", pair.value.span, message, notes=(note,))
+
+
+def _is_read(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
+    """Whether anything reads an entry, or the tree is given it."""
+    boards = store.ask(blackboards, viewpoint)
+    return boards.is_given(tree, name) or any(each.reads for each in boards.of(tree, name))
+
+
+def _of_nav2(view: View, distribution: str) -> Iterator[tuple[ResolvedNode, str, str]]:
+    """The nodes of Nav2 that have attributes, each with its ID and the name of its tree."""
+    for seen in view.seen.given:
+        if seen.of_model is None or seen.id is None or seen.tree is None:
+            continue
+        model = view.declaration(Kind.MODEL, seen.id.text)
+        if model is not None and model.path == FILES[distribution]:
+            yield seen, seen.id.text, seen.tree
+
+
+def _default(view: View, seen: ResolvedNode, pair: Pair, value: Word, what: str) -> Diagnostic:
+    declared = port_named(view.model_ports(seen), pair.key.text)
+    default = declared.default.text if declared is not None and declared.default is not None else ""
+    goes_on = f"the node goes on with its default, {default}" if default else "the node goes on without a value"
+    return Diagnostic("default-instead", value.span, f"`{pair.key.text}` of {seen.shown_kind} {what}", notes=(goes_on,))
+
+
+def _is_refused(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> bool:
+    """Whether the node reads a literal as another type than its port has, which refuses it."""
+    port = seen.behavior.port(pair.key.text) if seen.behavior is not None else None
+    target = view.target
+    if port is None or port.literal is None or is_pointer(value.text) or is_before_4(target):
+        return False  # version 3 takes -1 for a large number
+    return (
+        check_literal(port.type, value.text, target) is None
+        and check_literal(port.literal, value.text, target) is not None
+    )
+
+
+@on_circle(False)
+def _is_set_before(store: Store[Workspace], viewpoint: str, tree: str, key: str) -> bool:
+    """Whether an entry of a tree has a value when the tree is created: by a literal that a SubTree gives it, or that is
+    a default of the tree's port, or by the program."""
+    from btq_lang.catalog.nav2.read_once import SET_BEFORE  # only for Nav2
+    from btq_lang.requirements.nodes import callers  # only if there are such inputs
+
+    if key.removeprefix("@") in SET_BEFORE:
+        return True
+    port = port_named(declared_ports(View(store, viewpoint), tree), key)
+    if port is not None and port.default is not None and not is_pointer(port.default.text):
+        return True
+    for node in callers(store, viewpoint, tree):
+        value = node.node.attribute(key)
+        given = pointed_at(key, value.text) if value is not None else key if remaps_all(node) else None
+        if value is not None and given is None:
+            return True
+        if given is not None and node.tree is not None and store.ask(_is_set_before, viewpoint, node.tree, given):
+            return True
+    return False
