@@ -274,6 +274,13 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         metavar="FILE",
         help="samples as CSV or Parquet: seconds since the epoch, then one column for each signal or entry",
     )
+    kept = parser.add_argument_group("keeping verdicts")
+    kept.add_argument("--store", metavar="DIR", help="keep what is found in each log in a folder, as Parquet files")
+    label, robot = kept.add_mutually_exclusive_group(), kept.add_mutually_exclusive_group()
+    label.add_argument("--label", metavar="NAME", help="of these runs, such as a version")
+    label.add_argument("--label-by", choices=("folder",), help="label each log with the name of its folder")
+    robot.add_argument("--robot", metavar="NAME", help="whose logs these are; a bag's topics name the robot themselves")
+    robot.add_argument("--robot-by", choices=("folder",), help="name the robot of each log as its folder is named")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="judge logs in N processes; default: 1")
     parser.add_argument("--format", choices=VERDICT_FORMATS, help="default: as the file of -o ends, else table")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")

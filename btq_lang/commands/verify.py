@@ -16,6 +16,7 @@ from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import Files, usage_problem
 from btq_lang.commands.output import form_of, form_problem, is_coloured, terminal_width, write_output
 from btq_lang.commands.progress import Progress
+from btq_lang.commands.stored import opened
 from btq_lang.commands.verdict_formats import FORMATS, write
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.notes import foreign_runs
@@ -40,6 +41,7 @@ def run(options: Namespace) -> int:
     roots = (each.workspace.project.root for each in missions if each.workspace.project.evidence)
     home = find_project(next(roots, "."))
     sources, of_files = signal_sources(home.project, shown(home.path or home.project.root), missions, problems)
+    keeping = opened(options, problems)
     if not problems:
         form = form_of(options, FORMATS)
         with Progress(len(logs), "read") as progress:
@@ -52,6 +54,7 @@ def run(options: Namespace) -> int:
                 options.mission,
                 with_timelines=form == "html",
                 jobs=options.jobs,
+                keeping=keeping,
                 progress=lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"),
             )
         report = found.report

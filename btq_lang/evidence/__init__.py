@@ -18,6 +18,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     explain.py, explain_run.py   what led to a violation
     distribution.py, timeline.py   a histogram of values and a timeline of a run, for the page
     coverage.py, ticks.py   which nodes ran, how long they took, and how long they blocked the tree
+    store/         what was found in each log, kept and summarised
     verdicts.py    the report, as data
     sentences.py   a clause's result, and what to look at, in a sentence
     judging.py, parallel.py   one log judged by itself, by one of several processes, and all of them added up
@@ -34,6 +35,7 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import Series
+    from btq_lang.evidence.store.sets import Keeping
     from btq_lang.evidence.verdicts import Report
     from btq_lang.workspace.project_evidence import SignalSource
 
@@ -51,6 +53,7 @@ def verify(
     *,
     with_timelines: bool = False,
     jobs: int = 1,
+    keeping: Keeping | None = None,
     progress: Callable[[int, int], None] = lambda files, runs: None,
 ) -> Report:
     """Judge missions by logs.
@@ -63,13 +66,14 @@ def verify(
         of_files: the samples of those sources that are files.
         progress: called with how many logs have been read, and how many runs have been judged.
         with_timelines: include the run of the worst violation of each clause.
+        keeping: where what is found in each log is kept; None: nowhere.
         jobs: how many processes judge logs; the report is the same.
     """
     from btq_lang.evidence.judging import Judging, Means, judge
     from btq_lang.evidence.readers import samples_of_bags
 
     of_bags, remarks, bags = samples_of_bags(logs, sources)
-    means = Means(missions, samples, sources, of_files or {}, of_bags, remarks, shown, with_timelines)
+    means = Means(missions, samples, sources, of_files or {}, of_bags, remarks, shown, with_timelines, keeping)
     judging = Judging(means)
     wanted = [log for log in logs if log not in bags]
     if jobs > 1 and len(wanted) > 1:

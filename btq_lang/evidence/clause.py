@@ -27,6 +27,7 @@ from btq_lang.util.record import Record, replace
 if TYPE_CHECKING:
     from btq_lang.evidence.guards import Guard, Refusal
     from btq_lang.evidence.identity import Joined
+    from btq_lang.evidence.verdicts import Verdict
     from btq_lang.requirements.model import Applied, Claim, Event, Requirement, Subject
 
 
@@ -48,7 +49,7 @@ class ClauseFindings(Record):
 
     Attributes:
         paths: of its nodes.
-        missing: why nodes of it are not in a log; empty if all are.
+        missing: why it cannot be judged at all its nodes; empty if it can.
         has_run: whether one of its nodes has.
     """
 
@@ -88,8 +89,13 @@ class JudgedClause:
         self._paths: Final[dict[str, None]] = {}
         self._missing = ""
         self._has_run = self._waits = False
+        self._record: Callable[[Judgement, int, int, str], None] | None = None
         self.explain: Callable[[Judgement, str], tuple[Link, ...]] = lambda judgement, path: ()
         self.explain_run: Callable[[Judgement, OverRun, Nearby], tuple[Link, ...]] = lambda judgement, run, others: ()
+
+    def record(self, record: Callable[[Judgement, int, int, str], None]) -> None:
+        """Give each judgement to a function, with begin and end of what is judged, and the path of its node."""
+        self._record = record
 
     def join(self, joined: Joined, signals: Signals, history: History, nearby: Callable[[int], Nearby]) -> list[int]:
         """Begin another log; returns the nodes of it that the clause holds for.
@@ -142,7 +148,7 @@ class JudgedClause:
         if own or (VERBS[self.claim.verb].limits == "success" and VERBS[refusal.verb].operand == "condition"):
             self._has_run = True
             judgement = Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}")
-            self._tally.add(judgement, path, refusal.time, self.explain(judgement, path))
+            self._add(judgement, path, refusal.time, refusal.time, self.explain(judgement, path))
 
     def end_run(self, run: Run, root: Activation) -> None:
         """Judge the open run, which has ended.
@@ -171,8 +177,9 @@ class JudgedClause:
         for found, place, over in judged:
             if found is not None and found.holds is False:
                 chain = self.explain_run(found, over, place.others)
+                since = found.since if found.since is not None else root.begin
                 found = Judgement(False, found.at, found.sentence, found.measure)
-                self._tally.add(found, place.path, root.end, chain)
+                self._add(found, place.path, since, root.end, chain)
             else:
                 self._count(found, root, place.path)
 
@@ -206,7 +213,13 @@ class JudgedClause:
             self._tally.cut_off += of.outcome == "O"
         else:
             chain = self.explain(judgement, path) if judgement.holds is False else ()
-            self._tally.add(judgement, path, of.end, chain)
+            since = judgement.since if judgement.since is not None else of.begin
+            self._add(judgement, path, since, of.end, chain)
+
+    def _add(self, judgement: Judgement, path: str, begin: int, end: int, chain: tuple[Link, ...]) -> None:
+        self._tally.add(judgement, path, end, chain)
+        if self._record is not None:
+            self._record(judgement, begin, end, path)
 
     def _own(self, joined: Joined) -> list[tuple[int, ...]]:
         """The nodes of a log that it holds for, grouped: the nodes of a group are judged as one."""
@@ -280,7 +293,7 @@ class JudgedClause:
 
     def findings(self) -> ClauseFindings:
         """What a verdict needs of the logs so far."""
-        return ClauseFindings(self._tally, tuple(self._paths), self._missing, self._has_run)
+        return ClauseFindings(self._tally, tuple(self._paths), self._not_judged or self._missing, self._has_run)
 
     def add(self, findings: ClauseFindings, runs: int) -> None:
         """Add what was found in later logs.
@@ -301,27 +314,12 @@ class JudgedClause:
     def verdict(self) -> ClauseVerdict:
         """The verdict on all judgements so far."""
         tally = self._tally.result()
-        verdict = tally.verdict()
-        if verdict == SATISFIED and not self._has_run:
-            verdict = NEVER  # the node was never exercised
-        why = ""
-        if self._not_judged or (self._missing and verdict != VIOLATED):
-            verdict, why = UNKNOWN, self._not_judged or self._missing
-        elif verdict in (UNKNOWN, UNDECIDED):
-            why = tally.why
-        elif verdict == NEVER:
-            why = "the log ends before it does" if tally.cut_off else "it did not start in any run"
-            if not tally.cut_off and self._has_run:
-                why = "nothing that it is about happened in any run"
+        verdict, why = verdict_of(tally, self._not_judged or self._missing, self._has_run)
         goal = self.requirement.goal
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
         is_once_a_run = isinstance(self._subject, Total) or (is_of_run and len(self._paths) == 1)
-        parts = [self.claim.text, *(scope.text for scope in self.requirement.scopes)]
-        parts += [self.requirement.odds.text] if self.requirement.odds is not None else []
-        parts += [self.requirement.window.text] if self.requirement.window is not None else []
-        parts += [f"goal {goal.text}"] if goal is not None else []
         return ClauseVerdict(
-            text=" ".join(parts),
+            text=self.text,
             path=", ".join(self._paths),
             of=self.claim.text.partition(f" {self.claim.verb} ")[0] if isinstance(self._subject, Span | Total) else "",
             verdict=verdict,
@@ -338,6 +336,31 @@ class JudgedClause:
             why=why,
             histogram=tally.distribution.histogram(goal if isinstance(goal, Value) else None),
         )
+
+    @property
+    def text(self) -> str:
+        """The clause as typed, with all that counts for its requirement."""
+        requirement = self.requirement
+        of_all = (*requirement.scopes, requirement.odds, requirement.window)
+        parts = [self.claim.text, *(each.text for each in of_all if each is not None)]
+        return " ".join([*parts, f"goal {requirement.goal.text}"] if requirement.goal is not None else parts)
+
+
+def verdict_of(tally: Tally, missing: str, has_run: bool) -> tuple[Verdict, str]:
+    """The verdict on a clause, and why it is unknown, undecided or never exercised; else empty.
+
+    Args:
+        missing: why it cannot be judged at all its nodes; empty if it can.
+        has_run: whether one of its nodes has.
+    """
+    verdict = tally.verdict()
+    if missing and verdict != VIOLATED:
+        return UNKNOWN, missing
+    if verdict == NEVER or (verdict == SATISFIED and not has_run):
+        if tally.cut_off:
+            return NEVER, "the log ends before it does"
+        return NEVER, "nothing that it is about happened in any run" if has_run else "it did not start in any run"
+    return verdict, tally.why if verdict in (UNKNOWN, UNDECIDED) else ""
 
 
 def _events(claim: Claim, subject: Subject | None) -> tuple[Event, ...]:

@@ -22,12 +22,21 @@ from btq_lang.evidence.signals import Signals
 from btq_lang.evidence.tally import Run
 from btq_lang.evidence.ticks import timed
 from btq_lang.evidence.timeline import Timelines
-from btq_lang.evidence.verdicts import VIOLATED, ClauseVerdict, MissionVerdicts, RequirementVerdict, Source, worst_of
+from btq_lang.evidence.verdicts import (
+    OUTCOMES,
+    VIOLATED,
+    ClauseVerdict,
+    MissionVerdicts,
+    RequirementVerdict,
+    Source,
+    worst_of,
+)
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate, Joined
     from btq_lang.evidence.model import Outcome, Series, Session
+    from btq_lang.evidence.store.rows import Part
     from btq_lang.evidence.verdicts import Timeline
 
 
@@ -52,14 +61,20 @@ class MissionEvaluation:
     """Judges a mission's requirements while its logs are read."""
 
     def __init__(
-        self, mission: Candidate, with_timelines: bool = False, ran: Callable[[int], None] = lambda number: None
+        self,
+        mission: Candidate,
+        with_timelines: bool = False,
+        ran: Callable[[int], None] = lambda number: None,
+        part: Part | None = None,
     ) -> None:
         """
         Args:
             with_timelines: keep the runs that broke clauses worst.
             ran: called with the number of each run after it is judged.
+            part: writes all that is found.
         """
         self._ran: Final = ran
+        self._part: Final = part
         self.mission: Final = mission
         found = mission.requirements
         clauses = [
@@ -77,7 +92,7 @@ class MissionEvaluation:
         ]
         self._clauses: Final = clauses
         self._sources: Final[list[Source]] = []
-        self._outcomes: Final[dict[Outcome, int]] = dict.fromkeys(_OUTCOMES, 0)
+        self._outcomes: Final[dict[Outcome, int]] = dict.fromkeys(OUTCOMES, 0)
         self._coverage: Final = Coverage()
         self._contexts: Final = Contexts(found.contexts)
         self._timelines: Final = Timelines() if with_timelines else None
@@ -105,6 +120,8 @@ class MissionEvaluation:
         for clause in self._clauses:
             clause.explain = partial(explainer.chain, clause.claim)
             clause.explain_run = partial(explainer.over_run.chain, clause.judged)
+        if self._part is not None:
+            self._part.join(joined, self._clauses)
         self._contexts.join(joined, signals, history)
         self._coverage.expect(tree, joined.written())
         begin: int | None = None
@@ -117,6 +134,8 @@ class MissionEvaluation:
             history.add(activation)
             if self._timelines is not None:
                 self._timelines.see(activation)
+            if self._part is not None:
+                self._part.see(activation)
             if activation.uid in guards.concerned:  # few nodes are
                 for refusal in guards.refused(activation):
                     clauses, path, _ = judged[refusal.uid]
@@ -133,9 +152,13 @@ class MissionEvaluation:
                 begin = activation.begin if begin is None else begin
                 end = activation.end
                 self._outcomes[activation.outcome] += 1
-                self._coverage.end_run(run.number, origin.uid if origin is not None else None)
+                began = origin.uid if origin is not None else None
+                repeats = self._coverage.retries.now, self._coverage.recoveries.now
+                self._coverage.end_run(run.number, began)
                 for clause in self._clauses:
                     clause.end_run(run, activation)
+                if self._part is not None:
+                    self._part.end_run(activation, *repeats, began)
                 self._contexts.end_run(activation)
                 history.clear()
                 explainer.end_run()
@@ -160,6 +183,11 @@ class MissionEvaluation:
             )
         )
         return runs
+
+    def write_clauses(self) -> None:
+        """Write the clauses, when the log has been read."""
+        if self._part is not None:
+            self._part.end(self._clauses)
 
     def findings(self) -> Findings:
         """What the verdicts need of the logs so far; refers to no text, and may go to another process."""
@@ -212,7 +240,7 @@ class MissionEvaluation:
                 for name, clauses in by_requirement.items()
                 if clauses
             ),
-            outcomes=tuple((_OUTCOMES[outcome], number) for outcome, number in self._outcomes.items() if number),
+            outcomes=tuple((OUTCOMES[outcome], number) for outcome, number in self._outcomes.items() if number),
             nodes=self._coverage.summary(found.nodes.all),
             contexts=self._contexts.summary(),
             retries=self._coverage.retries.summary(),
@@ -239,6 +267,3 @@ class MissionEvaluation:
             end=source.end if source.end is not None else last.end,
             remarks=tuple(dict.fromkeys((*last.remarks, *source.remarks))),
         )
-
-
-_OUTCOMES: Final[dict[Outcome, str]] = {"S": "succeeded", "F": "failed", "H": "halted", "O": "interrupted"}

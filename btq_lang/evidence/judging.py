@@ -21,6 +21,8 @@ from btq_lang.util.record import Record, replace
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import Series
+    from btq_lang.evidence.store.rows import Rows
+    from btq_lang.evidence.store.sets import Keeping
     from btq_lang.workspace.project_evidence import SignalSource
 
 
@@ -33,6 +35,7 @@ class Means(Record):
         of_files, of_bags: the samples of those sources, by signal, in files and in bags without a log of a tree.
         remarks: notes about these bags.
         shown: gives a path as people read it.
+        keeping: where what is found is kept; None: nowhere.
     """
 
     missions: Sequence[Candidate]
@@ -43,6 +46,7 @@ class Means(Record):
     remarks: Sequence[str]
     shown: Callable[[str], str]
     with_timelines: bool
+    keeping: Keeping | None
 
 
 class JudgedLog(Record):
@@ -50,27 +54,44 @@ class JudgedLog(Record):
 
     Attributes:
         runs: how many were judged.
-        findings: by the path of the mission.
+        findings: with the path of the mission, for each of its robots.
         foreign: the runs of other missions.
-        problem: why the log, or the rest of it, could not be read; empty if it could.
+        problems: why the log, or the rest of it, could not be read or kept.
     """
 
     runs: int
-    findings: dict[str, Findings]
+    findings: tuple[tuple[str, Findings], ...]
     foreign: tuple[Foreign, ...]
-    problem: str
+    problems: tuple[str, ...]
 
 
 def judge(log: str, means: Means, ran: Callable[[int], None] = lambda number: None) -> JudgedLog:
-    """Judge the runs of a log.
+    """Judge the runs of a log, and keep what was found in the store, if there is one.
 
     Args:
         ran: called with the number of each run after it is judged.
     """
+    if means.keeping is None:
+        return _judged(log, means, ran, None)
+    from btq_lang.evidence.store.sets import NotKept, draft
+
+    found: JudgedLog | None = None
+    try:
+        with draft(means.keeping, log) as written:
+            found = _judged(log, means, ran, written.rows)
+            if found.runs and not found.problems:
+                written.publish(means.shown(log))
+    except NotKept as error:
+        problem = f"{means.shown(log)}: {error}"
+        found = replace(found, problems=(problem,)) if found is not None else JudgedLog(0, (), (), (problem,))
+    return found
+
+
+def _judged(log: str, means: Means, ran: Callable[[int], None], rows: Rows | None) -> JudgedLog:
     missions, shown = means.missions, means.shown
-    evaluations: dict[str, MissionEvaluation] = {}
+    evaluations: dict[tuple[str, str], MissionEvaluation] = {}
     foreign: dict[tuple[str, str], Foreign] = {}
-    problem = ""
+    problems: tuple[str, ...] = ()
     runs = 0
     try:
         for source, session, joined in joined_sessions(read(log, means.sources), missions, shown(log)):
@@ -81,18 +102,23 @@ def judge(log: str, means: Means, ran: Callable[[int], None] = lambda number: No
                 foreign[source, joined] = replace(what, runs=what.runs + number)
             else:
                 mission = joined.mission
-                if mission.path not in evaluations:
-                    evaluations[mission.path] = MissionEvaluation(mission, means.with_timelines, ran)
+                key = mission.path, session.robot
+                if key not in evaluations:
+                    robot = session.robot or (means.keeping.robot_of(log) if means.keeping is not None else "")
+                    part = rows.part(mission.name, robot) if rows is not None else None
+                    evaluations[key] = MissionEvaluation(mission, means.with_timelines, ran, part)
                 signals = mission.requirements.signals.values()
                 given = by_signal(signals, means.samples, means.of_files, session.signals, means.of_bags)
                 session.remarks.extend(means.remarks)
-                runs += evaluations[mission.path].read(session, joined, given, runs + 1, source)
+                runs += evaluations[key].read(session, joined, given, runs + 1, source)
     except NotALog as error:
-        problem = f"{shown(log)}: {error}"
+        problems = (f"{shown(log)}: {error}",)
     except OSError as error:
-        problem = f"{shown(log)}: cannot be read: {error.strerror or error}"
-    findings = {path: evaluation.findings() for path, evaluation in evaluations.items()}
-    return JudgedLog(runs, findings, tuple(foreign.values()), problem)
+        problems = (f"{shown(log)}: cannot be read: {error.strerror or error}",)
+    for evaluation in evaluations.values():
+        evaluation.write_clauses()
+    findings = tuple((path, evaluation.findings()) for (path, _), evaluation in evaluations.items())
+    return JudgedLog(runs, findings, tuple(foreign.values()), problems)
 
 
 class Judging:
@@ -110,14 +136,13 @@ class Judging:
 
     def add(self, log: JudgedLog) -> None:
         """Add the next log."""
-        for path, findings in log.findings.items():
+        for path, findings in log.findings:
             self._evaluations[path].add(findings, self.runs)
         self.runs += log.runs
         for each in log.foreign:
             known = self._foreign.get((each.file, each.of))
             self._foreign[each.file, each.of] = replace(known, runs=known.runs + each.runs) if known else each
-        if log.problem:
-            self._problems.append(log.problem)
+        self._problems.extend(log.problems)
 
     def report(self) -> Report:
         """All that was found."""

@@ -158,6 +158,7 @@ class Session:
         signals: samples of signals that the project file finds in the log, by signal.
         keeping: the nodes that start a child again without resetting it; complete when the transitions have been read.
         remarks: notes about the file, complete when the transitions have been read.
+        robot: its name, if the log has one.
     """
 
     def __init__(
@@ -167,8 +168,10 @@ class Session:
         samples: dict[str, Series] | None = None,
         remarks: list[str] | None = None,
         signals: Mapping[str, Series] | None = None,
+        robot: str = "",
     ) -> None:
         self.tree: Final = tree
+        self.robot: Final = robot
         self.transitions: Final = transitions
         self.samples: Final = {} if samples is None else samples
         self.signals: Final[Mapping[str, Series]] = {} if signals is None else signals
@@ -181,6 +184,7 @@ class NamedLog(Record):
 
     Attributes:
         topic: where it was published; empty if the file has only one.
+        robot: the namespace of that topic.
         nodes: uid and name of each node; the uid is 0 where the log has none.
         times, changed, statuses: of each status change its time, the index of its node, and its new status.
         trees: the trees that the file holds beside the changes, in their order.
@@ -189,6 +193,7 @@ class NamedLog(Record):
     """
 
     topic: str
+    robot: str
     nodes: Sequence[tuple[int, str]]
     times: array[int]
     changed: array[int]

@@ -61,7 +61,7 @@ def _sessions(log: NamedLog, missions: Sequence[Candidate]) -> Iterator[tuple[Se
         else:
             uids = trees.uids(joined.tree)
             tree = joined.tree
-        yield Session(tree, _transitions(log, begin, end, uids), {}, [*log.remarks], log.signals), joined
+        yield Session(tree, _transitions(log, begin, end, uids), {}, [*log.remarks], log.signals, log.robot), joined
 
 
 def _pieces(log: NamedLog, roots: Set[int]) -> Iterator[tuple[int, int]]:

@@ -6,7 +6,7 @@ import multiprocessing
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.judging import JudgedLog, judge
 
@@ -21,12 +21,13 @@ _means: Means | None = None
 
 def judge_all(logs: Sequence[str], means: Means, jobs: int) -> Iterator[JudgedLog]:
     """What was found in each log, in order; if a process is ended from outside, a problem instead of the rest."""
-    context = multiprocessing.get_context(START)
+    # DuckDB, which may have threads here already, does not work in a forked process.
+    context = multiprocessing.get_context(START if means.keeping is None else "spawn")
     with ProcessPoolExecutor(min(jobs, len(logs)), context, _begin, (means,)) as pool:
         try:
             yield from pool.map(_judge, logs)
         except BrokenProcessPool:
-            yield JudgedLog(0, {}, (), "a process that judges logs was ended from outside, perhaps for lack of memory")
+            yield JudgedLog(0, (), (), (_ENDED,))
 
 
 def _begin(means: Means) -> None:
@@ -37,3 +38,6 @@ def _begin(means: Means) -> None:
 def _judge(log: str) -> JudgedLog:
     assert _means is not None, "every process begins with _begin"
     return judge(log, _means)
+
+
+_ENDED: Final = "a process that judges logs was ended from outside, perhaps for lack of memory"

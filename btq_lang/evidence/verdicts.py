@@ -23,6 +23,7 @@ UNDECIDED: Final = "undecided"
 SATISFIED: Final = "satisfied"
 NEVER: Final = "never exercised"
 WORST_FIRST: Final[tuple[Verdict, ...]] = (VIOLATED, UNKNOWN, UNDECIDED, SATISFIED, NEVER)
+OUTCOMES: Final[dict[Outcome, str]] = {"S": "succeeded", "F": "failed", "H": "halted", "O": "interrupted"}
 
 
 class Link(Record):

@@ -27,6 +27,7 @@ from btq_lang.workspace.loader import IS_SPECIAL, absolute, collect, is_special,
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Series
+    from btq_lang.evidence.store.sets import Keeping
     from btq_lang.evidence.verdicts import Report
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.project_evidence import SignalSource
@@ -118,6 +119,7 @@ def judged(
     *,
     with_timelines: bool = False,
     jobs: int = 1,
+    keeping: Keeping | None = None,
     progress: Callable[[int, int], None] = lambda files, runs: None,
 ) -> Verification:
     """Judge missions, and add notes on what limits the verdicts.
@@ -125,11 +127,20 @@ def judged(
     Args:
         samples: the file that they are from, and the samples by signal or entry.
         requested: the missions as the command line names them; none: all that are known.
-        sources, of_files, with_timelines, jobs, progress: as in `verify`.
+        sources, of_files, with_timelines, jobs, keeping, progress: as in `verify`.
     """
     file, series = samples
     report = verify(
-        logs, missions, series, shown, sources, of_files, with_timelines=with_timelines, jobs=jobs, progress=progress
+        logs,
+        missions,
+        series,
+        shown,
+        sources,
+        of_files,
+        with_timelines=with_timelines,
+        jobs=jobs,
+        keeping=keeping,
+        progress=progress,
     )
     read_from = [(file, each) for each in series.values()]
     read_from += [(source.file, of_files[source.signal]) for source in sources if source.signal in of_files]

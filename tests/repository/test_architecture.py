@@ -43,7 +43,7 @@ ROWS = (
 )
 ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
 READS_THE_DISK = {"workspace/loader.py", "diagnostics/rules/__init__.py", "preview/__init__.py"}
-READS_LOGS = "evidence/readers/"
+READS_LOGS = ("evidence/readers/", "evidence/store/")
 # Which rooms know a package of others.
 ONLY_IN = {
     "lxml": {"btcpp"},

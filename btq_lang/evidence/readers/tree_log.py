@@ -64,9 +64,8 @@ def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[NamedLog]:
     for topic, changes in logs.items():
         own = trees.get(_namespace(topic))
         signals = topics.series(_namespace(topic), changes.clock())
-        yield changes.log(
-            topic if len(logs) > 1 else "", [*own.values()] if own else every, signals, [*remarks, *topics.remarks]
-        )
+        named = [*own.values()] if own else every
+        yield changes.log(topic, len(logs) > 1, named, signals, [*remarks, *topics.remarks])
         topics.remarks.clear()
 
 
@@ -128,7 +127,14 @@ class _Changes:
         """The clock on which the changes are stamped."""
         return Clock(self._received, self._newest)
 
-    def log(self, topic: str, trees: list[LoggedTree], signals: dict[str, Series], remarks: list[str]) -> NamedLog:
+    def log(
+        self,
+        topic: str,
+        is_one_of_several: bool,
+        trees: list[LoggedTree],
+        signals: dict[str, Series],
+        remarks: list[str],
+    ) -> NamedLog:
         """The log of the added changes, in order."""
         import numpy  # `rosbags` needs it too
 
@@ -137,7 +143,8 @@ class _Changes:
         nodes = numpy.frombuffer(self._nodes, numpy.uint32)[order]
         statuses = numpy.frombuffer(self._statuses, numpy.uint8)[order]
         return NamedLog(
-            topic=topic,
+            topic=topic if is_one_of_several else "",
+            robot=_namespace(topic).strip("/"),
             nodes=[*self._index],
             times=array("q", times.tobytes()),
             changed=array("I", nodes.tobytes()),

@@ -1,0 +1,11 @@
+"""The evidence store: the verdicts of many logs, kept in a folder as Parquet files and summarised by SQL.
+
+One invariant: of each log there is one set of files, whole or not at all, named by the SHA-256 of the log.
+
+    tables.py      the tables and their columns
+    rows.py        what is found in a log, as rows of text, while it is judged
+    sets.py        a log's set of files, published at once; what writers that were killed leave is removed
+    engine.py      DuckDB, or another engine, asked for rows
+    queries.py     the questions, as SQL
+    summary.py     the report of a whole store
+"""

@@ -1,0 +1,85 @@
+"""DuckDB, which writes the files of a set and answers questions about a store.
+
+One invariant: nothing else imports DuckDB for the store, and any failure is a NoEngine with one sentence.
+"""
+
+from __future__ import annotations
+
+import os
+from functools import lru_cache
+from typing import Any, Final
+
+from btq_lang.evidence.store.rows import file_of
+from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, ROWS
+
+
+class NoEngine(Exception):
+    """The engine is missing, or cannot do what it should; the message says why."""
+
+
+def write_parquet(folder: str, log: str, label: str) -> None:
+    """Write the Parquet files of a set from its rows.
+
+    Raises:
+        NoEngine: DuckDB is missing, or fails.
+    """
+    duckdb = imported()
+    cursor = _writer(os.getpid()).cursor()
+    try:
+        for table in ROWS:
+            cursor.execute(_copy(folder, table, {"log": log, "label": label}))
+    except duckdb.Error as error:
+        raise NoEngine(" ".join(str(error).split())) from error
+    finally:
+        cursor.close()
+
+
+def imported() -> Any:
+    """The module `duckdb`.
+
+    Raises:
+        NoEngine: it is not installed.
+    """
+    try:
+        import duckdb
+    except ImportError as error:
+        raise NoEngine(
+            "a store is written and read with duckdb; install it with pip install 'btq-lang[evidence]'"
+        ) from error
+    return duckdb
+
+
+def quoted(text: str) -> str:
+    """A text as SQL."""
+    return "'" + text.replace("'", "''") + "'"
+
+
+@lru_cache(1)
+def _writer(process: int) -> Any:
+    """A connection of this process: one that was made before a fork is not for both."""
+    return imported().connect(config={"threads": 1})
+
+
+def _copy(folder: str, table: str, common: dict[str, str]) -> str:
+    """The statement that writes a table, in the order of its rows."""
+    columns = [f"{quoted(common[name])} AS {name}" for name in COMMON]
+    sources = _rows(folder, table)
+    if table == "verdicts":  # a join would change the order
+        lists = ", ".join(f"list({name} ORDER BY clause_index) AS {name}s" for name in OF_CLAUSE)
+        sources += f", (SELECT {lists} FROM {_rows(folder, 'clauses')}) AS names"
+        columns += [f"coalesce(names.{name}s[verdicts.clause_index + 1], '') AS {name}" for name in OF_CLAUSE]
+    for name in ROWS[table]:
+        if name != "clause_index":
+            columns.append(f"coalesce({name}, '') AS {name}" if name in OF_CLAUSE else name)
+    target = quoted(os.path.join(folder, f"{table}.parquet"))
+    return f"COPY (SELECT {', '.join(columns)} FROM {sources}) TO {target} ({_OPTIONS})"
+
+
+def _rows(folder: str, table: str) -> str:
+    """The rows of a table, as they are in its text."""
+    types = ", ".join(f"{quoted(name)}: {quoted(kind)}" for name, kind in ROWS[table].items())
+    form = "header = false, auto_detect = false, delim = ',', quote = '\"', escape = '\"', nullstr = ''"
+    return f"read_csv({quoted(file_of(folder, table))}, columns = {{{types}}}, {form}, parallel = false) AS {table}"
+
+
+_OPTIONS: Final = "FORMAT parquet, COMPRESSION zstd, PARQUET_VERSION v2"

@@ -1,0 +1,175 @@
+"""What is found in a log, as rows of text, written while the log is judged.
+
+One invariant: the rows depend on nothing but what was found, not on the name of the log, so that a log that is judged
+again has the same rows unless something is found that is new.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import os
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from btq_lang.evidence.store.tables import ROWS
+from btq_lang.evidence.verdicts import OUTCOMES, SATISFIED, UNKNOWN, VIOLATED
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.clause import JudgedClause
+    from btq_lang.evidence.identity import Joined
+    from btq_lang.evidence.model import Activation
+    from btq_lang.evidence.verbs import Judgement
+
+
+class Rows:
+    """The rows of a log, in a file for each table.
+
+    Attributes:
+        run: the number of the open run.
+    """
+
+    def __init__(self, folder: str) -> None:
+        self._files: Final = ExitStack()
+        self.write: Final[dict[str, Callable[[Sequence[object]], object]]] = {}
+        for name in ROWS:
+            path = file_of(folder, name)
+            file = open(path, "w", encoding="utf-8", errors="replace", newline="")  # noqa: SIM115 - the stack closes it
+            self._files.enter_context(file)
+            self.write[name] = csv.writer(file, lineterminator="\n").writerow
+        self.run = 1
+        self.clauses = 0  # how many the parts have
+
+    def __enter__(self) -> Rows:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the files."""
+        self._files.close()
+
+    def part(self, mission: str, robot: str) -> Part:
+        """The rows of a mission and a robot in the log."""
+        return Part(self, mission, robot)
+
+
+class Part:
+    """The rows of one mission that one robot ran."""
+
+    def __init__(self, rows: Rows, mission: str, robot: str) -> None:
+        self._rows: Final = rows
+        self._whose: Final = (mission, robot)
+        self._clauses: Final[list[_Clause]] = []
+        self._tree: tuple[object, ...] = ()
+        self._nodes: dict[int, tuple[object, ...]] = {}
+        self._activations = 0
+
+    def join(self, joined: Joined, clauses: Sequence[JudgedClause]) -> None:
+        """Begin a session."""
+        tree = joined.tree
+        named = "\n".join(f"{node.uid} {node.kind} {node.path}" for node in tree.nodes.values())
+        self._tree = hashlib.sha256(named.encode()).hexdigest()[:_DIGITS], len(tree.nodes), joined.number
+        self._nodes = {uid: (uid, each.path, each.kind, uid in tree.leaves) for uid, each in tree.nodes.items()}
+        if not self._clauses:
+            self._clauses.extend(_Clause(self._rows.clauses + index) for index in range(len(clauses)))
+            self._rows.clauses += len(clauses)
+            for written, clause in zip(self._clauses, clauses, strict=True):
+                odds = clause.requirement.odds
+                of_runs = odds is not None and odds.experiments == "runs"
+                clause.record(partial(self._judged, written, of_runs))
+
+    def see(self, activation: Activation) -> None:
+        """Write an activation that has ended."""
+        self._activations += 1
+        each = activation
+        of = (*self._whose, self._rows.run, *self._nodes[each.uid])
+        self._rows.write["activations"]((*of, each.begin, each.end, OUTCOMES[each.outcome], each.timing))
+
+    def end_run(self, root: Activation, retries: int, recoveries: int, failure: int | None) -> None:
+        """Write the open run, which has ended.
+
+        Args:
+            failure: the node where its failure began, if it failed.
+        """
+        for clause in self._clauses:
+            if clause.open:
+                decisive = min(clause.open, key=lambda row: _DECISIVE.index(row[_VERDICT]))
+                for row in clause.open:
+                    self._rows.write["verdicts"](_counted(row, row is decisive))
+                clause.open.clear()
+        counts = self._activations, retries, recoveries, self._nodes[failure][1] if failure is not None else None
+        of = (*self._whose, self._rows.run)
+        self._rows.write["runs"]((*of, root.begin, root.end, OUTCOMES[root.outcome], *counts, *self._tree))
+        self._rows.run += 1
+        self._activations = 0
+
+    def end(self, clauses: Sequence[JudgedClause]) -> None:
+        """Write the clauses, when the log has been read."""
+        for written, clause in zip(self._clauses, clauses, strict=True):
+            found, verdict, requirement = clause.findings(), clause.verdict(), clause.requirement
+            odds, window = requirement.odds, requirement.window
+            named = (requirement.name, " ".join((requirement.title or "").split()), verdict.text, verdict.path)
+            of_odds = (odds.probability, odds.relation, odds.experiments) if odds is not None else (None, None, None)
+            of_window = (window.count, window.experiments, window.seconds) if window is not None else (None, None, None)
+            means = (verdict.of, verdict.unit, written.unit, *of_odds, requirement.confidence, *of_window)
+            seen = (found.has_run, verdict.cut_off, found.missing)
+            self._rows.write["clauses"]((*self._whose, written.index, *named, *means, *seen))
+
+    def _judged(self, clause: _Clause, of_runs: bool, judgement: Judgement, begin: int, end: int, path: str) -> None:
+        verdict = UNKNOWN if judgement.holds is None else SATISFIED if judgement.holds else VIOLATED
+        measure = judgement.measure
+        numbers = (None, None) if measure is None else (measure.si, measure.bound.si)
+        if measure is not None and clause.unit is None and measure.unit is not None:
+            clause.unit = measure.unit.symbol
+        why = None if judgement.holds else judgement.sentence
+        row = (clause.index, self._rows.run, path, begin, end, verdict, True, *numbers, why)
+        if of_runs:
+            clause.open.append(row)
+        else:
+            self._rows.write["verdicts"](row)
+
+
+class _Clause:
+    """A clause of a part.
+
+    Attributes:
+        unit: of what is measured.
+        open: the rows of the open run, if runs are counted.
+    """
+
+    __slots__ = ("index", "open", "unit")
+
+    def __init__(self, index: int) -> None:
+        self.index: Final = index
+        self.unit: str | None = None
+        self.open: Final[list[tuple[Any, ...]]] = []
+
+
+def file_of(folder: str, table: str) -> str:
+    """The file with the rows of a table."""
+    return os.path.join(folder, f"{table}.csv")
+
+
+def digest(folder: str) -> str:
+    """The SHA-256 of all rows."""
+    found = hashlib.sha256()
+    for name in ROWS:
+        with open(file_of(folder, name), "rb") as file:
+            while block := file.read(_BLOCK):
+                found.update(block)
+        found.update(b"\0")
+    return found.hexdigest()
+
+
+def _counted(row: tuple[Any, ...], is_counted: bool) -> tuple[Any, ...]:
+    return (*row[: _VERDICT + 1], is_counted, *row[_VERDICT + 2 :])
+
+
+_VERDICT: Final = 5  # its column
+_DECISIVE: Final = (VIOLATED, UNKNOWN, SATISFIED)  # what a run is, if it has such a judgement
+_DIGITS: Final = 16  # enough to tell trees apart
+_BLOCK: Final = 1 << 20

@@ -1,0 +1,196 @@
+"""The sets of files in a store, one for each log, in a folder named by the SHA-256 of the log.
+
+One invariant: such a folder is whole, because it gets its name by one rename when all its files are written.  A log
+that is judged again leaves its set as it is if the same was found; otherwise the new set takes the old one's place.
+
+Two renames replace a set: the old folder goes aside, the new one takes its name.  If a writer is killed between them,
+the next one gives the old folder its name back.  Folders that killed writers were still filling have names that nobody
+reads, and are removed when nothing in them has changed for a day.
+"""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import json
+import os
+import re
+import shutil
+import time
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, Final
+
+from btq_lang.evidence.store.engine import NoEngine, write_parquet
+from btq_lang.evidence.store.rows import Rows, digest, file_of
+from btq_lang.evidence.store.tables import ROWS
+from btq_lang.util.record import Record
+
+
+class NotKept(Exception):
+    """What was found in a log cannot be kept; the message says why."""
+
+
+class Keeping(Record):
+    """Where what is found is kept, and as what.
+
+    Attributes:
+        folder: of the store.
+        label, robot: of the logs; None: the label that the log has in the store already.
+        label_by, robot_by: `folder`: of each log, the name of its folder.
+    """
+
+    folder: str
+    label: str | None = None
+    label_by: str | None = None
+    robot: str | None = None
+    robot_by: str | None = None
+
+    def label_of(self, log: str) -> str | None:
+        """The label of a log."""
+        return _folder_of(log) if self.label_by else self.label
+
+    def robot_of(self, log: str) -> str:
+        """The robot of a log that names none."""
+        return _folder_of(log) if self.robot_by else self.robot or ""
+
+
+class Draft:
+    """The set of a log while it is written.
+
+    Attributes:
+        rows: takes what is found.
+    """
+
+    def __init__(self, store: str, folder: str, log: str, label: str | None, rows: Rows) -> None:
+        self._store: Final = store
+        self._folder: Final = folder
+        self._log: Final = log
+        self._label: Final = label
+        self.rows: Final = rows
+
+    def publish(self, source: str) -> None:
+        """Make it the set of its log, unless that has the same rows and label already.
+
+        Args:
+            source: the file, as people read it.
+
+        Raises:
+            OSError, NoEngine: it cannot be written.
+        """
+        self.rows.close()
+        target = os.path.join(self._store, self._log)
+        before = about(target)
+        label = self._label if self._label is not None else str(before.get("label", ""))
+        now = {"format": FORMAT, "version": VERSION, "log": self._log, "label": label, "rows": digest(self._folder)}
+        if now.items() <= before.items():
+            return
+        write_parquet(self._folder, self._log, label)
+        for name in ROWS:
+            os.remove(file_of(self._folder, name))
+        with open(os.path.join(self._folder, ABOUT), "w", encoding="utf-8") as file:
+            json.dump({**now, "source": source}, file, indent=1)
+        _take_place(self._folder, target)
+
+
+@contextmanager
+def draft(keeping: Keeping, log: str) -> Iterator[Draft]:
+    """A set to be filled; unless it is published, nothing is left of it.
+
+    Raises:
+        NotKept: the log or the store cannot be read or written.
+    """
+    try:
+        name = _sha256(log)
+        folder = os.path.join(keeping.folder, f"{DRAFT}{name[:_SHORT]}-{uuid.uuid4().hex}")
+        os.makedirs(folder)
+    except OSError as error:
+        raise NotKept(f"cannot be kept: {error.strerror or error}: {error.filename}") from error
+    try:
+        with Rows(folder) as rows:
+            yield Draft(keeping.folder, folder, name, keeping.label_of(log), rows)
+    except (OSError, NoEngine) as error:
+        raise NotKept(f"cannot be kept: {error}") from error
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def tidy(store: str) -> None:
+    """Restore or remove what killed writers left.
+
+    Raises:
+        OSError: the store cannot be read.
+    """
+    for name in os.listdir(store) if os.path.exists(store) else ():
+        path = os.path.join(store, name)
+        if (aside := _ASIDE.fullmatch(name)) is not None:
+            with suppress(OSError):  # another writer was faster
+                os.rename(path, os.path.join(store, aside[1]))
+                continue
+            shutil.rmtree(path, ignore_errors=True)
+        elif name.startswith(DRAFT) and time.time() - _changed(path) > _LIFE:
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def about(folder: str) -> dict[str, Any]:
+    """What a set says about itself; empty if there is none, or none of this version."""
+    try:
+        with open(os.path.join(folder, ABOUT), encoding="utf-8") as file:
+            found = json.load(file)
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _take_place(folder: str, target: str) -> None:
+    """Give a folder its name, even if another one has it."""
+    aside = os.path.join(os.path.dirname(target), f"{_OLD}{os.path.basename(target)}-{uuid.uuid4().hex}")
+    while True:
+        try:
+            os.rename(folder, target)
+            break
+        except OSError as error:
+            if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
+                raise
+        with suppress(FileNotFoundError):  # another writer is replacing it
+            os.rename(target, aside)
+    shutil.rmtree(aside, ignore_errors=True)
+
+
+def _sha256(log: str) -> str:
+    """The SHA-256 of a file, or of all files of a bag, with their names."""
+    found = hashlib.sha256()
+    files = [log]
+    if os.path.isdir(log):
+        files = sorted(os.path.join(folder, name) for folder, _, names in os.walk(log) for name in names)
+    for path in files:
+        if path != log:
+            found.update(f"{os.path.relpath(path, log)}\0{os.path.getsize(path)}\0".encode(errors="surrogateescape"))
+        with open(path, "rb") as file:
+            while block := file.read(_BLOCK):
+                found.update(block)
+    return found.hexdigest()
+
+
+def _changed(folder: str) -> float:
+    """When a file in a folder last changed, in seconds since the epoch; now if the folder is gone."""
+    try:
+        return max(os.stat(path).st_mtime for path in (folder, *(each.path for each in os.scandir(folder))))
+    except OSError:
+        return time.time()
+
+
+def _folder_of(log: str) -> str:
+    return os.path.basename(os.path.dirname(os.path.abspath(log)))
+
+
+FORMAT: Final = "btq-evidence"
+VERSION: Final = 1
+ABOUT: Final = "about.json"
+DRAFT: Final = ".draft-"
+_OLD: Final = ".old-"
+_ASIDE: Final = re.compile(rf"{re.escape(_OLD)}([0-9a-f]{{64}})-[0-9a-f]{{32}}")
+_LIFE: Final = 86_400.0  # s for which a draft may be unchanged: more than clocks of several machines differ
+_SHORT: Final = 16
+_BLOCK: Final = 1 << 20

@@ -1,0 +1,89 @@
+"""The tables of the store: names and types of their columns.
+
+One invariant: a later version adds columns and changes none, for people ask these tables with their own tools.
+
+Every row says of which log, mission, robot and label it is, so that no question needs a join for that; a column that
+has one value in a whole file takes a few bytes there.  Times are in µs since the epoch, values in SI.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+# What all rows of a set have in common; the other columns of a table come from the rows that `rows.py` writes.
+COMMON: Final = {"log": "VARCHAR", "label": "VARCHAR"}
+_WHOSE: Final = {"mission": "VARCHAR", "robot": "VARCHAR"}
+
+ROWS: Final = {
+    # A run: when it was, how it ended, and how much happened in it.  `failure` is the node where a failure began,
+    # `tree` a hash of the nodes of the log, `joined` how many of them were found in the mission.
+    "runs": {
+        **_WHOSE,
+        "run": "INTEGER",
+        "start_us": "BIGINT",
+        "end_us": "BIGINT",
+        "outcome": "VARCHAR",
+        "activations": "INTEGER",
+        "retries": "INTEGER",
+        "recoveries": "INTEGER",
+        "failure": "VARCHAR",
+        "tree": "VARCHAR",
+        "nodes": "INTEGER",
+        "joined": "INTEGER",
+    },
+    # An activation of a node.  `timing`: `exact`; `latest`, if it may have ended before; `broken`, if the clock was set
+    # back meanwhile.
+    "activations": {
+        **_WHOSE,
+        "run": "INTEGER",
+        "uid": "INTEGER",
+        "path": "VARCHAR",
+        "kind": "VARCHAR",
+        "leaf": "BOOLEAN",
+        "start_us": "BIGINT",
+        "end_us": "BIGINT",
+        "outcome": "VARCHAR",
+        "timing": "VARCHAR",
+    },
+    # A clause at a node, whether something was judged or not.  `node`: all paths at which it is counted together;
+    # `counts`: `activations` or `runs`; `unit`: of what is measured; `exercised`: whether its node ran; `cut_off`:
+    # activations that the end of the log left undecided; `missing`: why it cannot be judged at all its nodes.
+    "clauses": {
+        **_WHOSE,
+        "clause_index": "INTEGER",
+        "requirement": "VARCHAR",
+        "title": "VARCHAR",
+        "clause": "VARCHAR",
+        "node": "VARCHAR",
+        "measures": "VARCHAR",
+        "counts": "VARCHAR",
+        "unit": "VARCHAR",
+        "odds": "DOUBLE",
+        "relation": "VARCHAR",
+        "experiments": "VARCHAR",
+        "confidence": "DOUBLE",
+        "last_number": "INTEGER",
+        "last_of": "VARCHAR",
+        "last_seconds": "DOUBLE",
+        "exercised": "BOOLEAN",
+        "cut_off": "INTEGER",
+        "missing": "VARCHAR",
+    },
+    # What was judged: an activation, or a run for clauses about runs.  `verdict`: `satisfied`, `violated` or `unknown`;
+    # `counted`: whether it counts: where runs are counted, one judgement of each run does; `why`: what happened, with
+    # `{}` for what was measured, or why it is unknown.
+    "verdicts": {
+        "clause_index": "INTEGER",
+        "run": "INTEGER",
+        "path": "VARCHAR",
+        "start_us": "BIGINT",
+        "end_us": "BIGINT",
+        "verdict": "VARCHAR",
+        "counted": "BOOLEAN",
+        "measured_si": "DOUBLE",
+        "bound_si": "DOUBLE",
+        "why": "VARCHAR",
+    },
+}
+# What a verdict has of its clause.
+OF_CLAUSE: Final = ("mission", "robot", "requirement", "clause", "node")

@@ -1,0 +1,254 @@
+"""`btq verify --store`: what is kept of each log, and that it is whole whatever happens to the writers."""
+
+from __future__ import annotations
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import duckdb
+import pytest
+from evidence_bags import tree_log, write_bag
+from evidence_logs import MAIN, MAIN_XML, START, btlog, rows
+from in_process import run_btq
+
+from btq_lang.evidence.store import engine, sets
+
+HERE = Path(__file__).parent
+TABLES = ["activations", "clauses", "runs", "verdicts"]
+RUN = "1R 2R 20 2S 3R 25 3S 1S 26 2I 3I 1I"
+MISSION = "QualityReq quick : safety\n    Move takes at most 15 ms\n" + MAIN
+
+
+def of(store: Path, table: str, columns: str) -> list[tuple[Any, ...]]:
+    """Columns of a table, in the order of the rows."""
+    question = f"SELECT {columns} FROM read_parquet('{store}/[0-9a-f]*/{table}.parquet')"
+    return duckdb.connect().execute(question).fetchall()
+
+
+def files(store: Path) -> dict[str, tuple[int, bytes]]:
+    """All files of a store, with the time of their last change, and their contents."""
+    return {
+        str(path.relative_to(store)): (path.stat().st_mtime_ns, path.read_bytes())
+        for path in sorted(store.rglob("*"))
+        if path.is_file()
+    }
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    """A folder with a mission and two logs, of two runs and of one."""
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    (tmp_path / "v1").mkdir()
+    (tmp_path / "v2").mkdir()
+    (tmp_path / "v1" / "a.btlog").write_bytes(btlog(MAIN_XML, rows(f"{RUN} 40 1R 2R 50 2S 3R 55 3F 1F")))
+    (tmp_path / "v2" / "b.btlog").write_bytes(btlog(MAIN_XML, rows(RUN), START + 60_000_000))
+    return tmp_path
+
+
+def keep(folder: Path, *arguments: str) -> tuple[int, str, str]:
+    return run_btq("verify", *arguments, "--mission", "main.btq", "--store", "kept", cwd=folder)
+
+
+def test_what_is_kept_of_a_log(robot: Path) -> None:
+    code, output, errors = keep(robot, "v1/a.btlog", "--label", "v1.3", "--robot", "r7")
+    assert (code, errors) == (1, "")
+    assert "1 of 2 activations, worst 20 ms in run 1" in output
+    store = robot / "kept"
+    log = next(store.iterdir()).name
+    assert sorted(files(store)) == [f"{log}/about.json", *(f"{log}/{table}.parquet" for table in TABLES)]
+    whose = (log, "v1.3", "main", "r7")
+    assert of(store, "runs", "* EXCLUDE (tree)") == [
+        (*whose, 1, START, START + 25_000, "succeeded", 3, 0, 0, None, 3, 3),
+        (*whose, 2, START + 40_000, START + 55_000, "failed", 3, 0, 0, "Pick::3", 3, 3),
+    ]
+    assert of(store, "activations", "*")[3:] == [
+        (*whose, 2, 2, "Move::2", "Move", True, START + 40_000, START + 50_000, "succeeded", "exact"),
+        (*whose, 2, 3, "Pick::3", "Pick", True, START + 50_000, START + 55_000, "failed", "exact"),
+        (*whose, 2, 1, "Sequence::1", "Sequence", False, START + 40_000, START + 55_000, "failed", "exact"),
+    ]
+    clause = ("quick", "Move takes at most 15 ms", "Move::2")
+    assert of(store, "verdicts", "*") == [
+        (*whose, *clause, 1, "Move::2", START, START + 20_000, "violated", True, 0.02, 0.015, "took {}"),
+        (*whose, *clause, 2, "Move::2", START + 40_000, START + 50_000, "satisfied", True, 0.01, 0.015, None),
+    ]
+    none = (None,) * 7
+    assert of(store, "clauses", "* EXCLUDE (title, measures)") == [
+        (*whose, *clause, "activations", "ms", *none, True, 0, None),
+    ]
+
+
+def test_a_run_that_counts_as_one_has_one_judgement_that_counts(robot: Path) -> None:
+    odds = MISSION.replace("15 ms", "15 ms\n    in at least 50 % of runs")
+    (robot / "main.btq").write_text(odds, encoding="utf-8")
+    twice = "1R 2R 10 2S 2R 30 2S 2R 50 2S 3R 55 3S 1S 56 2I 3I 1I"
+    (robot / "a.btlog").write_bytes(btlog(MAIN_XML, rows(f"{twice} 60 1R 2R 70 2S 2R 80 2S 3R 81 3S 1S")))
+    assert keep(robot, "a.btlog")[0] == 0
+    assert of(robot / "kept", "verdicts", "run, verdict, counted") == [
+        (1, "satisfied", False),
+        (1, "violated", True),
+        (1, "violated", False),
+        (2, "satisfied", True),
+        (2, "satisfied", False),
+    ]
+
+
+def test_reading_a_log_again_changes_nothing(robot: Path) -> None:
+    keep(robot, "v1", "v2", "--label", "x")
+    before = files(robot / "kept")
+    assert len(before) == 10
+    shutil.copy(robot / "v1" / "a.btlog", robot / "copy.btlog")
+    keep(robot, "copy.btlog", "v2")  # also under another name, and without the label, which it keeps
+    assert files(robot / "kept") == before
+
+
+def test_what_is_found_anew_takes_the_place_of_the_old(robot: Path) -> None:
+    keep(robot, "v1", "v2", "--label", "x")
+    (robot / "main.btq").write_text(MISSION.replace("15 ms", "25 ms"), encoding="utf-8")
+    assert keep(robot, "v1")[0] == 0
+    found = of(robot / "kept", "verdicts", "label, clause, verdict")
+    assert sorted(found) == [
+        ("x", "Move takes at most 15 ms", "violated"),  # of b.btlog, which was not read again
+        ("x", "Move takes at most 25 ms", "satisfied"),
+        ("x", "Move takes at most 25 ms", "satisfied"),
+    ]
+    keep(robot, "v1", "--label", "y")
+    assert sorted(each for (each,) in of(robot / "kept", "runs", "label")) == ["x", "y", "y"]
+    assert not [name for name in os.listdir(robot / "kept") if name.startswith(".")]
+
+
+def test_a_folder_names_labels_and_robots(robot: Path) -> None:
+    assert keep(robot, "v1", "v2", "--label-by", "folder", "--robot-by", "folder", "--jobs", "2")[0] == 1
+    assert sorted(of(robot / "kept", "runs", "label, robot, run")) == [
+        ("v1", "v1", 1),
+        ("v1", "v1", 2),
+        ("v2", "v2", 1),
+    ]
+
+
+def test_the_topics_of_a_bag_name_its_robots(robot: Path) -> None:
+    names = {1: "Sequence", 2: "Move", 3: "Pick"}
+    red = tree_log(rows(RUN), names, topic="/red/behavior_tree_log")
+    blue = tree_log(rows(RUN), names, topic="/hall/blue/behavior_tree_log")
+    write_bag(robot / "bag", [*red, *blue])
+    assert keep(robot, "bag", "v1", "--robot", "mine")[0] == 1
+    assert sorted(of(robot / "kept", "runs", "robot, run")) == [("hall/blue", 2), ("mine", 1), ("mine", 2), ("red", 1)]
+
+
+def test_a_log_that_cannot_be_read_or_has_no_run_of_the_mission_is_not_kept(robot: Path) -> None:
+    (robot / "bad.btlog").write_bytes(b"no log")
+    (robot / "other.btlog").write_bytes(btlog(MAIN_XML.replace("Move", "Fly").replace("Pick", "Land"), rows(RUN)))
+    assert keep(robot, "bad.btlog", "other.btlog", "v2")[0] == 2
+    assert len(os.listdir(robot / "kept")) == 1
+
+
+def test_without_duckdb_the_extra_is_named(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "duckdb", None)
+    message = "btq verify: a store is written and read with duckdb; install it with pip install 'btq-lang[evidence]'\n"
+    assert keep(robot, "v1") == (2, "", message)
+    assert not (robot / "kept").exists()
+
+
+@pytest.mark.parametrize("option", ["--label", "--robot"])
+def test_a_label_is_for_a_store(option: str, robot: Path) -> None:
+    message = f"btq verify: {option} goes with --store DIR\n"
+    assert run_btq("verify", "v1", "--mission", "main.btq", option, "x", cwd=robot) == (2, "", message)
+
+
+def test_a_store_that_cannot_be_written(robot: Path) -> None:
+    (robot / "kept").write_text("a file", encoding="utf-8")
+    assert keep(robot, "v1", "v2") == (2, "", "btq verify: kept: expected a folder, found a file\n")
+
+
+def test_a_set_that_cannot_be_written(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(engine, "_OPTIONS", "FORMAT parquet, COMPRESSION nothing")
+    code, output, errors = keep(robot, "v1")
+    assert code == 2
+    assert "1 of 2 activations, worst 20 ms in run 1" in output
+    assert errors.startswith("btq verify: v1/a.btlog: cannot be kept: Binder Error: ")
+    assert os.listdir(robot / "kept") == []
+
+
+def test_what_killed_writers_leave(robot: Path) -> None:
+    keep(robot, "v1", "v2")
+    store = robot / "kept"
+    before = files(store)
+    first, second = sorted(os.listdir(store))
+    token = "0" * 32
+    (store / first).rename(store / f".old-{first}-{token}")  # killed between the two renames of a replacement
+    shutil.copytree(store / second, store / f".old-{second}-{token}")  # killed after them
+    for age in (0, 90_000):
+        draft = store / f".draft-{age}"
+        draft.mkdir()
+        (draft / "runs.csv").write_text("1", encoding="utf-8")
+        for path in (draft / "runs.csv", draft):
+            os.utime(path, (time.time() - age,) * 2)
+    sets.tidy(str(store))
+    assert sorted(os.listdir(store)) == [".draft-0", first, second]
+    assert {name: data for name, data in files(store).items() if "draft" not in name} == before
+
+
+def logs_of(folder: Path, number: int) -> list[str]:
+    """Some logs that all differ."""
+    (folder / "main.btq").write_text(MISSION, encoding="utf-8")
+    names = [f"{each}.btlog" for each in range(number)]
+    for each, name in enumerate(names):
+        (folder / name).write_bytes(btlog(MAIN_XML, rows(" ".join([RUN] * 20)), START + each * 60_000_000))
+    return names
+
+
+def writer(folder: Path, logs: list[str]) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "btq_lang", "verify", *logs, "--mission", "main.btq", "--store", "kept"]
+    environment = {**os.environ, "PYTHONPATH": str(HERE.parents[1])}
+    null = subprocess.DEVNULL
+    return subprocess.Popen(command, cwd=folder, env=environment, stdout=null, stderr=null, start_new_session=True)
+
+
+def test_writers_killed_at_any_moment(tmp_path: Path) -> None:
+    logs = logs_of(tmp_path, 16)
+    chance = random.Random(7)
+    started = time.monotonic()
+    assert writer(tmp_path, logs).wait() == 1
+    whole = time.monotonic() - started
+    expected = {name: data for name, (_, data) in files(tmp_path / "kept").items()}
+    assert len(expected) == 80
+    shutil.rmtree(tmp_path / "kept")
+    kept = []
+    for turn in range(8):
+        bound = "15 ms" if turn % 2 else "14 ms"  # so that sets are replaced, too
+        (tmp_path / "main.btq").write_text(MISSION.replace("15 ms", bound), encoding="utf-8")
+        process = writer(tmp_path, logs)
+        time.sleep(chance.uniform(0.2, 1.0) * whole)
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        for folder in (tmp_path / "kept").glob("[0-9a-f]*"):
+            assert sorted(each.name for each in folder.iterdir()) == [
+                "about.json",
+                *(f"{table}.parquet" for table in TABLES),
+            ]
+            assert duckdb.connect().execute(f"SELECT count(*) FROM '{folder}/verdicts.parquet'").fetchall() == [(20,)]
+        kept.append(len([*(tmp_path / "kept").glob("[0-9a-f]*")]) if (tmp_path / "kept").exists() else 0)
+    assert any(0 < each < 16 for each in kept), kept
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    assert writer(tmp_path, logs).wait() == 1
+    found = {name: data for name, (_, data) in files(tmp_path / "kept").items() if not name.startswith(".draft")}
+    assert found == expected
+
+
+def test_two_writers_at_once(tmp_path: Path) -> None:
+    logs = logs_of(tmp_path, 12)
+    assert writer(tmp_path, logs).wait() == 1
+    expected = {name: data for name, (_, data) in files(tmp_path / "kept").items()}
+    (tmp_path / "main.btq").write_text(MISSION.replace("15 ms", "14 ms"), encoding="utf-8")
+    first, second = writer(tmp_path, logs), writer(tmp_path, logs)  # both replace the same sets
+    assert (first.wait(), second.wait()) == (1, 1)
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    first, second = writer(tmp_path, logs), writer(tmp_path, logs[::-1])
+    assert (first.wait(), second.wait()) == (1, 1)
+    assert {name: data for name, (_, data) in files(tmp_path / "kept").items()} == expected
