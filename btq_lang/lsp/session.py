@@ -49,6 +49,8 @@ class Session:
         self._workspaces: list[Workspace] = []  # their caches are for open files
         self._home: dict[str, int] = {}
         self._pooled: frozenset[str] = frozenset()  # files that only define what open XML lacks
+        # With answers for what open XML included or lacked before a key has made it unreadable.
+        self._aside: list[Workspace] = []
         # Weak: a file's findings must not keep an old workspace alive until its next check.
         self._checked: dict[str, tuple[tuple[ReferenceType[Workspace], ...], Findings]] = {}
 
@@ -123,7 +125,7 @@ class Session:
         missions = (path for path in self.open if not is_project_file(path))
         groups, problems = self._files.groups((*self.folders, *missions), for_checks=True)
         self._read_projects(problems)
-        before = {(workspace.factory, *workspace.files): workspace for workspace in self._workspaces}
+        before = {(each.factory, *each.files): each for each in (*self._aside, *self._workspaces)}
         self._workspaces = []
         self._home = {}
         self._pooled = frozenset().union(*(group.pooled for group in groups))
@@ -144,6 +146,8 @@ class Session:
                     given.add(path)
                     self._home[path] = index
                 self._home.setdefault(path, index)
+        unread = [path for path in self.open if (home := self.workspace_of(path)) and home.files[path].last_read]
+        self._aside = [each for each in before.values() if not each.files.keys().isdisjoint(unread)]
         return self.paths()
 
     def _read_projects(self, problems: Iterable[LoadProblem]) -> None:

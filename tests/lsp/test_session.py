@@ -516,3 +516,28 @@ def test_a_project_of_groot_is_a_factory_in_the_editor_too(tmp_path: Path) -> No
     (tmp_path / "robot.btproj").write_text('<root><include path="main.xml"/><include path="dock.xml"/></root>')
     session.reload()
     assert session.diagnostics(main) == ()
+
+
+def test_answers_stay_while_xml_that_includes_files_cannot_be_read(tmp_path: Path) -> None:
+    tree = '<root BTCPP_format="4">{}<BehaviorTree ID="{}"><SubTree ID="{}"/></BehaviorTree></root>'.format
+    (tmp_path / "dock.xml").write_text(tree("", "Dock", "Main"))
+    (tmp_path / "align.xml").write_text(tree("", "Align", "Dock"))
+    main = str(tmp_path / "main.xml")
+    text = tree('<include path="dock.xml"/>', "Main", "Align")  # the one in the pool
+    session = Session()
+    session.edit(main, text)
+    before = session.workspace_of(main)
+    assert before is not None
+    store, files = before.store, [*before.files]
+    assert sorted(files) == [str(tmp_path / name) for name in ("align.xml", "dock.xml", "main.xml")]
+    for damaged in (text[:-1], text[:-2]):
+        session.edit(main, damaged)
+        assert [each.rule for each in session.diagnostics(main)] == ["xml-syntax"]
+        now = session.workspace_of(main)
+        assert now is not None
+        assert [*now.files] == [main]
+    session.edit(main, text)
+    after = session.workspace_of(main)
+    assert after is not None
+    assert ([*after.files], after.store) == (files, store)
+    assert session.diagnostics(main) == ()
