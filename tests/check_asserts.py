@@ -27,7 +27,9 @@ MARKER = re.compile(r"(?P<where>next-line |file )?(?P<severity>error|warning|inf
 COMMENT_WITH_MARKERS = re.compile(r"(?:#|<!--)\s*(?=(?:next-line |file )?(?:error|warning|info|hint): \[).*")
 
 NODES = re.compile(
-    r'^# nodes = \["(?P<nodes>[\w-]+)"\] in btq.toml(, and: btq check --target (?P<target>[\w-]+))?$', re.MULTILINE
+    r'^# (nodes = \["(?P<nodes>[\w-]+)"\]|engine = "(?P<engine>[\d.]+)") in btq.toml'
+    r"(, and: btq check --target (?P<target>[\w.-]+))?$",
+    re.MULTILINE,
 )
 
 Announced = Counter[tuple[str, int, str, str]]  # (file, line, severity, rule)
@@ -65,8 +67,11 @@ def assert_marked(text: str, name: str = "main.btq") -> None:
     files = split_files(text, name)
     workspace = workspace_of(files)
     if given := NODES.search(text):
-        project = replace(workspace.project, node_files=(PACKAGED[given["nodes"]],))
-        workspace = with_target(workspace.with_project(project), given["target"] or given["nodes"])
+        nodes = (PACKAGED[given["nodes"]],) if given["nodes"] else ()
+        engines = (given["engine"],) if given["engine"] else workspace.project.engines
+        project = replace(workspace.project, node_files=nodes, engines=engines)
+        target = given["target"] or given["nodes"] or given["engine"]
+        workspace = with_target(workspace.with_project(project), target)
     expected: Announced = Counter()
     found: Announced = Counter()
     for path, content in files.items():

@@ -8,8 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
+from btq_lang.catalog.changes import ANY, Change
 from btq_lang.catalog.nav2 import DISTRIBUTIONS
-from btq_lang.catalog.nav2.changes import ANY, CHANGES, INSTEAD, RENAMED, RENAMED_PORTS, Change
+from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_PORTS
 from btq_lang.commands.explain_nav2 import models_of
 
 

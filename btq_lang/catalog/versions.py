@@ -31,6 +31,8 @@ class Change(Record):
         return at_least(version, self.since)
 
 
+ENTRIES_OF_SUBTREE: Final = Change("4.0", "takes `key` at a port of a SubTree for a text; before, for an entry's name")
+LAST_TREE_COUNTS: Final = Change("4.0", "takes the last of several trees with one ID; before, the first")
 ID_IN_COMPACT_FORM: Final = Change("4.0", "refuses an `ID` in the compact form of a node")
 UNDERSCORES: Final = Change("4.0", "takes no attribute that begins with `_` for a port; before, it refuses most")
 ENTRY_WITHOUT_DOLLAR: Final = Change("4.3.4", "takes `${key}` for a text; before, for an entry")
@@ -57,6 +59,11 @@ def at_least(version: str, since: str) -> bool:
     """Whether `version` is the version `since` or a later one.  Both are numbers with points; `4.8` is older than
     4.10."""
     return numbers(version) >= numbers(since)
+
+
+def last_of(version: str) -> str:
+    """The last release of a line; a release is its own."""
+    return version if version.count(".") > 1 else f"{version}.99"
 
 
 def is_before_4(version: str) -> bool:

@@ -11,7 +11,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     literals.py, constants.py, strings.py, scripts.py, counts.py, empty.py, outputs.py   values
     entries.py, pointers.py, writers.py, misspelt.py, mixed_types.py   blackboard entries
     engines.py, version3.py   which versions of the engine a file is for
-    moving.py, moved_nodes.py   what another distribution of Nav2 changes
+    moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
     resets.py, unread.py   traps of Nav2's nodes
     measures.py, clauses.py, conditions.py, bounds.py, limits.py, odds.py   requirements by themselves
@@ -324,6 +324,10 @@ def _reported(store: Store[Workspace], viewpoint: str, facts: Facts, is_alone: b
     entry = view.entry
     checks = checks_of(entry)
     found: Iterable[Diagnostic] = [diagnostic for each in checks for diagnostic in each(view, entry)]
+    if view.project.moves_to is not None:
+        from btq_lang.checks.moved_engine import new_in_target  # few checks have a target
+
+        found = [*found, *new_in_target(view, entry, checks, [*found])]
     if type(facts.item) is Include and not is_alone:
         found = [*found, *includes.include_with_errors(view, entry, _errors_in)]
     if entry.diagnostics:

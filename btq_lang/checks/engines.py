@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.attributes import OF_VERSION_4, RESERVED_ATTRIBUTES
 from btq_lang.catalog.nav2 import ENGINES
 from btq_lang.catalog.nodes import KNOWN_WORDS, OLD_PORTS, available
-from btq_lang.catalog.versions import VERSION_3, is_before_4
+from btq_lang.catalog.versions import VERSION_3, VERSIONS, is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.sorted_nodes import sorted_nodes
 from btq_lang.workspace import inputs
@@ -27,23 +27,27 @@ if TYPE_CHECKING:
 def engines_of(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
     """The versions that a file must hold for, oldest first."""
     project = inputs.project(store)
-    if project.has_moved:
-        return project.engines
-    return (VERSION_3,) if _declares_3(store, viewpoint) or store.ask(old_words, viewpoint) else project.engines
+    return project.engines if project.written_for or not store.ask(is_for_version_3, viewpoint) else (VERSION_3,)
+
+
+def is_for_version_3(store: Store[Workspace], viewpoint: str) -> bool:
+    """Whether a file is written for version 3, whatever takes it."""
+    return _declares_3(store, viewpoint) or bool(store.ask(old_words, viewpoint))
 
 
 def _declares_3(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether the project says that a file is for version 3: by its engine, or else by its distribution of Nav2."""
     project = inputs.project(store)
-    distribution = lookups.distribution(store, viewpoint) if not project.pinned else None
-    return is_before_4(project.target if distribution is None else ENGINES[distribution])
+    engines = project.written_for or project.engines
+    distribution = lookups.distribution(store, viewpoint) if engines == VERSIONS else None
+    return is_before_4(engines[-1] if distribution is None else ENGINES[distribution])
 
 
 def old_words(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
     """What in an XML file only version 3 of the engine understands; empty if the file may be for version 4, and if the
     project says what it is for."""
     declared = lookups.declared_format(store, viewpoint)
-    if declared not in ("", "3") or inputs.project(store).has_moved or _declares_3(store, viewpoint):
+    if declared not in ("", "3") or _declares_3(store, viewpoint):
         return ()
     found = [store.ask(_words_in, viewpoint, tree) for tree in lookups.trees(store, viewpoint)]
     words = [word for each in found if each is not None for word in each]

@@ -17,7 +17,7 @@ from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.syntax.tree import written
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.nav2.changes import Change
+    from btq_lang.catalog.changes import Change
     from btq_lang.checks.view import View
     from btq_lang.syntax.tree import Word
     from btq_lang.workspace.resolved import ResolvedNode
@@ -41,7 +41,28 @@ def changes_of(view: View, seen: ResolvedNode, name: Word, steps: tuple[str, ...
     is_forward = DISTRIBUTIONS.index(steps[-1]) > DISTRIBUTIONS.index(steps[0])
     for change in CHANGES:
         if is_forward and change.since in steps[1:] and change.concerns(name.text):
-            yield from _changed(view, seen, name, change)
+            yield from changed(view, seen, name, change)
+
+
+def changed(view: View, seen: ResolvedNode, name: Word, change: Change) -> Iterator[Diagnostic]:
+    """A row about a node, if the value of its port is one that the row concerns.
+
+    Args:
+        name: the node's, as written.
+    """
+    value = seen.node.attribute(change.port) if change.port else None
+    if not change.matches(value.text if value is not None else None):
+        return
+    fixes: tuple[Fix, ...] = ()
+    if change.keeps is not None:
+        fixes = adding_fix(view, seen.node, "Keep its meaning", f"{written(change.port)} = {written(change.keeps)}")
+    yield Diagnostic(
+        "target-breaks" if change.breaks else "target-differs",
+        (value or name).span,
+        f"from {change.since.title()} on `{name.text}` {change.what}",
+        notes=(change.instead,) if change.instead else (),
+        fixes=fixes,
+    )
 
 
 def _ports(view: View, distribution: str, node: str) -> frozenset[str] | None:
@@ -77,22 +98,6 @@ def _without_ports(seen: ResolvedNode, node: str, gone: frozenset[str], steps: t
 
 def _called(renamed: str | None) -> str:
     return f": it is called `{renamed}`" if renamed else ""
-
-
-def _changed(view: View, seen: ResolvedNode, name: Word, change: Change) -> Iterator[Diagnostic]:
-    value = seen.node.attribute(change.port) if change.port else None
-    if not change.matches(value.text if value is not None else None):
-        return
-    fixes: tuple[Fix, ...] = ()
-    if change.keeps is not None:
-        fixes = adding_fix(view, seen.node, "Keep its meaning", f"{written(change.port)} = {written(change.keeps)}")
-    yield Diagnostic(
-        "target-breaks" if change.breaks else "target-differs",
-        (value or name).span,
-        f"from {change.since.title()} on `{name.text}` {change.what}",
-        notes=(change.instead,) if change.instead else (),
-        fixes=fixes,
-    )
 
 
 def _first(table: Mapping[Key, str], keys: Iterable[Key]) -> str | None:

@@ -1,4 +1,5 @@
-"""What changes for a tree when its robot moves on to another distribution of Nav2 (`btq check --target`).
+"""What changes for a tree when its robot moves on to another version of the engine, or distribution of Nav2
+(`btq check --target`).
 
 Sources: the files and tables of `catalog/nav2`.
 """
@@ -8,12 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.catalog.literals import is_pointer
-from btq_lang.catalog.names import is_port_name
-from btq_lang.catalog.nav2 import DISTRIBUTIONS
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, ENGINES
+from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.pointers import remaps_all
-from btq_lang.diagnostics.model import Diagnostic, replace_fix
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Include
 
 if TYPE_CHECKING:
@@ -27,10 +27,16 @@ _OF_3 = DISTRIBUTIONS[: DISTRIBUTIONS.index(_FIRST_OF_4)]
 
 def moving_on(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """Nodes and ports that the target does not have, and those that mean something else in it."""
+    target = view.project.moves_to
+    if target is None:
+        return
+    from btq_lang.checks.moved_engine import engine_changes  # few checks have a target
+
+    yield from engine_changes(view, _engine(view), ENGINES.get(target, target))
     steps = _steps(view)
     if not steps:
         return
-    from btq_lang.checks.moved_nodes import changes_of, is_of_nav2  # few checks have a target
+    from btq_lang.checks.moved_nodes import changes_of, is_of_nav2  # as above
 
     for seen in view.nodes:
         if seen.is_subtree:
@@ -51,29 +57,30 @@ def moving_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def _steps(view: View) -> tuple[str, ...]:
     """The distribution that the trees are for, and those on the way to the target; empty if there is no way."""
     target = view.project.moves_to
-    origin = view.look_up(lookups.distribution) if target is not None else None
+    origin = view.look_up(lookups.distribution) if target in DISTRIBUTIONS else None
     if target is None or origin is None or origin == target:
         return ()
     start, end = DISTRIBUTIONS.index(origin), DISTRIBUTIONS.index(target)
     return DISTRIBUTIONS[start : end + 1] if start <= end else DISTRIBUTIONS[end : start + 1][::-1]
 
 
+def _engine(view: View) -> str:
+    """The version that the trees are for: by its syntax, its project, or its distribution; else the oldest known."""
+    distribution = view.look_up(lookups.distribution)
+    of_distribution = ENGINES[distribution] if distribution is not None else None
+    if is_before_4(view.target):
+        is_declared = of_distribution is not None and is_before_4(of_distribution) and not view.project.pinned
+        return of_distribution if of_distribution is not None and is_declared else view.target
+    return view.target if view.is_pinned else of_distribution or view.engines[0]
+
+
 def _subtree(seen: ResolvedNode) -> Iterator[Diagnostic]:
     """A SubTree of BehaviorTree.CPP 3, whose tree shared the blackboard or got entries by their names."""
-    since = _FIRST_OF_4.title()
     if not remaps_all(seen):
         yield Diagnostic(
             "target-breaks",
             seen.node.head.span,
-            f"from {since} on a SubTree has a blackboard of its own: Nav2's nodes in it lack the entry `node`",
+            f"from {_FIRST_OF_4.title()} on a SubTree has a blackboard of its own: Nav2's nodes in it lack the entry "
+            "`node`",
             notes=('write `_autoremap = "true"`, here and on every SubTree above',),
         )
-    for pair in seen.node.attributes:
-        if pair.value is not None and is_port_name(pair.key.text) and not is_pointer(pair.value.text):
-            text = pair.value.text
-            yield Diagnostic(
-                "target-differs",
-                pair.value.span,
-                f"from {since} on `{text}` is a text that the SubTree gets, no longer the name of an entry",
-                fixes=(replace_fix(f"Replace `{text}` with `{{{text}}}`", pair.value.span, f"{{{text}}}"),),
-            )

@@ -10,6 +10,7 @@ from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.versions import OUTPUT_IN_BRACES
 from btq_lang.checks import lookups
+from btq_lang.checks.engines import is_for_version_3
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -37,7 +38,7 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         problem = check_literal(type_, value.text, view.target)
         is_refused = problem is not None and problem.kind == "refused"
-        is_custom = not is_refused and view.ask(_is_custom)
+        is_custom = not is_refused and not view.ask(is_for_version_3) and view.ask(_is_custom)
         if is_custom and not _is_first_value(view, pair):
             continue
         name = value.text if is_name(value.text) else pair.key.text

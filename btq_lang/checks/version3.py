@@ -20,10 +20,9 @@ if TYPE_CHECKING:
 
 def version_3_file(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """What says that a file is for version 3, once: all else that version 4 refuses in it follows."""
-    words = view.ask(old_words)
-    if not words:
+    words, project = view.ask(old_words), view.project
+    if not words or project.written_for:
         return
-    project = view.project
     shown = ", ".join(f"`{word}`" for word in words[:_SHOWN]) + (" …" if len(words) > _SHOWN else "")
     distribution = view.look_up(lookups.distribution)
     declared = ""

@@ -111,12 +111,14 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
     )
     parser.add_argument("--severity", choices=SEVERITIES, help="report this severity and worse; default: hint")
     from btq_lang.catalog.nav2 import PACKAGED  # of the catalog, which not every reader of this module needs
+    from btq_lang.catalog.versions import targets
 
     parser.add_argument(
         "--target",
-        choices=tuple(PACKAGED),
-        metavar="NODES",
-        help="also what this distribution of Nav2 changes for trees of an earlier one: nav2-iron … nav2-lyrical",
+        choices=(*targets(), *PACKAGED),
+        metavar="TARGET",
+        help="also what this version of the engine (4.6 … 4.10), or this distribution of Nav2 (nav2-iron … "
+        "nav2-lyrical), changes for trees of an earlier one",
     )
     parser.add_argument(
         "--nav2-params",

@@ -57,7 +57,7 @@ def _write_xsd(options: Namespace) -> int:
 
 
 def _of_version_4(workspace: Workspace) -> Workspace:
-    return workspace.with_project(replace(workspace.project, has_moved=True))
+    return workspace.with_project(replace(workspace.project, written_for=workspace.project.engines))
 
 
 def _target(groups: Iterable[Group], paths: list[str]) -> str:

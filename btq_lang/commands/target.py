@@ -1,4 +1,4 @@
-"""`btq check --target`: what the trees of a project will be in another distribution of Nav2."""
+"""`btq check --target`: the trees of a project in another version of the engine or distribution of Nav2."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.opening import file_of
-from btq_lang.catalog.nav2 import FILES
+from btq_lang.catalog.nav2 import FILES, PACKAGED
 from btq_lang.checks.lookups import distribution
 from btq_lang.util.record import replace
 from btq_lang.workspace.file import File
@@ -20,21 +20,24 @@ if TYPE_CHECKING:
 
 
 def moving(groups: Iterable[Group], target: str) -> tuple[Group, ...]:
-    """The groups, to be checked for a distribution too; empty if none says for which one its trees were written.
+    """The groups, to be checked for a target too; empty if it is a distribution, and none says which one its trees are
+    for.
 
     Args:
-        target: as a project names its nodes, `nav2-lyrical`.
+        target: a version of the engine, or as a project names its nodes: `nav2-lyrical`.
     """
     groups = tuple(groups)
-    if all(distribution(group.workspace.store, path) is None for group in groups for path in group.given):
+    given = [(group.workspace.store, path) for group in groups for path in group.given]
+    if target in PACKAGED and all(distribution(store, path) is None for store, path in given):
         return ()
     return tuple(replace(group, workspace=with_target(group.workspace, target)) for group in groups)
 
 
 def with_target(workspace: Workspace, target: str) -> Workspace:
-    """The same files, with the nodes of all distributions beside them."""
+    """The same files; if the target is a distribution, with the nodes of all distributions beside them."""
     project = replace(workspace.project, moves_to=target.removeprefix("nav2-"))
-    return Workspace({**_models(), **workspace.files}, project, workspace.factory)
+    models = _models() if target in PACKAGED else {}
+    return Workspace({**models, **workspace.files}, project, workspace.factory)
 
 
 @cache

@@ -70,7 +70,7 @@ class Project(Record):
         node_files: files of btq whose models count in all files.
         moves_to: the distribution of Nav2, or the version of the engine, for which its trees are checked besides
             their own.
-        has_moved: whether all of its files are taken as the engine takes them, whatever they are written for.
+        written_for: what `engines` was, if it now has the versions that take its files whatever they are written for.
     """
 
     root: str = "."
@@ -90,7 +90,7 @@ class Project(Record):
     factories: tuple[Factory, ...] = ()
     node_files: tuple[str, ...] = ()
     moves_to: str | None = None
-    has_moved: bool = False
+    written_for: tuple[str, ...] = ()
 
     def shown(self, path: str) -> str:
         """A path for display: relative to a working folder if it is inside one, else as it is."""

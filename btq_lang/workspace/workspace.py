@@ -18,9 +18,9 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nav2 import ports_of
+from btq_lang.catalog.nav2 import ENGINES, ports_of
 from btq_lang.syntax.tree import Entry, Include, Model, Qualities, Root, Word
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, replace
 from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import Definition, File, Origin, is_of_package
 from btq_lang.workspace.queries import Store
@@ -68,6 +68,14 @@ class Workspace:
         if before is not None and before.included_paths == file.included_paths:
             after._take_over(self, path)
         return after
+
+    @cached_property
+    def moved(self) -> Workspace:
+        """The same files as the engine takes them that the project moves to."""
+        target = self.project.moves_to or self.project.target
+        engines, written_for = (ENGINES.get(target, target),), self.project.engines
+        project = replace(self.project, engines=engines, moves_to=None, written_for=written_for)
+        return Workspace(self.files, project, self.factory)
 
     def let_go(self, paths: Iterable[str]) -> None:
         """Release all but text and names of some files; a caller that holds a definition in one must not look it up

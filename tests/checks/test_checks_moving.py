@@ -8,8 +8,12 @@ import pytest
 from check_asserts import assert_fixes_mend, assert_sound, show
 from in_process import run_btq
 
+from btq_lang.btcpp.opening import file_of
+from btq_lang.catalog.changes import ANY, Change
+from btq_lang.catalog.engine_changes import ENGINE_CHANGES
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, PACKAGED
-from btq_lang.catalog.nav2.changes import ANY, CHANGES, Change
+from btq_lang.catalog.nav2.changes import CHANGES
+from btq_lang.catalog.versions import at_least, last_of, numbers
 from btq_lang.checks import check
 from btq_lang.commands.target import with_target
 from btq_lang.workspace.config import Project
@@ -56,6 +60,57 @@ def test_each_change_is_found_on_the_step_that_brings_it(change: Change) -> None
     assert moved(tree(sample(change)), before, before) == []
 
 
+# ---- the engine's own versions ----
+
+LINES = ("3.8", "4.6", "4.7", "4.8", "4.9", "4.10")
+SAMPLES_OF_ENGINE = {
+    "restarts": ("R->", "    Drive", "    Dock"),
+    "completes at once": ("{node}", "    AlwaysSuccess"),
+    "runs on": ("{node} ({port})", "    Drive"),
+    "skipped in the end": ("{node}", "    Drive (_while = ready)"),
+}
+
+
+def engine_tree(row: Change, value: str) -> str:
+    """A tree with the first node that a row concerns."""
+    needed = {"Precondition": 'if = "ready"', "SkipUnlessUpdated": "entry = {e}"}
+    node = "M->" if row.nodes[0] == "SequenceWithMemory" else row.nodes[0]
+    lines = SAMPLES_OF_ENGINE.get(row.when, ("{node} ({port})", "    Drive", "    Drive", "    Drive"))
+    lines = lines[: 2 if row.when == "" and row.nodes[0][:6] != "Switch" else None]
+    port = f'{row.port} = "{value}"' if row.port else needed.get(node, "")
+    return "BehaviorTree Main\n" + "".join(f"    {line.format(node=node, port=port)}\n" for line in lines)
+
+
+def moved_engine(text: str, origin: str, target: str, given: str = "main.btq") -> list[str]:
+    workspace = Workspace({given: file_of(given, text)}, Project(engines=(origin,)))
+    workspace = with_target(workspace, target)
+    return show(text, [each for each in check(workspace, given) if each.rule.startswith("target-")])
+
+
+def row_id(row: Change) -> str:
+    return f"{row.since}-{row.nodes[0]}-{row.port}-{row.until}"
+
+
+@pytest.mark.parametrize("row", ENGINE_CHANGES, ids=row_id)
+def test_each_change_of_the_engine_is_found_where_it_is_between(row: Change) -> None:
+    value = next((each for each in ("0", "1;2", "5abc", "5") if row.port and row.matches(each)), "")
+    text = engine_tree(row, value)
+    before = max((each for each in LINES if not at_least(last_of(each), row.since)), key=numbers, default="3.8")
+    if row.after:
+        before = max(before, next(each for each in LINES if at_least(last_of(each), row.after)), key=numbers)
+    after = next(each for each in LINES if at_least(last_of(each), row.since) and each != "3.8")
+    found = moved_engine(text, before, after)
+    assert [
+        line
+        for line in found
+        if "warning target-differs" in line and f"from {row.since} on `" in line and line.endswith(row.what)
+    ]
+    assert moved_engine(text, after, after) == []
+    assert [line for line in moved_engine(text, after, before) if row.what in line] == []
+    if row.until:
+        assert [line for line in moved_engine(text, before, row.until) if row.what in line] == []
+
+
 def test_what_a_tree_of_humble_meets_on_the_way_to_lyrical() -> None:
     text = tree(
         "IsPathValid (path = {way})",
@@ -72,7 +127,7 @@ def test_what_a_tree_of_humble_meets_on_the_way_to_lyrical() -> None:
         "`robot_base_frame`",
         "5:17 error target-breaks «Rest» from Jazzy on a SubTree has a blackboard of its own: Nav2's nodes in it "
         "lack the entry `node`",
-        "5:30 warning target-differs «goal» from Jazzy on `goal` is a text that the SubTree gets, no longer the name "
+        "5:30 warning target-differs «goal» from 4.0 on `goal` is a text that the SubTree gets, no longer the name "
         "of an entry",
     ]
 
@@ -118,3 +173,55 @@ def test_the_command(tmp_path: Path) -> None:
         2,
         'btq check: --target needs to know what the trees are for: write `nodes = ["nav2-jazzy"]` into btq.toml\n',
     )
+
+
+def test_what_a_file_for_version_3_meets_on_the_way_to_4_10() -> None:
+    xml = """\
+<root main_tree_to_execute="Main">
+  <BehaviorTree ID="Main">
+    <SequenceStar>
+      <Find dock="dock" at="${pose}"/>
+      <Parallel success_threshold="1" failure_threshold="1"><Find/></Parallel>
+      <BlackboardCheckInt value_A="{a}" value_B="1"><Find/></BlackboardCheckInt>
+      <SubTree ID="Go on" name="one" to="dock" __shared_blackboard="true"/>
+      <SubTree ID="Go on" name="one"/>
+      <Sequence ID="x"><Find/></Sequence>
+    </SequenceStar>
+  </BehaviorTree>
+  <BehaviorTree ID="Go on"><Find/></BehaviorTree>
+  <BehaviorTree ID="Go on"><Find/></BehaviorTree>
+  <TreeNodesModel>
+    <Action ID="Find"><output_port name="dock"/><input_port name="at" default="0"/></Action>
+    <SubTree ID="Go on"><input_port name="to"/></SubTree>
+  </TreeNodesModel>
+</root>
+"""
+    workspace = with_target(Workspace({"main.xml": file_of("main.xml", xml)}, Project()), "4.10")
+    found = check(workspace, "main.xml")
+    assert [
+        (xml[: each.span.start].count("\n") + 1, each.rule, each.message)
+        for each in found
+        if each.rule.startswith("target-")
+    ] == [
+        (3, "target-breaks", "`SequenceStar` is not built into BehaviorTree.CPP 4.6–4.10"),
+        (4, "target-differs", 'expected a blackboard entry for the output `dock` of `Find`, found `"dock"`'),
+        (4, "target-differs", "the engine reads `${pose}` as a text, not as an entry"),
+        (5, "target-breaks", "`Parallel` has no port `success_threshold`; did you mean `success_count`?"),
+        (5, "target-breaks", "`Parallel` has no port `failure_threshold`; did you mean `failure_count`?"),
+        (6, "target-breaks", "`BlackboardCheckInt` is not built into BehaviorTree.CPP 4.6–4.10"),
+        (7, "target-differs", "from 4.0 on `dock` is a text that the SubTree gets, no longer the name of an entry"),
+        (7, "target-differs", "the engine silently ignores `__shared_blackboard`; did you mean `_autoremap`?"),
+        (8, "target-breaks", "`Go on` requires a value for its port `to`"),
+        (8, "target-breaks", "the engine refuses two SubTrees with the name `one` in one tree"),
+        (9, "target-breaks", "the engine refuses the attribute `ID` on `Sequence`"),
+        (12, "target-breaks", "the engine refuses the tree ID `Go on`: it contains a space"),
+        (13, "target-breaks", "the engine refuses the tree ID `Go on`: it contains a space"),
+        (13, "target-differs", "from 4.0 on this tree `Go on` counts, no longer the first one"),
+    ]
+    assert {each.rule for each in found if not each.rule.startswith("target-")} == {
+        "version-3-file",
+        "duplicate-tree",
+        "duplicate-instance-name",
+    }
+    (star, *_) = [each for each in found if each.rule == "target-breaks"]
+    assert star.notes[-1] == "4.10 has it so: `btq explain not-an-engine-node`"

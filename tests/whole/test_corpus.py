@@ -17,6 +17,7 @@ from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.xsd import xsd
+from btq_lang.catalog.versions import VERSIONS
 from btq_lang.checks import check
 from btq_lang.commands.schema import unknown_nodes
 from btq_lang.diagnostics.model import Diagnostic
@@ -56,7 +57,7 @@ def verdicts(shared: Path) -> dict[str, str]:
 @pytest.fixture(scope="module")
 def found(corpus: dict[str, str]) -> dict[str, tuple[Diagnostic, ...]]:
     """The diagnostics of each file, by version 4 of the engine."""
-    project = Project(has_moved=True)
+    project = Project(written_for=VERSIONS)
     return {name: check(Workspace({name: file_of(name, text)}, project), name) for name, text in corpus.items()}
 
 

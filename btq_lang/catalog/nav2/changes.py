@@ -7,49 +7,9 @@ the nodes that need no ROS, by running them.
 
 from __future__ import annotations
 
-import re
 from typing import Final
 
-from btq_lang.util.record import Record
-
-ANY: Final = "*"  # every node
-
-
-class Change(Record):
-    """A change in what a node does.
-
-    Attributes:
-        since: the first distribution with it.
-        nodes: those that change.
-        what: the rest of a sentence that begins with a node's name.
-        instead: what to write, or look at.
-        port: on whose value the change depends; empty for none.
-        value: the whole value of the port that changes its meaning, as a regular expression; None if the change is for
-            nodes without a value of the port.
-        breaks: whether the tree is refused, and does not only mean something else.
-        keeps: the value of `port` that keeps the old meaning.
-    """
-
-    since: str
-    nodes: tuple[str, ...]
-    what: str
-    instead: str = ""
-    port: str = ""
-    value: str | None = ""
-    breaks: bool = False
-    keeps: str | None = None
-
-    def concerns(self, node: str) -> bool:
-        return self.nodes == (ANY,) or node in self.nodes
-
-    def matches(self, value: str | None) -> bool:
-        """Whether a node changes whose port has a value, or None."""
-        if not self.port:
-            return True
-        if self.value is None or value is None:
-            return self.value is value
-        return re.fullmatch(self.value, value) is not None
-
+from btq_lang.catalog.changes import ANY, Change
 
 # The names after a release that renamed a node, or a port of one.
 RENAMED: Final = {("lyrical", "IsPathValid"): "ValidatePath", ("lyrical", "IsStopped"): "CheckStopStatus"}

@@ -188,8 +188,8 @@ _TABLE = (
     Rule(
         "error-code-not-collected", _H, "an error code in an entry that neither a node nor the result of a goal reads"
     ),
-    Rule("target-breaks", _E, "what the distribution of `--target` refuses"),
-    Rule("target-differs", _W, "what means something else in the distribution of `--target`"),
+    Rule("target-breaks", _E, "what the engine or the distribution of `--target` refuses"),
+    Rule("target-differs", _W, "what means something else in the engine or the distribution of `--target`"),
     Rule("yaml-syntax", _E, "a parameter file that is not YAML"),
     Rule("nav2-distribution", _H, "a parameter file of Nav2 that does not tell for which distribution it is"),
     Rule("nav2-parameter", _W, "a parameter of bt_navigator that the distribution does not read, or refuses"),

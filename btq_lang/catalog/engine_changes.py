@@ -1,0 +1,91 @@
+"""What a release of the engine changes for trees that load in an earlier one too: one row a change.
+
+What a release refuses, and what it reads otherwise, are rows of `versions`; the nodes that it adds or removes say so
+themselves.  Determined in the sources of the releases and by running 3.8.5, 3.8.8, 4.6.2 and 4.10.0.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from btq_lang.catalog.changes import Change
+
+_IN_TURN: Final = ("Sequence", "AsyncSequence", "SequenceWithMemory", "Fallback", "AsyncFallback")
+_LOOPS: Final = ("LoopInt", "LoopBool", "LoopDouble", "LoopString")
+_SWITCHES: Final = {number: tuple(f"Switch{cases}" for cases in range(max(number, 2), 7)) for number in range(1, 7)}
+_WITHOUT_CYCLE: Final = (
+    ("Repeat", "num_cycles", "succeeded", "succeeds"),
+    ("RetryUntilSuccessful", "num_attempts", "failed", "fails"),
+)
+_WATCHES: Final = ("SkipUnlessUpdated", "WaitValueUpdate")
+_NUMBER: Final = r"-?\d+(\.\d*)?([eE][-+]?\d+)?"
+
+
+def _cases(since: str, what: str, value: str, after: str = "") -> tuple[Change, ...]:
+    instead = "give the cases and the variable one form"
+    return tuple(
+        Change(since, nodes, what, instead, f"case_{number}", value, after=after) for number, nodes in _SWITCHES.items()
+    )
+
+
+ENGINE_CHANGES: Final = (
+    Change(
+        "3.8.6",
+        ("ReactiveSequence", "ReactiveFallback"),
+        "resets the children before the one that runs too: they begin again, and halt it; before, they did not",
+        "let only the last child take several ticks",
+        when="restarts",
+    ),
+    Change(
+        "4.0",
+        ("Repeat", "RetryUntilSuccessful"),
+        "returns RUNNING between two cycles; before, all cycles of a child that completes at once were one tick",
+        when="completes at once",
+    ),
+    *(
+        Change("4.1", (node,), f"is skipped if it has no cycle; before, it {then}", port=port, value="0", until="4.7")
+        for node, port, then, _ in _WITHOUT_CYCLE
+    ),
+    *(
+        Change("4.7", (node,), f"{now} if it has no cycle; before, it was skipped", port=port, value="0", after="4.1")
+        for node, port, _, now in _WITHOUT_CYCLE
+    ),
+    *_cases("4.5.1", "compares numbers as numbers, so that `5` is also `5.0`; before, only their texts", _NUMBER),
+    *_cases(
+        "4.10",
+        "compares a case such as `5abc` as text; before, only its number at the beginning",
+        rf"(?!{_NUMBER}$)-?\d.*",
+        after="4.5.1",
+    ),
+    Change(
+        "4.7",
+        _IN_TURN,
+        "is skipped if all its children are skipped in the end, also where one has run before that; before, a Sequence "
+        "then succeeded, and a Fallback failed",
+        "end it with a child that is never skipped: `AlwaysSuccess`, or `AlwaysFailure` in a Fallback",
+        when="skipped in the end",
+    ),
+    Change(
+        "4.7",
+        ("Precondition",),
+        "checks `if` only before its child starts; before, at every tick, and it halted the child",
+        "put a ScriptCondition before the child, in a ReactiveSequence",
+        when="runs on",
+    ),
+    Change(
+        "4.7",
+        _LOOPS,
+        "goes through a list at each start; before, only at the first, for it then was empty",
+        "look at what starts it again",
+        "queue",
+        r"[^{].*",
+    ),
+    Change("4.8.3", ("Delay",), "does not wait: 4.8.3 and 4.8.4 do not read `delay_msec`", until="4.9"),
+    Change("4.9", ("Delay",), "waits for `delay_msec`, which 4.8.3 and 4.8.4 do not read", after="4.8.3"),
+    Change(
+        "4.9",
+        _WATCHES,
+        "halts its child when it is halted; before, the child stayed RUNNING, and went on from there",
+        when="runs on",
+    ),
+)

@@ -1,0 +1,120 @@
+"""What changes for a tree when its robot moves on to another version of the engine.
+
+One invariant: a fact is in the catalog; here is only where in a tree it holds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.catalog.engine_changes import ENGINE_CHANGES
+from btq_lang.catalog.literals import is_pointer
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.names import is_port_name
+from btq_lang.catalog.versions import ENTRIES_OF_SUBTREE, LAST_TREE_COUNTS, at_least, last_of
+from btq_lang.checks.moved_nodes import changed
+from btq_lang.checks.results import result
+from btq_lang.checks.statuses import RUNNING, SKIPPED
+from btq_lang.checks.view import View
+from btq_lang.diagnostics.model import Diagnostic, replace_fix
+from btq_lang.diagnostics.rules import Severity
+from btq_lang.syntax.tree import Entry, Tree
+from btq_lang.util.record import replace
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.resolved import ResolvedNode
+
+    Check = Callable[[View, Entry], Iterator[Diagnostic]]
+
+
+def engine_changes(view: View, origin: str, target: str) -> Iterator[Diagnostic]:
+    """What nodes of a tree do otherwise in the target.
+
+    Args:
+        origin: the version that the tree is for; a line such as 4.8 means any of its releases.
+        target: the version that it moves to.
+    """
+    rows = [row for row in ENGINE_CHANGES if is_between(row.since, row.until, row.after, origin, target)]
+    for seen in view.nodes:
+        kind = seen.kind.tag if seen.kind is not None else None
+        for row in rows if kind is not None and seen.id is not None else ():
+            if kind is not None and row.concerns(kind) and (not row.when or _WHEN[row.when](view, seen)):
+                yield from changed(view, seen, seen.node.head, row)
+        if seen.is_subtree and is_between(ENTRIES_OF_SUBTREE.since, "", "", origin, target):
+            yield from _entries(seen)
+    yield from _first_tree(view) if is_between(LAST_TREE_COUNTS.since, "", "", origin, target) else ()
+
+
+def is_between(since: str, until: str, after: str, origin: str, target: str) -> bool:
+    """Whether a change is met on the way from one version to a later one."""
+    if origin == target or at_least(origin, since) or not at_least(last_of(target), since):
+        return False
+    return (not until or not at_least(target, until)) and (not after or at_least(last_of(origin), after))
+
+
+def new_in_target(view: View, entry: Entry, checks: tuple[Check, ...], found: list[Diagnostic]) -> Iterator[Diagnostic]:
+    """What the target refuses, or reads otherwise, and the version that the tree is for does not.
+
+    Args:
+        found: what the checks find for that version.
+    """
+    workspace = view.workspace.moved
+    moved = View(workspace.store, view.viewpoint, view.facts)
+    known = {(each.rule, each.span) for each in found if each.effective_severity in _SEVERE}
+    for each in (each for check in checks for each in check(moved, entry)):
+        if (each.rule, each.span) in known or each.effective_severity not in _SEVERE:
+            continue
+        breaks = each.effective_severity is Severity.ERROR or each.rule == "not-an-engine-node"
+        notes = (*each.notes, f"{workspace.project.target} has it so: `btq explain {each.rule}`")
+        yield replace(each, rule="target-breaks" if breaks else "target-differs", notes=notes, severity=None)
+
+
+def _entries(seen: ResolvedNode) -> Iterator[Diagnostic]:
+    """The values of a SubTree's ports that are names of entries before version 4."""
+    for pair in seen.node.attributes:
+        if pair.value is not None and is_port_name(pair.key.text) and not is_pointer(pair.value.text):
+            text, since = pair.value.text, ENTRIES_OF_SUBTREE.since
+            yield Diagnostic(
+                "target-differs",
+                pair.value.span,
+                f"from {since} on `{text}` is a text that the SubTree gets, no longer the name of an entry",
+                fixes=(replace_fix(f"Replace `{text}` with `{{{text}}}`", pair.value.span, f"{{{text}}}"),),
+            )
+
+
+def _first_tree(view: View) -> Iterator[Diagnostic]:
+    """A tree whose ID another one before it has."""
+    tree = view.facts.item
+    if isinstance(tree, Tree) and tree.name is not None and not view.defines_here(Kind.TREE, tree.name.text):
+        what = f"from {LAST_TREE_COUNTS.since} on this tree `{tree.name.text}` counts, no longer the first one"
+        yield Diagnostic("target-differs", tree.name.span, what)
+
+
+def _runs_on(view: View, seen: ResolvedNode) -> bool:
+    """Whether a child may take several ticks."""
+    return any(result(view, child).ever & RUNNING for child in seen.node.nodes)
+
+
+def _completes_at_once(view: View, seen: ResolvedNode) -> bool:
+    return bool(seen.node.nodes) and not _runs_on(view, seen)
+
+
+def _restarts(view: View, seen: ResolvedNode) -> bool:
+    """Whether a child that may take several ticks is before another one."""
+    return sum(bool(result(view, child).ever & RUNNING) for child in seen.node.nodes) > 1
+
+
+def _skipped_in_the_end(view: View, seen: ResolvedNode) -> bool:
+    """Whether all children may be skipped, one of them after it has run."""
+    found = [result(view, child).ever for child in seen.node.nodes]
+    return all(ever & SKIPPED for ever in found) and any(ever & RUNNING for ever in found)
+
+
+_SEVERE: Final = (Severity.ERROR, Severity.WARNING)
+_WHEN: Final[Mapping[str, Callable[[View, ResolvedNode], bool]]] = {
+    "runs on": _runs_on,
+    "completes at once": _completes_at_once,
+    "restarts": _restarts,
+    "skipped in the end": _skipped_in_the_end,
+}
