@@ -58,7 +58,9 @@ def test_without_the_key_nothing_is_known_of_them(robot: Path) -> None:
 
 
 def test_another_distribution_has_other_nodes(robot: Path) -> None:
-    (robot / "m.btq").write_text("BehaviorTree Main\n    SmoothPath (unsmoothed_path = {p} error_code_id = {smoother_error_code})\n")
+    (robot / "m.btq").write_text(
+        "BehaviorTree Main\n    SmoothPath (unsmoothed_path = {p} error_code_id = {smoother_error_code})\n"
+    )
     found = {}
     for name in PACKAGED:
         (robot / "btq.toml").write_text(f'nodes = ["{name}"]\n')
