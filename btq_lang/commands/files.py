@@ -159,9 +159,11 @@ class Files:
             )
             groups += found_groups
             problems += found_problems
-        for path in self.nav2_params:  # also where no tree is checked
-            if all(each.path != path for each in self.parameter_files):
-                problems += self._factories(project_of(path))[1]
+        for path in self.nav2_params:
+            project_of(path)
+        for key, home in {home.path or "": home for home in projects.values()}.items():
+            if key not in members:  # no tree of it is checked, but its parameters of Nav2 may be
+                problems += self._factories(home)[1]
         return tuple(groups), tuple(dict.fromkeys(problems))
 
     def _groups_of(
@@ -223,6 +225,8 @@ class Files:
             from btq_lang.commands.nav2_factory import parameter_file  # few projects are for Nav2
 
             file, problem = parameter_file(found, home.project, home.path, self.overlay.get)
+            if problem is not None and file is None and home.path is not None:
+                problem = LoadProblem(home.path, f"`{factory.nav2}` {problem.message}")  # where editors show it
             problems += [problem] if problem is not None else []
             if file is not None:
                 self.parameter_files.append(file)

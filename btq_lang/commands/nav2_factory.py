@@ -73,7 +73,7 @@ def parameter_file(
     try:
         parameters = read_parameters(text)
     except YamlMissing:
-        return None, LoadProblem(path, "YAML is read with PyYAML; install it with pip install 'btq-lang[nav2]'")
+        return None, LoadProblem(path, "needs PyYAML to be read: pip install 'btq-lang[nav2]'")
     except YamlProblem as error:
         at = min(error.offset, len(text))
         return replace(empty, problem=Diagnostic("yaml-syntax", Span(at, at), error.message)), problem

@@ -278,6 +278,9 @@ class Server(LanguageServer):
         """All diagnostics of a file, a mission or a project file, as JSON; None: the file is not reported on."""
         if path in self.session.projects:
             return self.convert.problems(*self.session.projects[path])
+        if path in self.session.parameters:
+            named, found = self.session.parameters[path]
+            return self.convert.findings(named, path, found)
         workspace = self.session.workspace_of(path)
         if workspace is None or not self.session.knows(path):
             return None
@@ -395,8 +398,8 @@ class Server(LanguageServer):
             self.protocol.notify_plain(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
 
     def publish_projects(self) -> None:
-        """Publish the diagnostics of project files to an editor that pulls those of open files only."""
-        for path in {*self.session.projects, *self.published}:
+        """Publish the diagnostics of project and parameter files to an editor that pulls those of open files only."""
+        for path in {*self.session.projects, *self.session.parameters, *self.published}:
             if self.pulls_all or path in self.session.open:
                 self.withdraw(path)
             else:

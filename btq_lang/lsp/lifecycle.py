@@ -78,9 +78,9 @@ async def _register_watchers(server: Server) -> None:
     watching = workspace.did_change_watched_files if workspace else None
     if watching is None or not watching.dynamic_registration:
         return
-    from btq_lang.workspace.file import SIDE_SUFFIX  # as in `_endings`
+    from btq_lang.workspace.file import SIDE_SUFFIX, YAML_SUFFIXES  # as in `_endings`
 
-    endings = (*_endings(), SIDE_SUFFIX)
+    endings = (*_endings(), SIDE_SUFFIX, *YAML_SUFFIXES)
     patterns = [f"**{ending}" if ending[0] == "/" else f"**/*{ending}" for ending in endings]
     watchers = [types.FileSystemWatcher(pattern) for pattern in patterns]
     # If a folder is deleted as a whole, an editor reports only the folder.

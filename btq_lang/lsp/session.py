@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Set
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 from weakref import ReferenceType, ref
 
 from btq_lang.diagnostics.rules import RULES, Severity
@@ -21,10 +21,13 @@ from btq_lang.workspace.overrides import Override
 if TYPE_CHECKING:  # imported on use: the server must start fast
     from btq_lang.commands.files import Files
     from btq_lang.diagnostics.model import Diagnostic
+    from btq_lang.workspace.config import Project
     from btq_lang.workspace.file import File
     from btq_lang.workspace.item_index import Name
     from btq_lang.workspace.loader import LoadProblem
     from btq_lang.workspace.workspace import Workspace
+
+    Severities: TypeAlias = tuple[tuple[str, Severity | None], ...]
 
 
 class Session:
@@ -35,6 +38,8 @@ class Session:
         open: the texts of open files, by path.
         settings: what the editor's user has set.
         projects: the project files that are open or have problems: their texts and problems.
+        parameters: the parameter files of Nav2 that projects name: their findings, as of the last reload, and the files
+            that these refer to.
         check_seconds: the duration of the last check of an open file, by path.
     """
 
@@ -43,6 +48,7 @@ class Session:
         self.settings: dict[str, object] = {}
         self.open: dict[str, str] = {}
         self.projects: dict[str, tuple[str, tuple[LoadProblem, ...]]] = {}
+        self.parameters: dict[str, tuple[Workspace, Findings]] = {}
         self.check_seconds: dict[str, float] = {}
         self._files: Files | None = None
         self._read_for: tuple[tuple[str, ...], dict[str, object]] | None = None  # which folders and settings
@@ -112,6 +118,7 @@ class Session:
     def reload(self) -> tuple[str, ...]:
         """Read folders and projects again; returns all files."""
         from btq_lang.commands.files import Files
+        from btq_lang.workspace.file import YAML_SUFFIXES
         from btq_lang.workspace.inputs import advance
         from btq_lang.workspace.loader import is_project_file
 
@@ -122,9 +129,10 @@ class Session:
         self._files.folders = self.folders
         self._files.know(workspace.files[path] for path in self.open if (workspace := self.workspace_of(path)))
         severities = self._severities()
-        missions = (path for path in self.open if not is_project_file(path))
+        missions = (path for path in self.open if not is_project_file(path) and not path.endswith(YAML_SUFFIXES))
         groups, problems = self._files.groups((*self.folders, *missions), for_checks=True)
         self._read_projects(problems)
+        self._read_parameters(severities)
         before = {(each.factory, *each.files): each for each in (*self._aside, *self._workspaces)}
         self._workspaces = []
         self._home = {}
@@ -133,9 +141,7 @@ class Session:
         for index, group in enumerate(groups):
             workspace = group.workspace
             if severities:
-                project = workspace.project
-                overrides = (*project.overrides, Override(("*",), severities))  # for all files, and the last
-                workspace = workspace.with_project(replace(project, overrides=overrides))
+                workspace = workspace.with_project(_with_severities(workspace.project, severities))
             known = before.pop((workspace.factory, *workspace.files), None)
             if known is not None and known is not workspace:
                 advance(known, workspace)
@@ -163,12 +169,27 @@ class Session:
         texts = {path: self.open[path] if path in self.open else read(path)[0] or "" for path in by_path}
         self.projects = {path: (texts[path], tuple(found)) for path, found in by_path.items()}
 
+    def _read_parameters(self, severities: Severities) -> None:
+        """Store the findings in parameter files."""
+        self.parameters = {}
+        if self._files is None or not self._files.parameter_files:
+            return
+        from btq_lang.commands.nav2_check import nav2_findings  # few projects are for Nav2
+        from btq_lang.workspace.workspace import Workspace
+
+        read = self._files.parameter_files
+        found, texts = nav2_findings(read, self._files, (), lambda project: _with_severities(project, severities))
+        workspace = Workspace.of(texts)
+        for file in read:
+            placed = (each.diagnostic for each in found if each.path == file.path)
+            self.parameters[file.path] = workspace, Findings.placed(placed)
+
     @property
     def has_read(self) -> bool:
         """Whether the folders were read with the current settings."""
         return self._read_for == (self.folders, self.settings)
 
-    def _severities(self) -> tuple[tuple[str, Severity | None], ...]:
+    def _severities(self) -> Severities:
         """The severities set by the user, which override those of the project."""
         rules = self.settings.get("rules")
         found: list[tuple[str, Severity | None]] = []
@@ -241,7 +262,7 @@ class Session:
         """Whether a path is that of a mission or project file that is reported on."""
         workspace = self.workspace_of(path)
         if workspace is None or path in self._pooled:
-            return path in self.projects
+            return path in self.projects or path in self.parameters
         origin = workspace.files[path].origin
         return (
             origin is None
@@ -254,7 +275,7 @@ class Session:
 
     def paths(self) -> tuple[str, ...]:
         """All known files that are reported on, open ones first."""
-        known = (*(self._home.keys() - self._pooled), *self.projects)
+        known = {*(self._home.keys() - self._pooled), *self.projects, *self.parameters}
         return tuple(sorted(known, key=lambda path: (path not in self.open, path)))
 
     def places(self) -> set[str]:
@@ -339,6 +360,13 @@ class Session:
         """A setting of the user, if it is a bool."""
         value = self.settings.get(name)
         return value if isinstance(value, bool) else default
+
+
+def _with_severities(project: Project, severities: Severities) -> Project:
+    """The project with severities that count before its own."""
+    if not severities:
+        return project
+    return replace(project, overrides=(*project.overrides, Override(("*",), severities)))  # for all files, and the last
 
 
 def _is_mission(xml: str) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.nav2 import DISTRIBUTIONS
@@ -122,6 +123,7 @@ def is_id(named: str) -> bool:
     return not named.endswith(".xml") and _ID.fullmatch(named) is not None
 
 
+@lru_cache(8)  # a server reads them again and again
 def read_parameters(text: str) -> Parameters:
     """The parameters of bt_navigator in a file.
 

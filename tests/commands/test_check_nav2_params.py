@@ -12,6 +12,7 @@ from in_process import run_btq
 from nav2_robot import make_robot
 
 from btq_lang.nav2 import yaml_reader
+from btq_lang.nav2.parameters import read_parameters
 
 PARAMETERS = """\
 bt_navigator:
@@ -165,7 +166,7 @@ def test_bad_yaml(robot: Path) -> None:
 def test_no_file(robot: Path) -> None:
     (robot / "nav2_params.yaml").unlink()
     code, _, err = run_btq("check", cwd=robot)
-    assert (code, err) == (2, "btq: nav2_params.yaml: cannot be read: No such file or directory\n")
+    assert (code, err) == (2, "btq: btq.toml: `nav2_params.yaml` cannot be read: No such file or directory\n")
     code, _, err = run_btq("check", "--nav2-params", "other.yml", "trees/dock.xml", cwd=robot / "..")
     assert code == 2
 
@@ -175,6 +176,10 @@ def test_without_the_extra(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None
         raise yaml_reader.YamlMissing
 
     monkeypatch.setattr(yaml_reader, "_yaml", missing)
+    read_parameters.cache_clear()
     code, _, err = run_btq("check", cwd=robot)
-    message = "YAML is read with PyYAML; install it with pip install 'btq-lang[nav2]'"
+    message = "needs PyYAML to be read: pip install 'btq-lang[nav2]'"
+    assert (code, err) == (2, f"btq: btq.toml: `nav2_params.yaml` {message}\n")
+    (robot / "btq.toml").unlink()
+    code, _, err = run_btq("check", "--nav2-params", "nav2_params.yaml", cwd=robot)
     assert (code, err) == (2, f"btq: nav2_params.yaml: {message}\n")
