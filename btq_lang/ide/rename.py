@@ -115,10 +115,11 @@ def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
     if wanted.home.startswith(ENGINE):
         return f"cannot rename `{wanted.name}`: the engine defines it"
     place, shown = definition(workspace, found.path, wanted), workspace.project.shown
-    if place is not None and place.path in PACKAGED.values():
+    where = place.path if place is not None else wanted.home.rpartition(":")[0]  # a port is in the model of its node
+    if where in PACKAGED.values():
         return f"cannot rename `{wanted.name}`: Nav2 defines it"
-    if place is not None and (why := _is_kept(workspace.files[place.path])):
-        return f"cannot rename `{wanted.name}`: its definition is in {shown(place.path)}, {why}"
+    if where in workspace.files and (why := _is_kept(workspace.files[where])):
+        return f"cannot rename `{wanted.name}`: its definition is in {shown(where)}, {why}"
     if place is not None and not wanted.home:
         return (
             f"cannot rename `{wanted.name}`: its definition is in {shown(place.path)}, which this file does not include"

@@ -116,6 +116,8 @@ def test_editors_show_them(robot: Path) -> None:
     proposed = [each.label for each in complete(workspace, path, MISSION.index("controller_id = Fast")).proposals]
     assert "goal_checker_id" in proposed
     assert prepare_rename(workspace, path, at) == Refusal("cannot rename `FollowPath`: Nav2 defines it")
+    of_port = prepare_rename(workspace, path, MISSION.index("controller_id"))
+    assert of_port == Refusal("cannot rename `controller_id`: Nav2 defines it")
     references = find_references(workspace, path, at, include_definition=False)
     assert [(each, span.start) for each, span in references] == [(path, at - 1)]
 
