@@ -43,9 +43,10 @@ def _parser() -> Any:
 
 
 def place_of(path: str, node: Node) -> Place:
-    """Where a node begins."""
+    """Where a node is."""
     row, column = node.start_point
-    return Place(path, row + 1, column + 1)
+    end_row, end_column = node.end_point
+    return Place(path, row + 1, column + 1, end_row + 1, end_column + 1)
 
 
 def text_of(node: Node | None) -> str:

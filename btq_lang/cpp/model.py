@@ -5,17 +5,25 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from btq_lang.util.record import Record
+from btq_lang.util.text import LineIndex, Position, Span
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Category, Direction
 
 
 class Place(Record):
-    """A place in a file; line and column count from 1."""
+    """A place in a file; lines and columns count from 1, columns in bytes of UTF-8."""
 
     path: str
     line: int
     column: int
+    end_line: int
+    end_column: int
+
+    def span_in(self, lines: LineIndex) -> Span:
+        """The place in the text of its file."""
+        start = lines.offset(Position(self.line - 1, self.column - 1), "utf-8")
+        return Span(start, lines.offset(Position(self.end_line - 1, self.end_column - 1), "utf-8"))
 
     def __str__(self) -> str:
         return f"{self.path}:{self.line}:{self.column}"
@@ -63,7 +71,7 @@ class CppNode(Record):
         name: its ID.
         class_name: empty for a function.
         place: of the registration.
-        class_place: of the class, else of the registration.
+        class_place: of the name of the class, else of the registration.
         ports: in order.
         complete: whether these are all of its ports.
         unread: ports that its code never names.
@@ -88,10 +96,11 @@ class CppNode(Record):
 
 
 class Unseen(Record):
-    """What cannot be read from the sources."""
+    """What cannot be read from the sources; hides_node: whether that may be a node."""
 
     message: str
     place: Place
+    hides_node: bool = False
 
 
 class CppNodes(Record):

@@ -6,13 +6,13 @@ One invariant: a node whose ID or category cannot be seen is left out and report
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.cpp.grammar import arguments, callee, enclosing, place_of, text_of, walk
+from btq_lang.cpp.grammar import arguments, callee, enclosing, field, place_of, text_of, walk
 from btq_lang.cpp.model import CppNode, CppNodes, Place
 from btq_lang.cpp.ports import Body, PortsReader, Provided
-from btq_lang.cpp.source import Call
+from btq_lang.cpp.source import Call, Source
 from btq_lang.cpp.sources import Sources
 from btq_lang.cpp.uses import Uses
 from btq_lang.cpp.values import string
@@ -29,7 +29,12 @@ def read_nodes(files: Mapping[str, str]) -> CppNodes:
     Raises:
         GrammarMissing: tree-sitter is not installed.
     """
-    reader = _Reader(Sources(files))
+    return nodes_of(Source(path, text) for path, text in files.items())
+
+
+def nodes_of(sources: Iterable[Source]) -> CppNodes:
+    """The nodes that parsed files register."""
+    reader = _Reader(Sources(sources))
     nodes: dict[str, CppNode] = {}
     for source in reader.sources.files.values():
         for call in source.calls:
@@ -74,7 +79,8 @@ class _Reader:
             return None
         provided: Provided | None = Provided((), True)
         if len(given) > 2 and (provided := self._ports.of_argument(given[2], body)) is None:
-            self._report(call, f"it cannot be seen which ports `{name}` has: `{text_of(given[2])}`")
+            message = f"it cannot be seen which ports `{name}` has: `{text_of(given[2])}`"
+            self.sources.report(message, place_of(call.path, call.node))
         place = place_of(call.path, call.node)
         return _node(name, _SIMPLE[call.name], "", place, place, provided)
 
@@ -106,7 +112,7 @@ class _Reader:
         provided = self._ports.of_argument(ports, body) if ports is not None and _may_be_ports(ports, body) else None
         if provided is None:
             provided = self._ports.of_class(bound, place)
-        class_place = place_of(bound.class_.path, bound.class_.node)
+        class_place = place_of(bound.class_.path, field(bound.class_.node, "name") or bound.class_.node)
         return _node(name, category, bound.class_.name, place, class_place, provided, Uses(self.sources, bound))
 
     def _name(self, call: Call, body: Body, node: Node) -> str | None:
@@ -116,7 +122,7 @@ class _Reader:
         return name
 
     def _report(self, call: Call, message: str) -> None:
-        self.sources.report(message, place_of(call.path, call.node))
+        self.sources.report(message, place_of(call.path, call.node), hides_node=True)
 
 
 def _node(

@@ -9,7 +9,19 @@ import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.cpp.grammar import callee, contents, errors, field, literal, named, parse, place_of, text_of, walk
+from btq_lang.cpp.grammar import (
+    arguments,
+    callee,
+    contents,
+    errors,
+    field,
+    literal,
+    named,
+    parse,
+    place_of,
+    text_of,
+    walk,
+)
 from btq_lang.cpp.model import Unseen
 from btq_lang.cpp.type_names import parts, plain
 from btq_lang.util.record import Record
@@ -58,15 +70,22 @@ class Call(Record):
 
 
 class Source:
-    """One file."""
+    """One file.
+
+    Attributes:
+        strings: constants by their whole name.
+        aliases: of types, likewise.
+        accessed: the ports that code reads or writes of another object, as tests do.
+    """
 
     def __init__(self, path: str, text: str) -> None:
         self.path: Final = path
         self.classes: Final[list[Class]] = []
         self.functions: Final[list[Function]] = []
         self.calls: Final[list[Call]] = []
-        self.strings: Final[dict[str, str]] = {}  # constants by their whole name
-        self.aliases: Final[dict[str, str]] = {}  # of types, likewise
+        self.strings: Final[dict[str, str]] = {}
+        self.aliases: Final[dict[str, str]] = {}
+        self.accessed: Final[set[str]] = set()
         self.includes: Final[list[str]] = []
         self.usings: Final[list[str]] = []
         self.unseen: Final[list[Unseen]] = []
@@ -75,7 +94,7 @@ class Source:
         lines = text.splitlines()
         for row, node in {node.start_point[0]: node for node in reversed([*errors(root)])}.items():
             if any(map(_MATTERS, lines[row : node.end_point[0] + 1])):
-                self.unseen.append(Unseen("the C++ grammar cannot read this", place_of(path, node)))
+                self.unseen.append(Unseen("the C++ grammar cannot read this", place_of(path, node), hides_node=True))
 
     def _visit(
         self, nodes: Iterable[Node], scope: tuple[str, ...], within: Class | None, parameters: tuple[str, ...]
@@ -158,6 +177,13 @@ class Source:
                 _, name, types = callee(each)
                 if REGISTERS(name):
                     self.calls.append(Call(name, tuple(map(plain, types)), scope, self.path, each))
+                elif name in ACCESSES and _is_of_another(field(each, "function")) and (given := arguments(each)):
+                    self.accessed.add(literal(given[0]) or "")
+
+
+def _is_of_another(method: Node | None) -> bool:
+    """Whether a method is called of another object: `node->getInput`."""
+    return method is not None and text_of(field(method, "argument")) not in ("", "this")
 
 
 def _name_of(function: Node) -> str:
@@ -181,5 +207,6 @@ def _parameters(node: Node | None) -> tuple[str, ...]:
 _CLASSES: Final = frozenset(("class_specifier", "struct_specifier"))
 _OF_BASES: Final = ("access_specifier", "virtual")
 _QUOTED: Final = re.compile(r'"((?:[^"\\]|\\.)*)"')
+ACCESSES: Final = ("getInput", "setOutput", "getLockedPortContent", "getInputStamped")
 REGISTERS: Final = re.compile(r"[rR]egister[A-Z]\w*|CreateRosNodePlugin").fullmatch
 _MATTERS: Final = re.compile(r"providedPorts|Port\s*[<(]|[rR]egister[A-Z]\w*\s*[<(]|getInput|setOutput").search

@@ -6,7 +6,7 @@ several that are equally near none is taken, and that is reported.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from btq_lang.catalog.cpp_classes import ENGINE, LIBRARIES
@@ -38,11 +38,16 @@ class Bound(Record):
 
 
 class Sources:
-    """The files, by path."""
+    """The files, by path.
 
-    def __init__(self, files: Mapping[str, str]) -> None:
-        self.files: Final = {path: Source(path, text) for path, text in files.items()}
+    Attributes:
+        accessed: the ports that code reads or writes of another object.
+    """
+
+    def __init__(self, sources: Iterable[Source]) -> None:
+        self.files: Final = {source.path: source for source in sources}
         self.unseen: Final = [each for source in self.files.values() for each in source.unseen]
+        self.accessed: Final = frozenset().union(*(source.accessed for source in self.files.values()))
         self._orders: Final[dict[str, list[Source]]] = {}  # by path, the nearest first
         self._by_file_name: Final[dict[str, list[str]]] = {}
         self._classes: Final[dict[str, list[Class]]] = {}  # by the last part of the name
@@ -54,9 +59,9 @@ class Sources:
             for function in source.functions:
                 self._methods.setdefault(_last(function.name), []).append(function)
 
-    def report(self, message: str, place: Place) -> None:
+    def report(self, message: str, place: Place, hides_node: bool = False) -> None:
         """Report once what cannot be read."""
-        unseen = Unseen(message, place)
+        unseen = Unseen(message, place, hides_node)
         if unseen not in self.unseen:
             self.unseen.append(unseen)
 

@@ -1,7 +1,8 @@
 """Which ports the code of a class reads and writes, and what it does if one is not given.
 
-One invariant: a port is called unread only if all code of the class and of its bases is in the sources and its name is
-nowhere in it, and what the code does without a port is said only where the place of the read shows it.
+One invariant: a port is called unread only if all code of the class and of its bases is in the sources, its name is
+nowhere in it, and no other code reads a port of that name, and what the code does without a port is said only where the
+place of the read shows it.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.catalog.cpp_classes import ENGINE
 from btq_lang.cpp.grammar import arguments, callee, enclosing, field, literal, place_of, text_of, walk
 from btq_lang.cpp.model import CppPort, Use
+from btq_lang.cpp.source import ACCESSES
 from btq_lang.cpp.sources import Bound, Sources
 from btq_lang.cpp.values import Frame, string
 
@@ -25,7 +27,7 @@ class Uses:
 
     Attributes:
         all: reads and writes whose port can be seen, in order.
-        complete: whether all code is in the sources.
+        complete: whether all code is in the sources, and the names of all ports in it can be seen.
     """
 
     def __init__(self, sources: Sources, bound: Bound) -> None:
@@ -48,7 +50,7 @@ class Uses:
         """The ports that the code never names."""
         if not self.complete:
             return ()
-        named = self._strings | self._sources.strings_of(self._identifiers)
+        named = self._strings | self._sources.accessed | self._sources.strings_of(self._identifiers)
         return tuple(port for port in ports if port.name not in named)
 
     def undeclared(self, ports: Iterable[CppPort]) -> tuple[Use, ...]:
@@ -74,15 +76,24 @@ class Uses:
 
     def _call(self, call: Node, frame: Frame) -> None:
         name, given = callee(call)[1], arguments(call)
-        if name in ("getInput", "setOutput", "getLockedPortContent", "getInputStamped"):
-            port = string(self._sources, given[0], frame) if given else None
+        if name in ACCESSES and given:
+            port = string(self._sources, given[0], frame)
             if port is not None:
                 writes = name == "setOutput"
                 without = "" if writes else _without(call)
                 self.all.append(Use(port, writes, without, place_of(frame.path, call)))
+            elif not _is_parameter(given[0]):  # else the name is in a string of the code that calls this
+                self.complete = False
         elif _FALLS_BACK(name):
             for port in filter(None, map(literal, given)):
                 self.all.append(Use(port, False, "goes on", place_of(frame.path, call), falls_back=True))
+
+
+def _is_parameter(name: Node) -> bool:
+    """Whether an expression is a parameter of the function that it is in."""
+    function = enclosing(name, ("function_definition", "lambda_expression"))
+    declarator = next((each for each in walk(function) if each.type == "parameter_list"), None) if function else None
+    return name.type == "identifier" and text_of(name) in map(text_of, walk(declarator) if declarator else ())
 
 
 def _without(read: Node) -> str:

@@ -99,7 +99,7 @@ def test_the_page_shows_each_port_with_its_place(robot: Path) -> None:
     code, page, _ = run_btq("nodes", "src", "--format", "html", cwd=robot)
     assert code == 0
     assert "<title>Nodes of src</title>" in page
-    assert "<p>class <code>Drive</code> at <code>src/drive.cpp:1:1</code></p>" in page
+    assert "<p>class <code>Drive</code> at <code>src/drive.cpp:1:7</code></p>" in page
     assert (
         "<tr><td>input <span class='name'>goal</span></td><td><code>Pose</code></td><td><code></code></td>"
         "<td>where &lt;to&gt; go The node fails without it.</td>"

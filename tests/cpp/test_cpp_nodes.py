@@ -289,7 +289,7 @@ def test_nodes_are_registered_across_files_with_their_places() -> None:
         BT_REGISTER_NODES(factory) { factory.registerNodeType<nav::Spin>("Spin"); }
     """
     (node,) = read(header, source).nodes
-    assert (str(node.place), str(node.class_place)) == ("b.cpp:9:30", "a.cpp:2:17")
+    assert (str(node.place), str(node.class_place)) == ("b.cpp:9:30", "a.cpp:2:23")
     assert [(port.name, str(port.place)) for port in node.ports] == [("dist", "b.cpp:6:12")]
 
 
@@ -484,3 +484,22 @@ def test_a_port_is_not_called_unread_where_code_is_missing() -> None:
         ).unread
         == ()
     )
+
+
+def test_a_port_is_not_unread_if_other_code_reads_it_or_a_name_is_made() -> None:
+    class_ = """
+        static BT::PortsList providedPorts() {{ return {{ BT::InputPort("near"), BT::InputPort("far") }}; }}
+        BT::NodeStatus tick() {{ {} }}
+    """
+
+    def unread(tick: str, *others: str) -> list[str]:
+        (node,) = read(move(class_.format(tick)), *others).nodes
+        return [port.name for port in node.unread]
+
+    assert unread("") == ["near", "far"]
+    assert unread("", 'void test(BT::TreeNode* node) { node->getInput<int>("far"); }') == ["near"]
+    assert unread("", 'void test(BT::TreeNode* node) { find("far"); }') == ["near", "far"]
+    assert unread('getInput(prefix + "ar", value_);') == []
+    helper = "\n template <class T> T get(const std::string& port) {{ T value; getInput(port, value); return value; }}"
+    class_ += helper
+    assert unread('auto x = get<int>("near");') == ["far"]
