@@ -14,17 +14,19 @@ from textwrap import dedent
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.checks import check
+from btq_lang.commands.cpp_files import CppFiles
 from btq_lang.commands.target import with_target
 from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.util.record import replace
 from btq_lang.util.text import Edit, LineIndex, apply_edits
 from btq_lang.workspace.config import Project
+from btq_lang.workspace.file import CPP_SUFFIXES
 from btq_lang.workspace.workspace import Workspace
 
 MAIN = "main.btq"
 MARKER = re.compile(r"(?P<where>next-line |file )?(?P<severity>error|warning|info|hint): \[(?P<rule>[\w-]+)\]")
-COMMENT_WITH_MARKERS = re.compile(r"(?:#|<!--)\s*(?=(?:next-line |file )?(?:error|warning|info|hint): \[).*")
+COMMENT_WITH_MARKERS = re.compile(r"(?:#|<!--|//)\s*(?=(?:next-line |file )?(?:error|warning|info|hint): \[).*")
 
 NODES = re.compile(
     r'^# (nodes = \["(?P<nodes>[\w-]+)"\]|engine = "(?P<engine>[\d.]+)") in btq.toml'
@@ -197,8 +199,11 @@ def show(text: str, diagnostics: Sequence[Diagnostic]) -> list[str]:
 
 
 def workspace_of(files: Mapping[str, str], project: Project | None = None) -> Workspace:
-    """The workspace of some texts by path, those of XML files read as the loader reads them."""
-    return Workspace({path: file_of(path, text) for path, text in files.items()}, project or Project())
+    """The workspace of some texts by path, those of XML and C++ files read as the loader reads them."""
+    cpp = {path: text for path, text in files.items() if path.endswith(CPP_SUFFIXES)}
+    read = CppFiles().files(cpp)[1] if cpp else {}
+    known = {path: read[path] if path in read else file_of(path, text) for path, text in files.items()}
+    return Workspace(known, project or Project())
 
 
 def split_files(text: str, name: str = "main.btq") -> dict[str, str]:

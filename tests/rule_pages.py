@@ -11,7 +11,7 @@ from btq_lang.diagnostics.rules import RULES
 PAGES = Path(rules.__file__).parent
 
 
-BLOCK = re.compile(r"^```(?P<language>btq|xml|yaml)\n(?P<text>.*?)^```$", re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(r"^```(?P<language>btq|xml|yaml|cpp)\n(?P<text>.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
 def blocks() -> list[tuple[str, str, str]]:

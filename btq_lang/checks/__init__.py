@@ -269,7 +269,9 @@ def check_each(workspace: Workspace, paths: Iterable[str]) -> Iterator[tuple[Dia
 def findings(store: Store[Workspace], path: str) -> Findings:
     """The same for a file of the store's workspace, with the diagnostics of each item."""
     # Without a text, as XML that cannot be read, it has no items: what was found in them is kept until it can be read.
-    reported = store.ask(reported_in_file, path, False) if store.state.files[path].text else ()
+    # Of C++, the text has the models, of which only what is wrong in the C++ itself is reported.
+    file = store.state.files[path]
+    reported = store.ask(reported_in_file, path, False) if file.text and not file.is_cpp else ()
     return findings_of(store.state, path, reported)
 
 

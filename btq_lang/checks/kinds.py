@@ -272,13 +272,14 @@ def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:
 
 
 def _unknown(view: View, entry: Entry, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]:
-    has_palette = view.look_up(lookups.has_palette) and view.is_complete
+    is_complete = view.is_complete and not view.project.hides_nodes
+    has_palette = view.look_up(lookups.has_palette) and is_complete
     likely = view.near(name.text, Kind.MODEL)
     if not has_palette:
         if seen.node.category is not None:
             return  # written as a declaration: `Action Foo` declares such a node
         likely = tuple(meant for meant in likely if _is_slip(name.text, meant))
-        is_odd = view.is_complete and view.look_up(lookups.most_have_models)
+        is_odd = is_complete and view.look_up(lookups.most_have_models)
         if not (likely or is_odd):
             return
     if not likely and not view.is_first_use(seen.node, name.text):

@@ -110,8 +110,10 @@ def declaration(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 
 @of_name
 def is_torn(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
-    """Whether something could not be read in the tree or model of a name, which may be a port."""
+    """Whether something could not be read in the tree or model of a name, or in its C++, which may be a port."""
     found = workspace.find(viewpoint, kind, name)
+    if found is not None and (origin := workspace.files[found.path].origin) and origin.nodes:
+        return not origin.nodes[name].complete
     if found is None or not found.entry.diagnostics:
         return False
     target, item = found.symbol.target, found.entry.item
@@ -179,9 +181,12 @@ def declared_format(workspace: Workspace, viewpoint: str) -> str | None:
 
 @of_viewpoint
 def has_palette(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file."""
+    """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file.  Those of Nav2
+    or of C++ sources are not: programs register nodes of other packages, too."""
     scope = workspace.scope(viewpoint)
-    for each in (*scope.paths, *(path for path in scope.node_paths if path not in FILES.values())):
+    files = workspace.files
+    beside = (path for path in scope.node_paths if path not in FILES.values() and not files[path].is_cpp)
+    for each in (*scope.paths, *beside):
         for entry in workspace.files[each].parsed.entries:
             if isinstance(entry.item, Models) and any(_is_of_node(model) for model in entry.item.models):
                 return True

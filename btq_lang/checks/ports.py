@@ -277,8 +277,8 @@ def _is_of_pool(view: View, seen: ResolvedNode) -> bool:
 def _needed(view: View, seen: ResolvedNode, missing: list[KnownPort]) -> list[KnownPort]:
     """Those of a node's missing ports that it seems to need.
 
-    A model in XML does not say which inputs its node can do without.  If there are several such nodes and none has a
-    value for a port, it can; and so it may if the model is one of another program.
+    A model in XML does not say which inputs its node can do without; one of C++ does.  If there are several such nodes
+    and none has a value for a port, it can; and so it may if the model is one of another program.
     """
     if not missing or seen.kind is not None or seen.is_subtree or seen.id is None:
         return missing
@@ -286,7 +286,8 @@ def _needed(view: View, seen: ResolvedNode, missing: list[KnownPort]) -> list[Kn
     definition = view.definition(Kind.MODEL, name)
     if definition is None:
         return []
-    if lookups.origin(view.store, definition[0]) is None:
+    origin = lookups.origin(view.store, definition[0])
+    if origin is None or origin.nodes is not None:
         return missing
     uses, given = view.look_up(lookups.ports_in_use, name)
     return missing if uses == 1 else [port for port in missing if port.name in given]

@@ -228,6 +228,9 @@ def _findings(
             if path in group.damaged:  # the bytes that cannot be decoded are already reported
                 found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
             of_file.setdefault(path, []).append((group.workspace.factory, found))
+    for group in groups:
+        for path in group.cpp:  # the same in every factory
+            of_file[path] = [(None, check(group.workspace, path))]
     if len(groups) > 1:  # projects and factories
         of_file = {path: of_file[path] for path in sorted(of_file)}
     findings = [

@@ -10,7 +10,7 @@ from btq_lang.btcpp.recognition import included_in
 from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.util.record import replace
 from btq_lang.workspace.factories import Factory
-from btq_lang.workspace.file import GROOT_SUFFIX, SUFFIXES
+from btq_lang.workspace.file import CPP_SUFFIXES, GROOT_SUFFIX, SUFFIXES
 from btq_lang.workspace.loader import absolute, matching, package_folder, read
 
 if TYPE_CHECKING:
@@ -42,16 +42,18 @@ def resolved(
     """
     lost: dict[str, None] = {}
 
+    def matched(pattern: str) -> tuple[str, ...]:
+        found = in_folder(pattern, root, find)
+        if not found:
+            lost[pattern] = None
+        return found
+
     def files(patterns: tuple[str, ...]) -> Iterator[str]:
         for pattern in patterns:
             if pattern in PACKAGED:
                 yield PACKAGED[pattern]
                 continue
-            folder, inside = _place(pattern, root)
-            found = find(folder, inside) if folder is not None else ()
-            if not found:
-                lost[pattern] = None
-            for path in found:
+            for path in matched(pattern) if not pattern.endswith(CPP_SUFFIXES) else ():
                 if path.endswith(SUFFIXES):
                     yield path
                 elif (source := xml.source_of(path)) is not None or xml.is_mission(path):
@@ -59,7 +61,20 @@ def resolved(
 
     loaded = tuple(dict.fromkeys(files(factory.load)))
     nodes = tuple(path for path in dict.fromkeys(files(factory.nodes)) if path not in loaded)
-    return replace(factory, files=loaded, node_files=nodes, lost=tuple(lost))
+    cpp = dict.fromkeys(
+        path for pattern in factory.nodes if pattern.endswith(CPP_SUFFIXES) for path in matched(pattern)
+    )
+    return replace(factory, files=loaded, node_files=nodes, cpp_files=tuple(cpp), lost=tuple(lost))
+
+
+def in_folder(pattern: str, root: str, find: Callable[[str, str], tuple[str, ...]]) -> tuple[str, ...]:
+    """The files that a pattern matches below a folder, or in a package.
+
+    Args:
+        find: as in `resolved`.
+    """
+    folder, inside = _place(pattern, root)
+    return find(folder, inside) if folder is not None else ()
 
 
 def groot_projects(pools: Iterable[Iterable[str]], wanted: Container[str]) -> Iterator[Factory]:

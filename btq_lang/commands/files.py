@@ -26,6 +26,7 @@ from btq_lang.workspace.loader import (
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
+    from btq_lang.commands.cpp_files import CppFiles, Read
     from btq_lang.commands.nav2_factory import ParameterFile
     from btq_lang.commands.xml_below import XmlBelow
     from btq_lang.workspace.factories import Factory
@@ -43,6 +44,7 @@ class Group(Record):
         absent: the paths of missing includes.
         project_file: from which the project was read, if any.
         pooled: the paths in `workspace` of files that define what requested XML lacks, and are not checked with it.
+        cpp: the paths in `workspace` of C++ sources below requested folders.
     """
 
     workspace: Workspace
@@ -51,6 +53,7 @@ class Group(Record):
     absent: tuple[str, ...]
     project_file: str | None
     pooled: frozenset[str] = frozenset()
+    cpp: tuple[str, ...] = ()
 
     @property
     def watched(self) -> Iterator[str]:
@@ -101,6 +104,8 @@ class Files:
         self.folders: tuple[str, ...] = (absolute("."),)
         self._known: dict[str, File] = {}
         self._xml: XmlBelow | None = None
+        self._cpp: CppFiles | None = None
+        self._sources: dict[str, Read] = {}  # the C++ of the last request, by the path of the project file
 
     def groups(
         self,
@@ -120,9 +125,11 @@ class Files:
             for_checks: look at a file in each of its factories, and not only in the first, and add the files of the
                 project that define what requested XML lacks.
         """
+        paths = tuple(paths)
         problems: list[LoadProblem] = []
         projects: dict[str, Found] = {}
         self.parameter_files.clear()
+        self._sources.clear()
         members: dict[str, dict[str, str]] = {}  # each with the folder that was requested
 
         def project_of(path: str) -> Found:
@@ -153,11 +160,12 @@ class Files:
                     members.setdefault(home.path or "", {})[file] = path if file != path else os.path.dirname(path)
         by_path = {found.path or "": found.project for found in projects.values()}
         groups: list[Group] = []
+        folders = [f"{path.rstrip('/')}/" for path in map(absolute, paths) if os.path.isdir(path)]
         for key, files in members.items():
             found_groups, found_problems = self._groups_of(
                 files, Found(by_path[key], key or None), project_of, for_checks
             )
-            groups += found_groups
+            groups += (_with_cpp(group, folders) for group in found_groups)
             problems += found_problems
         for path in self.nav2_params:
             project_of(path)
@@ -175,7 +183,11 @@ class Files:
             tops: those files, each with the folder in which it was requested.
             project_of: returns the project of a file.
         """
-        factories, problems_of_factories = self._factories(home)
+        factories, problems = self._factories(home)
+        if home.project.cpp or any(each.cpp_files for each in factories):
+            sources = self._sources[home.path or ""] = self.cpp.read(home, factories)
+            factories = tuple(map(sources.declared_in, factories))
+            problems += sources.problems
         groot: tuple[Factory, ...] = ()
         pools: dict[str, tuple[str, ...]] = {}
         if for_checks and (xml := {path: top for path, top in tops.items() if self._may_be_xml(path)}):
@@ -184,8 +196,8 @@ class Files:
             pools = self._pools(xml, home)
             registered = {path for factory in factories for path in factory.files}
             groot = tuple(groot_projects(pools.values(), xml.keys() - registered))
-        group, problems = self._load(tuple(tops), home, factories + groot)
-        problems += problems_of_factories
+        group, unreadable = self._load(tuple(tops), home, factories + groot)
+        problems += unreadable
         lacking = [each for each in factories if not each.files]
         problems += [LoadProblem(home.path or "", f"the factory `{each.name}` loads no file") for each in lacking]
         groups: list[Group] = []
@@ -245,7 +257,9 @@ class Files:
 
     def workspace_of(self, factory: Factory, home: Found) -> Workspace:
         """The workspace of all files of a factory, requested or not."""
-        return self._load((), home, (factory,))[0].workspace.of_factory(factory)
+        sources = self._sources.get(home.path or "")
+        whole = sources.declared_in(factory) if sources is not None else factory
+        return self._load((), home, (whole,))[0].workspace.of_factory(whole)
 
     def _with_pools(
         self, group: Group, pools: Mapping[str, tuple[str, ...]], project_of: Callable[[str], Found]
@@ -273,6 +287,15 @@ class Files:
             self._xml = XmlBelow()
         return self._xml
 
+    @property
+    def cpp(self) -> CppFiles:
+        """What is known of C++ sources."""
+        if self._cpp is None:
+            from btq_lang.commands.cpp_files import CppFiles  # few projects name any
+
+            self._cpp = CppFiles()
+        return self._cpp
+
     def _missions(self, folder: str, found: tuple[str, ...]) -> tuple[str, ...]:
         """Those of a folder's files that are missions."""
         return found if all(path.endswith(SUFFIXES) for path in found) else self.xml.missions(folder, found)
@@ -293,20 +316,24 @@ class Files:
         self, paths: tuple[str, ...], home: Found, factories: Iterable[Factory]
     ) -> tuple[Group, list[LoadProblem]]:
         """The requested files of a project, with those of its factories and all that they include."""
+        sources = self._sources.get(home.path or "")
+        project, cpp = (home.project, {}) if sources is None else (sources.project, sources.files)
 
         def includes_of(path: str, text: str) -> Iterator[str]:
             return (include for include, _ in self._file(path, text).included_paths)
 
         registered = (path for factory in factories for path in (*factory.files, *factory.node_files))
-        wanted = tuple(dict.fromkeys((*paths, *registered, *home.project.node_files)))
+        named = dict.fromkeys((*paths, *registered, *project.node_files))
+        wanted = tuple(path for path in named if path not in cpp)
         known = {path: self.overlay[path] for path in wanted if path in self.overlay}
-        loaded = load((path for path in wanted if path not in known), home.project, includes_of, known)
+        loaded = load((path for path in wanted if path not in known), project, includes_of, known)
         files = {path: self._file(path, text) for path, text in loaded.texts.items()}
         given = tuple(path for path in paths if path in files)
+        files.update(cpp)
         damaged = loaded.damaged
         if self._of_stdin is not None:
             damaged += tuple(path for path in given if path == self.stdin)
-        project = replace(home.project, folders=self.folders)
+        project = replace(project, folders=self.folders)
         group = Group(Workspace(files, project), given, damaged, loaded.absent, home.path)
         return group, list(loaded.problems)
 
@@ -332,6 +359,13 @@ def _by_factory(group: Group, factories: Iterable[Factory], in_each: bool) -> It
         if given:
             yield replace(group, workspace=workspace, given=given)
             taken.update(() if in_each else given)
+
+
+def _with_cpp(group: Group, folders: Iterable[str]) -> Group:
+    """The group with its C++ sources below some folders."""
+    files = group.workspace.files
+    cpp = tuple(path for path in files if files[path].is_cpp and path.startswith(tuple(folders)))
+    return replace(group, cpp=cpp) if cpp else group
 
 
 def lacking_names(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import os
 import sys
 from argparse import Namespace
-from collections.abc import Iterator
 
 from btq_lang.commands.output import write_output
+from btq_lang.cpp.findings import findings
 from btq_lang.cpp.grammar import GrammarMissing
 from btq_lang.cpp.model import CppNodes
 from btq_lang.cpp.nodes import read_nodes
-from btq_lang.util.text import counted
+from btq_lang.util.text import LineIndex, counted
 from btq_lang.workspace.config import Project
+from btq_lang.workspace.file import CPP_SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, absolute, collect, head, read, shown
 
 FORMATS = ("btq", "xml", "html")
@@ -40,9 +41,13 @@ def run(options: Namespace) -> int:
     sources = " ".join(options.paths)
     if code := write_output("nodes", options.output, _written(found, form, sources)):
         return code
-    remarks = list(_remarks(found))
-    for remark in remarks:
-        print(remark, file=sys.stderr)
+    remarks = findings(found, files)
+    for path in sorted(remarks):
+        lines = LineIndex(files[path])
+        for each in remarks[path]:
+            line, column = lines.position(each.span.start)
+            what = f"{each.effective_severity.value}[{each.rule}] {each.message}"
+            print(f"{path}:{line + 1}:{column + 1}: {what}", file=sys.stderr)
     ports = sum(len(node.ports) for node in found.nodes)
     counts = counted(len(found.nodes), "node"), counted(ports, "port"), counted(len(files), "file")
     print("{} with {} in {}".format(*counts), file=sys.stderr)
@@ -51,7 +56,7 @@ def run(options: Namespace) -> int:
 
 def _texts(paths: list[str]) -> tuple[dict[str, str], list[str]]:
     """The C++ files below some paths, as they are shown, and what cannot be read."""
-    found, unreachable = collect(paths, Project(), _SUFFIXES)
+    found, unreachable = collect(paths, Project(), CPP_SUFFIXES)
     problems: list[LoadProblem] = list(unreachable)
     texts = {}
     for path in found:
@@ -78,18 +83,3 @@ def _written(found: CppNodes, form: str, sources: str) -> str:
     from btq_lang.commands.node_writers import as_btq, as_xml
 
     return (as_btq if form == "btq" else as_xml)(found.nodes, sources)
-
-
-def _remarks(found: CppNodes) -> Iterator[str]:
-    """What cannot be seen, and what the code does that its ports do not say, a line each."""
-    for each in found.unseen:
-        yield f"{each.place}: {each.message}"
-    for node in found.nodes:
-        for port in node.unread:
-            yield f"{port.place}: `{node.name}` provides the port `{port.name}`, but its code never names it"
-        for use in node.undeclared:
-            does = "writes" if use.writes else "reads"
-            yield f"{use.place}: `{node.name}` {does} the port `{use.port}`, which it does not provide"
-
-
-_SUFFIXES = (".cpp", ".hpp", ".h", ".cc", ".hh", ".cxx", ".hxx", ".ipp", ".tpp")

@@ -10,6 +10,7 @@ from btq_lang.catalog.nodes import KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, Quality, parts, siblings
 from btq_lang.catalog.units import BASES, Unit, convert, dimension_name, parse_unit, to_si
 from btq_lang.diagnostics.rules import RULES, page
+from btq_lang.ide.cpp_places import cpp_link
 from btq_lang.ide.meaning import (
     ROOT_BLACKBOARD,
     Found,
@@ -44,7 +45,8 @@ def node_kind(workspace: Workspace, path: str, name: str, quoted: bool = False, 
         shown = f"```btq\n{target.category.raw} {name}\n```"
         _, known = inputs.declared(workspace.store, path, name)
         semantics = known.semantics if known is not None else ""
-        return "\n\n".join(filter(None, (shown, text, semantics, _ports(ports_of_kind(workspace, path, name)))))
+        shown_ports = _ports(ports_of_kind(workspace, path, name))
+        return "\n\n".join(filter(None, (shown, text, semantics, shown_ports, cpp_link(workspace, found.path, name))))
     if not quoted and name in KNOWN_WORDS:
         return f"`{name}`: {KNOWN_WORDS[name].why}."
     return f"`{name}`: a custom node without a model in this file or its includes."

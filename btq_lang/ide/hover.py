@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import phrase_at
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.ide import describe
 from btq_lang.ide.built_xml import said_in_xml
+from btq_lang.ide.cpp_places import cpp_link
 from btq_lang.ide.meaning import Found, Subject, at, definition, everywhere, quality_match, subject
 from btq_lang.ide.navigation import writes
 from btq_lang.ide.place import item_tokens
@@ -120,4 +122,8 @@ def _key(workspace: Workspace, wanted: Subject) -> str:
 def _port(workspace: Workspace, found: Found) -> str | None:
     node = found.mention.node
     port = port_of(workspace, found.path, node, found.mention.name) if node is not None else None
-    return describe.port(port) if port is not None else None
+    if node is None or port is None:
+        return None
+    model = workspace.scope(found.path).find(Kind.MODEL, node.id.text) if node.id is not None else None
+    link = cpp_link(workspace, model.path, model.symbol.name, port.name) if model is not None else ""
+    return "\n\n".join(filter(None, (describe.port(port), link)))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from btq_lang.ide.cpp_places import cpp_place
 from btq_lang.ide.meaning import Found, at, definition, everywhere, subject
 from btq_lang.ide.ports import port_of
+from btq_lang.syntax.tree import Model
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.references import What
@@ -46,12 +48,20 @@ def goto_definition(workspace: Workspace, path: str, offset: int) -> tuple[Targe
         return (Target(target, Span(0, 0), Span(0, 0), found.span),) if target in workspace.files else ()
     place = definition(workspace, path, wanted)
     if place is not None:
+        in_cpp = cpp_place(workspace, place.path, place.symbol.name)
+        if in_cpp is not None:
+            return (Target(*in_cpp, in_cpp[1], found.span),)
         return (Target(place.path, place.whole, place.span, found.span),)
     if wanted.what in (What.KEY, What.PORT, What.PARAMETER, What.INSTANCE):
         places = list(everywhere(workspace, wanted))
         first = next((one for one in places if one.mention.defines), None)
         if first is None and wanted.what is What.KEY:
             first = next((one for one in places if writes(workspace, one)), None)
+        owner = first.mention.owner if first is not None else None
+        if first is not None and isinstance(owner, Model) and owner.name is not None:
+            in_cpp = cpp_place(workspace, first.path, owner.name.text, wanted.name)
+            if in_cpp is not None:
+                return (Target(*in_cpp, in_cpp[1], found.span),)
         return (Target(first.path, first.span, first.span, found.span),) if first else ()
     return ()
 

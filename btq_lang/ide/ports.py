@@ -35,7 +35,7 @@ class NodePort(Record):
     @property
     def signature(self) -> str:
         """As a model declares it: `input station : string = charger`."""
-        default = f" = {self.default}" if self.default is not None else ""
+        default = f" = {self.default or _EMPTY}" if self.default is not None else ""
         return f"{self.direction} {self.name}{f' : {self.type}' if self.type else ''}{default}"
 
 
@@ -101,3 +101,6 @@ def _declared(port: Port) -> NodePort:
         port.direction.raw == "input" and port.default is None,
         port.text.text if port.text else "",
     )
+
+
+_EMPTY = '""'

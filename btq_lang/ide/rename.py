@@ -102,6 +102,8 @@ def _is_kept(file: File) -> str:
         return "" if file.is_btq else "which is not a .btq file"
     if is_generated(file.origin.text):
         return "which a build wrote"
+    if file.is_cpp:
+        return "which is C++"
     return "" if file.origin.is_complete else "which cannot be read"
 
 

@@ -19,6 +19,8 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
     def did_open(params: types.DidOpenTextDocumentParams) -> None:
         path = convert.path(params.text_document.uri)
+        if _is_cpp(path):
+            return
         if convert.uri(path) != params.text_document.uri:
             server.withdraw(path)
             convert.learn_uri(path, params.text_document.uri)
@@ -28,6 +30,8 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
     def did_change(params: types.DidChangeTextDocumentParams) -> None:
         path = convert.path(params.text_document.uri)
+        if _is_cpp(path):
+            return
         server.versions[path] = params.text_document.version
         server.check_soon(session.edit(path, convert.changed(session.lines(path), params.content_changes)))
         server.last_keystroke = asyncio.get_running_loop().time()  # now: handling the edit may have taken long
@@ -35,9 +39,18 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     def did_close(params: types.DidCloseTextDocumentParams) -> None:
         path = convert.path(params.text_document.uri)
+        if _is_cpp(path):
+            return
         server.versions.pop(path, None)
         server.tokens.pop(path, None)
         server.check_soon((path, *session.close(path)))
+
+
+def _is_cpp(path: str) -> bool:
+    """Whether a file is C++, which counts as it is on the disk: it is read when it is saved."""
+    from btq_lang.workspace.file import CPP_SUFFIXES  # the server must start fast
+
+    return path.endswith(CPP_SUFFIXES)
 
 
 def _diagnostics(server: Server) -> None:

@@ -245,14 +245,17 @@ class Server(LanguageServer):
     # ---- calling features ----
 
     def at(self, document: types.TextDocumentIdentifier, *, reads: bool = False) -> tuple[Workspace, str] | None:
-        """The workspace and the path of a document; None if it is unknown, or XML that is not the engine's, or any XML.
+        """The workspace and the path of a document; None if it is unknown, C++, XML that is not the engine's, or any
+        XML.
 
         Args:
             reads: the request changes nothing and its result has places that `convert.range` maps, so XML is allowed.
         """
         path = self.convert.path(document.uri)
         workspace = self.session.workspace_of(path)
-        if workspace is None or (workspace.files[path].origin is not None and not (reads and self.session.knows(path))):
+        if workspace is None or workspace.files[path].is_cpp:
+            return None
+        if workspace.files[path].origin is not None and not (reads and self.session.knows(path)):
             return None
         return workspace, path
 
@@ -398,8 +401,8 @@ class Server(LanguageServer):
             self.protocol.notify_plain(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
 
     def publish_projects(self) -> None:
-        """Publish the diagnostics of project and parameter files to an editor that pulls those of open files only."""
-        for path in {*self.session.projects, *self.session.parameters, *self.published}:
+        """Publish the diagnostics of files that an editor does not send to one that pulls those of open files only."""
+        for path in {*self.session.unsent(), *self.published}:
             if self.pulls_all or path in self.session.open:
                 self.withdraw(path)
             else:

@@ -78,9 +78,9 @@ async def _register_watchers(server: Server) -> None:
     watching = workspace.did_change_watched_files if workspace else None
     if watching is None or not watching.dynamic_registration:
         return
-    from btq_lang.workspace.file import SIDE_SUFFIX, YAML_SUFFIXES  # as in `_endings`
+    from btq_lang.workspace.file import CPP_SUFFIXES, SIDE_SUFFIX, YAML_SUFFIXES  # as in `_endings`
 
-    endings = (*_endings(), SIDE_SUFFIX, *YAML_SUFFIXES)
+    endings = (*_endings(), SIDE_SUFFIX, *YAML_SUFFIXES, *CPP_SUFFIXES)
     patterns = [f"**{ending}" if ending[0] == "/" else f"**/*{ending}" for ending in endings]
     watchers = [types.FileSystemWatcher(pattern) for pattern in patterns]
     # If a folder is deleted as a whole, an editor reports only the folder.
@@ -91,8 +91,10 @@ async def _register_watchers(server: Server) -> None:
 
 
 def _concerns(session: Session, changed: set[str]) -> bool:
-    """Whether changes on the disk may concern the session: most deleted files and folders do not."""
-    return any(path.endswith(_endings()) for path in changed) or not changed.isdisjoint(session.places())
+    """Whether changes on the disk may concern the session: most deleted files and folders do not, nor does most C++."""
+    if any(path.endswith(_endings()) for path in changed) or not changed.isdisjoint(session.places()):
+        return True
+    return any(map(session.reads_cpp, changed))
 
 
 async def _ask_settings(server: Server) -> None:

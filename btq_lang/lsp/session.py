@@ -92,7 +92,7 @@ class Session:
         linked: set[str] = set()  # uses are known in both directions
         for each in self._workspaces:
             if path in each.files:
-                looking = each.origins.keys() - self._pooled if each.project.pools else ()  # XML, for what it lacks
+                looking = {*each.xml} - self._pooled if each.project.pools else ()  # for what it lacks
                 linked.update(each.linked(path, *looking))
         if renamed := old.defined_names ^ after.files[path].defined_names:
             linked.update(other for other in after.files if other != path and _lacks_definition(after, other, renamed))
@@ -252,20 +252,21 @@ class Session:
         return None if home is None else self._workspaces[home]
 
     def workspaces_of(self, path: str) -> tuple[Workspace, ...]:
-        """The workspaces in which a file is looked at: those of its factories, or its only one."""
+        """The workspaces in which a file is looked at: those of its factories, or its only one, as for C++."""
         home = self.workspace_of(path)
-        if home is None or home.factory is None:
+        if home is None or home.factory is None or home.files[path].is_cpp:
             return () if home is None else (home,)
         return tuple(each for each in self._workspaces if path in each.registered)
 
     def knows(self, path: str) -> bool:
-        """Whether a path is that of a mission or project file that is reported on."""
+        """Whether a path is that of a mission, a project file or a C++ source that is reported on."""
         workspace = self.workspace_of(path)
         if workspace is None or path in self._pooled:
             return path in self.projects or path in self.parameters
         origin = workspace.files[path].origin
         return (
             origin is None
+            or workspace.files[path].is_cpp
             or path in workspace.included_files
             or (path in workspace.registered or _is_mission(origin.text))
         )
@@ -277,6 +278,22 @@ class Session:
         """All known files that are reported on, open ones first."""
         known = {*(self._home.keys() - self._pooled), *self.projects, *self.parameters}
         return tuple(sorted(known, key=lambda path: (path not in self.open, path)))
+
+    def unsent(self) -> tuple[str, ...]:
+        """The files that are reported on and that an editor does not send: of projects, parameters, and C++ sources."""
+        return (
+            *self.projects,
+            *self.parameters,
+            *(path for path, home in self._home.items() if self._workspaces[home].files[path].is_cpp),
+        )
+
+    def reads_cpp(self, path: str) -> bool:
+        """Whether a project may name a C++ source, which may be new."""
+        from btq_lang.util.globs import path_matcher
+        from btq_lang.workspace.file import CPP_SUFFIXES
+
+        projects = [workspace.project for workspace in self._workspaces] if path.endswith(CPP_SUFFIXES) else ()
+        return any(path_matcher(each.cpp_patterns, each.root)(path) for each in projects)
 
     def places(self) -> set[str]:
         """All known files, and all folders above them."""

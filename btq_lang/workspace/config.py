@@ -3,7 +3,7 @@
     engine = "4.10"                   # or a list; without it files must hold for every known version of 4
     qualities = "iso25010-2023"       # or "iso25010-2011"
     include-paths = ["missions"]      # where includes are searched, after the including file's own folder
-    nodes = ["nav2-jazzy"]            # declared in all files: nodes that btq knows
+    nodes = ["nav2-jazzy", "src/**/*.cpp"]    # declared in all files: nodes that btq knows, and those of C++ sources
     exclude = ["generated/"]          # what the check of a folder leaves out: see globs.py
     select = ["unknown-node"]         # only these rules
     ignore = ["unused-tree"]          # all but these
@@ -67,7 +67,9 @@ class Project(Record):
         pools: folders in which an XML file finds the trees and models that it lacks; the loader finds them.
         evidence: its table about logs, if it has one.
         factories: what each of its programs registers.
-        node_files: files of btq whose models count in all files.
+        node_files: files whose models count in all files: files of btq, and C++ sources that were read.
+        cpp: patterns of C++ sources whose nodes count in all files.
+        hides_nodes: whether there may be nodes in C++ sources that cannot be seen.
         moves_to: the distribution of Nav2, or the version of the engine, for which its trees are checked besides
             their own.
         written_for: what `engines` was, if it now has the versions that take its files whatever they are written for.
@@ -89,6 +91,8 @@ class Project(Record):
     evidence: Evidence | None = None
     factories: tuple[Factory, ...] = ()
     node_files: tuple[str, ...] = ()
+    cpp: tuple[str, ...] = ()
+    hides_nodes: bool = False
     moves_to: str | None = None
     written_for: tuple[str, ...] = ()
 
@@ -105,6 +109,14 @@ class Project(Record):
         """The innermost of the pools that contain a file, with a `/` at its end."""
         pools = (f"{pool.rstrip('/')}/" for pool in self.pools)
         return max((pool for pool in pools if path.startswith(pool)), key=len, default=None)
+
+    @property
+    def cpp_patterns(self) -> tuple[str, ...]:
+        """The patterns of C++ sources, its own and those of its factories."""
+        from btq_lang.workspace.file import CPP_SUFFIXES  # few projects have any
+
+        of_factories = (pattern for factory in self.factories for pattern in factory.nodes)
+        return (*self.cpp, *(pattern for pattern in of_factories if pattern.endswith(CPP_SUFFIXES)))
 
     @property
     def pinned(self) -> bool:
@@ -158,6 +170,12 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
         given["include_paths"] = tuple(_joined(root, path) for path in given["include_paths"])
     if "baseline" in given:
         given["baseline"] = _joined(root, given["baseline"])
+    if "node_files" in given:
+        from btq_lang.catalog.nav2 import PACKAGED  # few projects have this key
+
+        named = given["node_files"]
+        given["node_files"] = tuple(PACKAGED[name] for name in named if name in PACKAGED)
+        given["cpp"] = tuple(name for name in named if name not in PACKAGED)
     return Project(**given), tuple(problems)
 
 
@@ -320,11 +338,12 @@ def _factories(key: str, value: object) -> _Read:
 
 def _nodes(key: str, value: object) -> _Read:
     from btq_lang.catalog.nav2 import PACKAGED  # few projects have this key
+    from btq_lang.workspace.file import CPP_SUFFIXES
 
     names, complaints = _strings(key, value)
-    unknown = [name for name in names or () if name not in PACKAGED]
+    unknown = [name for name in names or () if name not in PACKAGED and not name.endswith(CPP_SUFFIXES)]
     complaints += [_Complaint(f"unknown nodes `{name}`{_meant(name, PACKAGED)}", value=name) for name in unknown]
-    return tuple(PACKAGED[name] for name in dict.fromkeys(names or ()) if name in PACKAGED), complaints
+    return tuple(name for name in dict.fromkeys(names or ()) if name not in unknown), complaints
 
 
 SEVERITIES: dict[str, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}
@@ -339,7 +358,12 @@ KEYS = {
         "strings",
         "folders searched for included files, after that of the including file",
     ),
-    "nodes": ("node_files", _nodes, "packaged", "nodes that btq knows, as those of Nav2, declared in all files"),
+    "nodes": (
+        "node_files",
+        _nodes,
+        "nodes",
+        "nodes declared in all files: those that btq knows, as nav2-jazzy, and patterns of C++ sources",
+    ),
     "exclude": ("exclude", _strings, "strings", "patterns of paths that the check of a folder leaves out"),
     "select": ("select", _rule_names, "rules", "only these rules"),
     "ignore": ("ignore", _rule_names, "rules", "all rules except these"),

@@ -36,10 +36,12 @@ class Factory(Record):
         name: as messages call it.
         load: patterns of the files that it registers.
         main: the trees that it may create; empty: unknown.
-        nodes: patterns of files whose models declare the nodes that it registers, and names of nodes that btq knows.
+        nodes: patterns of files whose models declare the nodes that it registers, or of C++ sources that register
+            them, and names of nodes that btq knows.
         nav2: the parameter file of a bt_navigator, which is a factory for each tree that it creates.
         files: those of `load`, in order, each once.
         node_files: those of `nodes` that are not in `files`.
+        cpp_files: the C++ sources of `nodes`.
         lost: the patterns that match no file, so that it is not known what the program registers.
         has_gaps: whether bt_navigator registers files that are not here; what is wrong is said of its parameter file.
         entries: of the root blackboard, which the program sets or reads, if it is known to be bt_navigator.
@@ -52,6 +54,7 @@ class Factory(Record):
     nav2: str = ""
     files: tuple[str, ...] = ()
     node_files: tuple[str, ...] = ()
+    cpp_files: tuple[str, ...] = ()
     lost: tuple[str, ...] = ()
     has_gaps: bool = False
     entries: tuple[OutsideEntry, ...] = ()
@@ -137,6 +140,6 @@ KEYS: Final = {
     "name": "the name of the factory in messages",
     "load": "patterns of the files that the program registers, in order; also package://NAME/…",
     "main": "the tree that the program creates, or a list of them",
-    "nodes": "patterns of the files that declare the program's nodes, and names such as nav2-jazzy",
+    "nodes": "patterns of the files that declare the program's nodes, or of C++ sources, and names such as nav2-jazzy",
     "nav2": "the parameter file of Nav2's bt_navigator, which says which trees and libraries it loads",
 }

@@ -20,6 +20,7 @@ from btq_lang.workspace.item_index import Facts, Name, Names, Tally
 
 if TYPE_CHECKING:
     from btq_lang.catalog.name_kinds import Kind
+    from btq_lang.cpp.model import CppNode
     from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.util.source_map import Places
     from btq_lang.workspace.references import Mention
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     Kept = TypeVar("Kept", bound=Item)
 
 SUFFIXES = (".btq", ".qualitybtcpp")  # of files in this language; the second is that of the classic form
+CPP_SUFFIXES = (".cpp", ".hpp", ".h", ".cc", ".hh", ".cxx", ".hxx", ".ipp", ".tpp")
 GROOT_SUFFIX = ".btproj"  # of a project of Groot2: includes and models
 XML_SUFFIXES = (".xml", GROOT_SUFFIX)
 YAML_SUFFIXES = (".yaml", ".yml")  # of parameters
@@ -132,6 +134,15 @@ class File:
     def from_disk(self, offset: int) -> int | None:
         """The offset in the text for one on the disk; None: the text has no such place."""
         return offset if self.origin is None else self.origin.places.made(offset)
+
+    def after_models(self, span: Span) -> Span:
+        """For C++, the span after the end of the text that is `span` on the disk: there the text is the C++ itself."""
+        return span.shifted(len(self.text))
+
+    @property
+    def is_cpp(self) -> bool:
+        """Whether it is C++, of which the text has the models of the nodes that it registers."""
+        return self.origin is not None and self.origin.nodes is not None
 
     @property
     def is_understood(self) -> bool:
@@ -421,6 +432,7 @@ class Origin(Record):
         diagnostics: what is wrong with it in its own language; spans count from its start.
         is_complete: whether all of it could be read, so that a name that is not in the file's text is not in this one.
         defines: the names of its trees and models.
+        nodes: by ID, those that it registers, if it is C++; its diagnostics are then all there are.
     """
 
     text: str
@@ -428,6 +440,7 @@ class Origin(Record):
     diagnostics: tuple[Diagnostic, ...]
     is_complete: bool
     defines: frozenset[str] = frozenset()
+    nodes: Mapping[str, CppNode] | None = None
 
 
 def is_xml(path: str, text: str) -> bool:

@@ -92,7 +92,7 @@ def advance(before: Workspace, after: Workspace) -> None:
 
 def _touched(after: Workspace, old: File, new: File) -> Iterator[Hashable]:
     """The topics in which an edit of one file may change something."""
-    looking = after.origins if after.project.pools else ()  # XML, for what it lacks
+    looking = after.xml if after.project.pools else ()  # for what it lacks
     yield from after.linked(new.path, *looking)
     for item in old.facts.keys() ^ new.facts.keys():
         for symbol in (old.facts.get(item) or new.facts[item]).summary.symbols:

@@ -14,10 +14,12 @@ from btq_lang.catalog.versions import VERSION_3, targets
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.workspace.config import KEYS, SEVERITIES
 from btq_lang.workspace.factories import KEYS as FACTORY_KEYS
+from btq_lang.workspace.file import CPP_SUFFIXES
 from btq_lang.workspace.overrides import KEYS as OVERRIDE_KEYS
 from btq_lang.workspace.project_evidence import KEYS as EVIDENCE_KEYS
 from btq_lang.workspace.project_evidence import NUMBERS, OF_A_FILE, OF_A_TOPIC, SOURCE_KEYS, TEXTS
 
+_CPP = rf"\.({'|'.join(suffix.removeprefix('.') for suffix in CPP_SUFFIXES)})$"
 Json: TypeAlias = "dict[str, Any]"
 
 
@@ -33,7 +35,7 @@ def project_schema() -> Json:
             "engines": {"anyOf": [_form("engine"), _list(_form("engine"), minItems=1)]},
             "edition": {"enum": [*EDITIONS]},
             "strings": _list({"type": "string"}),
-            "packaged": _list({"enum": [*PACKAGED]}),
+            "nodes": _list({"anyOf": [{"enum": [*PACKAGED]}, {"type": "string", "pattern": _CPP}]}),
             "rule": {"enum": [*RULES]},
             "rules": _list(_form("rule")),
             "severity": {"enum": [*SEVERITIES]},

@@ -139,6 +139,11 @@ class Workspace:
         """The origins of the files that are written in another language, by path."""
         return {path: file.origin for path, file in self.files.items() if file.origin is not None}
 
+    @cached_property
+    def xml(self) -> tuple[str, ...]:
+        """Those of them that are XML, which looks up in its pool what it lacks."""
+        return tuple([path for path in self.origins if not self.files[path].is_cpp])
+
     # ---- includes and scopes ----
 
     def included(self, path: str, include: str) -> str | None:

@@ -114,9 +114,10 @@ def test_what_cannot_be_seen_and_what_the_code_does_otherwise_is_said(robot: Pat
     code, out, remarks = run_btq("nodes", "src", cwd=robot)
     assert (code, out) == (1, BTQ.removesuffix("    Condition IsOpen\n"))
     assert remarks.splitlines() == [
-        "src/drive.cpp:22:3: the name of this node is an expression: `name`",
-        "src/drive.cpp:7:14: `Drive` provides the port `speeds`, but its code never names it",
-        "src/drive.cpp:15:5: `Drive` reads the port `spede`, which it does not provide",
+        "src/drive.cpp:7:14: warning[unused-port-in-cpp] `Drive` provides the port `speeds`, "
+        "but its code never names it",
+        "src/drive.cpp:15:5: warning[undeclared-port-in-cpp] `Drive` reads the port `spede`, which it does not provide",
+        "src/drive.cpp:22:3: hint[unseen-in-cpp] the name of this node is an expression: `name`",
         "1 node with 4 ports in 1 file",
     ]
 

@@ -39,6 +39,7 @@ METASCHEMA: dict[str, Any] = {
                 "description": {"type": "string", "minLength": 1},
                 "type": {"enum": ["array", "boolean", "integer", "null", "number", "object", "string"]},
                 "enum": {"type": "array", "minItems": 1},
+                "pattern": {"type": "string"},
                 "minLength": {"type": "integer"},
                 "minItems": {"type": "integer"},
                 "items": {"$ref": "#/definitions/schema"},

@@ -109,6 +109,10 @@ _TABLE = (
         "classic-placeholder", _H, "a ScriptAction or ScriptCondition without code, used as a placeholder for a skill"
     ),
     Rule("placeholder-clash", _E, "a placeholder whose node ID is already in use"),
+    # Nodes in C++.
+    Rule("undeclared-port-in-cpp", _W, "a port that C++ code reads or writes, and its node does not provide"),
+    Rule("unused-port-in-cpp", _W, "a port that a node in C++ provides, and its code never names"),
+    Rule("unseen-in-cpp", _H, "C++ code from which btq cannot see which nodes or ports there are"),
     # Trees and files.
     Rule("unknown-tree", _E, "a SubTree whose tree does not exist"),
     Rule("duplicate-tree", _E, "two trees with one ID"),

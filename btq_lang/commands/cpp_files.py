@@ -1,0 +1,191 @@
+"""The C++ sources of a project as files: the text of each has the models of the nodes that it registers.
+
+One invariant: a source is parsed once, and again only if its text changes; where a model and a port are in the C++, the
+places of the file say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from btq_lang.commands.factory_files import in_folder
+from btq_lang.commands.node_writers import models_in_btq
+from btq_lang.cpp.findings import findings
+from btq_lang.cpp.grammar import GrammarMissing
+from btq_lang.cpp.model import CppNode, CppNodes
+from btq_lang.cpp.nodes import nodes_of
+from btq_lang.cpp.source import Source
+from btq_lang.parser import parse
+from btq_lang.syntax.tree import models_in
+from btq_lang.util.record import Record, replace
+from btq_lang.util.source_map import Places
+from btq_lang.util.text import LineIndex, Placed, Span, counted
+from btq_lang.workspace.file import File, Origin
+from btq_lang.workspace.loader import Found, LoadProblem, matching, read
+from btq_lang.workspace.queries import Store
+
+if TYPE_CHECKING:
+    from btq_lang.diagnostics.model import Diagnostic
+    from btq_lang.util.source_map import Piece
+    from btq_lang.workspace.config import Project
+    from btq_lang.workspace.factories import Factory
+
+MISSING = "C++ is read with tree-sitter; install it with pip install 'btq-lang[cpp]'"
+
+
+class Read(Record):
+    """A project with what was read from its C++ sources.
+
+    Attributes:
+        project: its `node_files` with the C++ sources of the whole project.
+        files: all of them, by path.
+        problems: what keeps nodes from being known, at the place in the project file.
+    """
+
+    project: Project
+    files: dict[str, File]
+    problems: tuple[LoadProblem, ...] = ()
+
+    def declared_in(self, factory: Factory) -> Factory:
+        """A factory whose `node_files` have its own C++ sources, too."""
+        own = tuple(path for path in factory.cpp_files if path in self.files)
+        return replace(factory, node_files=(*factory.node_files, *own)) if own else factory
+
+
+class CppFiles:
+    """Reads C++ sources, and remembers them until they change."""
+
+    def __init__(self) -> None:
+        self._store: Store[dict[str, str]] = Store({})  # the texts, by path
+        self._files: dict[str, File] = {}
+
+    def read(self, home: Found, factories: tuple[Factory, ...]) -> Read:
+        """Read the sources that a project and its factories name."""
+        project, problems = home.project, []
+        own: dict[str, None] = {}
+        for pattern in project.cpp:
+            found = in_folder(pattern, project.root, matching)
+            own.update(dict.fromkeys(found))
+            if not found:
+                problems.append(_problem(home, pattern, f"no C++ file matches `{pattern}`"))
+        paths = dict.fromkeys((*own, *(path for each in factories for path in each.cpp_files)))
+        texts = {path: text for path in paths if (text := read(path)[0]) is not None}
+        try:
+            nodes, files = self.files(texts, project.root)
+        except GrammarMissing:
+            nodes, files = None, {}
+            problems.append(_problem(home, project.cpp_patterns[0], MISSING))
+        if nodes is not None and texts and not nodes.nodes and not any(each.hides_node for each in nodes.unseen):
+            where = "name the files with BT_REGISTER_NODES, registerNodeType or registerBuilder, too"
+            message = f"no node is registered in {counted(len(texts), 'C++ file')}; {where}"
+            problems.append(_problem(home, project.cpp_patterns[0], message))
+        project = replace(
+            project,
+            node_files=(*project.node_files, *(path for path in own if path in files)),
+            hides_nodes=nodes is None or any(each.hides_node for each in nodes.unseen),
+        )
+        return Read(project, files, tuple(problems))
+
+    def files(self, texts: Mapping[str, str], root: str = ".") -> tuple[CppNodes, dict[str, File]]:
+        """The nodes of some sources, and a file for each source.
+
+        Args:
+            texts: by path.
+            root: the folder from which messages name files.
+
+        Raises:
+            GrammarMissing: tree-sitter is not installed.
+        """
+        before = self._store.state
+        changed = [path for path, text in texts.items() if before.get(path) != text]
+        self._store.advance({**before, **texts}, changed)
+        nodes = self._store.ask(_nodes, *texts)
+        wrong = findings(nodes, texts)
+        of_path: dict[str, dict[str, CppNode]] = {path: {} for path in texts}
+        for node in nodes.nodes:
+            of_path[node.place.path][node.name] = node
+        for path, text in texts.items():
+            found = tuple(_shown_from(root, each) for each in wrong.get(path, ()))
+            known = self._files.get(path)
+            if known is None or known.origin is None or not _is_as_before(known.origin, text, of_path[path], found):
+                self._files[path] = cpp_file(path, text, of_path[path], found, known)
+        return nodes, {path: self._files[path] for path in texts}
+
+
+def cpp_file(
+    path: str,
+    text: str,
+    nodes: Mapping[str, CppNode],
+    diagnostics: tuple[Diagnostic, ...],
+    before: File | None = None,
+) -> File:
+    """A C++ source with the models of the nodes that it registers.
+
+    Args:
+        before: the file before an edit, with which this one shares what is the same.
+    """
+    models = models_in_btq(map(_certain, nodes.values()), f"the nodes that {path} registers") if nodes else ""
+    places = Places((), (), lambda *_: tuple(_pieces(models, path, text, nodes)))
+    # Not complete: most of what is in the C++ is not in the models, and neither can be edited by the other.
+    origin = Origin(text, places, diagnostics, is_complete=False, defines=frozenset(nodes), nodes=nodes)
+    return File(path, models, origin) if before is None else before.edited(models, origin)
+
+
+def _nodes(store: Store[dict[str, str]], *paths: str) -> CppNodes:
+    return nodes_of(store.ask(_source, path) for path in paths)
+
+
+def _source(store: Store[dict[str, str]], path: str) -> Source:
+    return Source(path, store.read(path, _text, path))
+
+
+def _text(texts: dict[str, str], path: str) -> str:
+    return texts[path]
+
+
+def _certain(node: CppNode) -> CppNode:
+    """A node with an empty default for each input without which it is not seen to fail."""
+    needed = {name for name, without in node.without if without == "fails"}
+    needed.update(port.name for port in node.ports if port.direction == "output" or port.default is not None)
+    ports = tuple(port if port.name in needed else replace(port, default="") for port in node.ports)
+    return replace(node, ports=ports)
+
+
+def _pieces(models: str, path: str, text: str, nodes: Mapping[str, CppNode]) -> Iterator[Piece]:
+    """Where the names in the models are in the C++: a node at its class or, if that is in another file, where it is
+    registered; a port of another file likewise."""
+    lines = LineIndex(text)
+    for entry in parse(models).entries if models else ():
+        for model in models_in(entry.item):
+            if model.name is None:
+                continue
+            node = nodes[model.name.text]
+            home = (node.class_place if node.class_place.path == path else node.place).span_in(lines)
+            yield (*_span(entry.start, model.name), *home)
+            places = {port.name: port.place for port in node.ports if port.place.path == path}
+            for port in model.ports:
+                if port.id is not None:
+                    place = places.get(port.id.text)
+                    yield (*_span(entry.start, port.id), *(home if place is None else place.span_in(lines)))
+    yield len(models), len(models) + len(text), 0, len(text)
+
+
+def _span(start: int, part: Placed) -> Span:
+    return Span(part.start, part.end).shifted(start)
+
+
+def _is_as_before(known: Origin, text: str, nodes: Mapping[str, CppNode], diagnostics: tuple[Diagnostic, ...]) -> bool:
+    return (known.text, known.nodes, known.diagnostics) == (text, nodes, diagnostics)
+
+
+def _shown_from(root: str, diagnostic: Diagnostic) -> Diagnostic:
+    """A diagnostic that names files as people see them."""
+    return replace(diagnostic, message=diagnostic.message.replace(f"{root.rstrip('/')}/", ""))
+
+
+def _problem(home: Found, pattern: str, message: str) -> LoadProblem:
+    """A problem of a pattern in the project file."""
+    path = home.path or ""
+    text = read(path)[0] or ""
+    return LoadProblem(path, message, LineIndex(text).position(max(text.find(pattern) - 1, 0)))

@@ -1,0 +1,60 @@
+"""What is wrong between the ports of nodes and their code, and what cannot be seen, as diagnostics of the C++ files.
+
+One invariant: a finding is at the line of C++ that it is about, and a comment `// btq: ignore[rule]` on that line, or
+alone on the line above, silences it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+from btq_lang.cpp.model import CppNodes, Place
+from btq_lang.diagnostics.model import Diagnostic, Tag
+from btq_lang.util.text import LineIndex
+
+
+def findings(found: CppNodes, texts: Mapping[str, str]) -> dict[str, tuple[Diagnostic, ...]]:
+    """The diagnostics of some files, by path; those without any are left out.
+
+    Args:
+        texts: of the files, by path.
+    """
+    lines: dict[str, LineIndex] = {}
+    of_path: dict[str, list[Diagnostic]] = {}
+    for rule, place, message in _all(found):
+        index = lines.setdefault(place.path, LineIndex(texts[place.path]))
+        if not _is_silenced(index, place.line - 1, rule):
+            tags = (Tag.UNNECESSARY,) if rule == UNUSED else ()
+            of_path.setdefault(place.path, []).append(Diagnostic(rule, place.span_in(index), message, tags=tags))
+    return {path: tuple(sorted(each, key=lambda one: (one.span, one.rule))) for path, each in of_path.items()}
+
+
+def _all(found: CppNodes) -> Iterator[tuple[str, Place, str]]:
+    """Each with its rule and place; nodes that share a base class, and so a place, are named together."""
+    nodes: dict[tuple[str, Place, str], list[str]] = {}
+    for node in found.nodes:
+        for port in node.unread:
+            message = f"provides the port `{port.name}`, but its code never names it"
+            nodes.setdefault((UNUSED, port.place, message), []).append(node.name)
+        for use in node.undeclared:
+            message = f"{'writes' if use.writes else 'reads'} the port `{use.port}`, which it does not provide"
+            nodes.setdefault((UNDECLARED, use.place, message), []).append(node.name)
+    for (rule, place, message), names in nodes.items():
+        more = f" (as {len(names) - 1} more)" if len(names) > 1 else ""
+        yield rule, place, f"`{names[0]}`{more} {message}"
+    for each in found.unseen:
+        yield UNSEEN, each.place, each.message
+
+
+def _is_silenced(lines: LineIndex, line: int, rule: str) -> bool:
+    own = _IGNORE.search(lines.line(line))
+    above = _IGNORE.match(lines.line(line - 1)) if line else None
+    return any(each is not None and (each[1] is None or rule in re.split(r"[\s,]+", each[1])) for each in (own, above))
+
+
+UNUSED: Final = "unused-port-in-cpp"
+UNDECLARED: Final = "undeclared-port-in-cpp"
+UNSEEN: Final = "unseen-in-cpp"
+_IGNORE: Final = re.compile(r"\s*//\s*btq:\s*ignore(?![\w-])(?:\s*\[([^\]]*)\])?")

@@ -1,0 +1,35 @@
+"""Where in C++ a node is, of which the workspace has the model."""
+
+from __future__ import annotations
+
+from btq_lang.util.text import Span
+from btq_lang.workspace.workspace import Workspace
+
+
+def cpp_place(workspace: Workspace, path: str, node: str, port: str = "") -> tuple[str, Span] | None:
+    """The class of a node, or one of its ports: the path, and the span as `File.on_disk` takes it.
+
+    Args:
+        path: of the file with the model; None is returned if it is not C++.
+    """
+    origin = workspace.files[path].origin
+    found = origin.nodes.get(node) if origin is not None and origin.nodes is not None else None
+    if found is None:
+        return None
+    place = next((each.place for each in found.ports if each.name == port), found.class_place)
+    if place.path not in workspace.files or not workspace.files[place.path].is_cpp:
+        place = found.place  # the class is not in a file of this factory
+    file = workspace.files[place.path]
+    return place.path, file.after_models(place.span_in(file.source_lines))
+
+
+def cpp_link(workspace: Workspace, path: str, node: str, port: str = "") -> str:
+    """A link in Markdown to the same place; empty if there is none."""
+    place = cpp_place(workspace, path, node, port)
+    if place is None:
+        return ""
+    from urllib.parse import quote  # few hovers are about C++
+
+    file = workspace.files[place[0]]
+    line = file.source_lines.position(file.on_disk(place[1]).start).line + 1
+    return f"[{workspace.project.shown(place[0])}:{line}](file://{quote(place[0])}#L{line})"

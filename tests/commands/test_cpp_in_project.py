@@ -1,0 +1,269 @@
+"""`nodes = ["src/**/*.cpp"]` in the project file: the nodes of C++ sources are declared in all files of the project."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from in_process import run_btq
+
+from btq_lang.commands.files import Files
+from btq_lang.commands.opening import open_workspace
+from btq_lang.ide.completion import complete
+from btq_lang.ide.hover import hover
+from btq_lang.ide.navigation import find_references, goto_definition
+from btq_lang.ide.rename import Refusal, prepare_rename
+from btq_lang.workspace.workspace import Workspace
+
+pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
+
+HEADER = """\
+namespace robot {
+class Drive : public BT::StatefulActionNode
+{
+public:
+  static BT::PortsList providedPorts();
+  BT::NodeStatus onStart() override;
+};
+}
+"""
+SOURCE = """\
+#include "drive.hpp"
+namespace robot {
+/* größer */ BT::PortsList Drive::providedPorts()
+{
+  return { BT::InputPort<Pose>("goal", "where to go"),
+           BT::InputPort<bool>("fast"),
+           /* ü */ BT::InputPort<double>("speed", 0.5, "m/s"),
+           BT::OutputPort<int>("code") };
+}
+BT::NodeStatus Drive::onStart()
+{
+  auto goal = getInput<Pose>("goal").value();
+  if(!getInput("fast", fast_)) { fast_ = false; }
+  getInput("sped", speed_);
+  setOutput("code", 0);
+}
+}
+BT_REGISTER_NODES(factory)
+{
+  factory.registerNodeType<robot::Drive>("Drive");
+  factory.registerSimpleCondition("IsOpen", std::bind(isOpen));
+}
+"""
+MISSION = """\
+BehaviorTree Main
+    ->
+        IsOpen
+        Drive (gaol = {g} fast = maybe)
+"""
+IN_MISSION = [
+    "trees/m.btq:4:16: error[unknown-port] `Drive` has no port `gaol`; did you mean `goal`?",
+    "trees/m.btq:4:34: error[invalid-literal] expected true, false, 1 or 0 for `fast`, found `maybe`",
+]
+OF_UNUSED = "warning[unused-port-in-cpp] `Drive` provides the port `speed`, but its code never names it"
+UNUSED = f"src/drive.cpp:7:20: {OF_UNUSED}"
+OF_UNDECLARED = "warning[undeclared-port-in-cpp] `Drive` reads the port `sped`, which it does not provide"
+UNDECLARED = f"src/drive.cpp:14:3: {OF_UNDECLARED}"
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    for folder in ("src", "include", "trees"):
+        (tmp_path / folder).mkdir()
+    write(tmp_path, "btq.toml", 'nodes = ["src/**/*.cpp", "include/*.hpp"]\n')
+    write(tmp_path, "include/drive.hpp", HEADER)
+    write(tmp_path, "src/drive.cpp", SOURCE)
+    write(tmp_path, "trees/m.btq", MISSION)
+    return tmp_path
+
+
+def write(folder: Path, path: str, text: str) -> None:
+    (folder / path).write_text(text, encoding="utf-8")
+
+
+def check(folder: Path, *paths: str) -> list[str]:
+    _, out, err = run_btq("check", "--output-format", "concise", *paths, cwd=folder)
+    return [*out.splitlines()[:-1], *err.splitlines()]
+
+
+def test_checks_know_the_nodes_and_hold_the_code_against_them(robot: Path) -> None:
+    assert check(robot) == [*IN_MISSION, UNUSED, UNDECLARED]
+    assert check(robot, "trees") == IN_MISSION
+    assert check(robot, "trees/m.btq") == IN_MISSION
+    assert check(robot, "trees/m.btq", "src") == [*IN_MISSION, UNUSED, UNDECLARED]
+
+
+def test_a_port_is_missing_only_if_the_code_is_seen_to_fail_without_it(robot: Path) -> None:
+    write(robot, "trees/m.xml", '<root BTCPP_format="4"><BehaviorTree ID="M"><Drive/></BehaviorTree></root>\n')
+    assert check(robot, "trees/m.xml") == [
+        "trees/m.xml:1:46: warning[missing-port] `Drive` requires a value for its port `goal`"
+    ]
+
+
+def test_a_comment_and_the_project_file_silence_what_is_found_in_cpp(robot: Path) -> None:
+    silent = SOURCE.replace('"sped", speed_);', '"sped", speed_);  // btq: ignore[undeclared-port-in-cpp] of a base')
+    write(robot, "src/drive.cpp", silent)
+    assert check(robot, "trees/m.btq", "src") == [*IN_MISSION, UNUSED]
+    write(robot, "src/drive.cpp", silent.replace("           /* ü", "  // btq: ignore\n           /* ü"))
+    assert check(robot, "trees/m.btq", "src") == IN_MISSION
+    write(robot, "src/drive.cpp", SOURCE)
+    write(
+        robot,
+        "btq.toml",
+        'nodes = ["src/*.cpp", "include/*.hpp"]\nignore = ["undeclared-port-in-cpp"]\n'
+        '[[overrides]]\ninclude = ["src/"]\nrules = { unused-port-in-cpp = "off" }\n',
+    )
+    assert check(robot, "trees/m.btq", "src") == IN_MISSION
+
+
+def test_no_port_is_unknown_or_missing_where_not_all_are_seen(robot: Path) -> None:
+    write(robot, "src/drive.cpp", SOURCE.replace("return {", "return more({").replace('"code") };', '"code") });'))
+    write(robot, "trees/m.btq", MISSION.replace("gaol = {g} fast = maybe", "rate = 3"))
+    assert check(robot) == [
+        "src/drive.cpp:5:10: hint[unseen-in-cpp] `more` is not in the sources, and may add ports",
+        UNUSED,
+    ]
+
+
+def test_no_node_is_unknown_where_one_may_be_hidden(robot: Path) -> None:
+    write(robot, "trees/m.btq", "BehaviorTree Main\n    ->\n        IsOpen\n        Other\n")
+    unknown = "trees/m.btq:4:9: hint[unknown-node] unknown node `Other`"
+    assert check(robot, "trees") == [unknown]
+    write(robot, "src/other.cpp", "void add(F& f, std::string name) { f.registerNodeType<robot::Drive>(name); }\n")
+    assert check(robot) == [
+        UNUSED,
+        UNDECLARED,
+        "src/other.cpp:1:36: hint[unseen-in-cpp] the name of this node is an expression: `name`",
+    ]
+
+
+def test_messages_name_other_files_from_the_folder_of_the_project(robot: Path) -> None:
+    write(robot, "src/other.cpp", 'void add(F& f) { f.registerSimpleAction("Drive", drive); }\n')
+    write(robot, "trees/m.btq", "BehaviorTree Main\n    IsOpen\n")
+    said = "`Drive` is also registered at src/drive.cpp:20:3, as another node"
+    assert check(robot)[2:] == [f"src/other.cpp:1:18: hint[unseen-in-cpp] {said}"]
+
+
+@pytest.mark.parametrize("order", [("nav", "arm"), ("arm", "nav")])
+def test_a_factory_has_the_nodes_that_its_own_sources_register(robot: Path, order: tuple[str, ...]) -> None:
+    write(robot, "src/grip.cpp", 'void add(F& f) { f.registerSimpleAction("Grip", grip); }\n')
+    nodes = ("IsOpen", "Gripp (a = 1)", "Grip (a = 1)")
+    write(robot, "trees/m.btq", "\n        ".join(("BehaviorTree Main\n    ->", *nodes)) + "\n")
+    tables = {
+        "nav": '[[factory]]\nname = "nav"\nload = ["trees/m.btq"]\nnodes = ["src/drive.cpp", "include/*.hpp"]\n',
+        "arm": '[[factory]]\nname = "arm"\nload = ["trees/*.btq"]\nnodes = ["src/grip.cpp"]\n',
+    }
+    write(robot, "btq.toml", "".join(tables[name] for name in order))
+    assert check(robot) == [
+        UNUSED,
+        UNDECLARED,
+        "trees/m.btq:4:9: warning[unknown-node] unknown node `Gripp`; did you mean `Grip`?",
+        "trees/m.btq:5:15: warning[unknown-port] `Grip` has no port `a`",
+    ]
+
+
+def test_what_keeps_nodes_from_being_known_is_said_once_in_the_project_file(
+    robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(robot, "trees/m.btq", "BehaviorTree Main\n    ->\n        IsOpen\n        Drive (a = 1)\n        Other\n")
+    write(robot, "btq.toml", 'engine = "4.6"\nnodes = ["lib/*.cc"]\n')
+    assert check(robot) == ["btq: btq.toml:2:10: no C++ file matches `lib/*.cc`"]
+    write(robot, "btq.toml", 'nodes = ["include/*.hpp"]\n')
+    assert check(robot) == [
+        "btq: btq.toml:1:10: no node is registered in 1 C++ file; name the files with BT_REGISTER_NODES, "
+        "registerNodeType or registerBuilder, too"
+    ]
+    from btq_lang.cpp import grammar
+
+    grammar._parser.cache_clear()
+    monkeypatch.setitem(sys.modules, "tree_sitter", None)
+    write(robot, "btq.toml", 'nodes = ["src/*.cpp"]\n')
+    message = "C++ is read with tree-sitter; install it with pip install 'btq-lang[cpp]'"
+    assert check(robot) == [f"btq: btq.toml:1:10: {message}"]
+    write(robot, "btq.toml", '[[factory]]\nname = "a"\nload = ["trees/*"]\nnodes = ["src/*.cpp"]\n')
+    assert check(robot) == [f"btq: btq.toml:4:10: {message}"]
+
+
+def place(workspace: Workspace, path: str, offset: int) -> list[str]:
+    """Where the definition is, as file:line:column and its text."""
+    found = []
+    for target in goto_definition(workspace, path, offset):
+        file = workspace.files[target.path]
+        span = file.on_disk(target.name)
+        line, column = file.source_lines.position(span.start)
+        name = target.path.rpartition("/")[2]
+        found.append(f"{name}:{line + 1}:{column + 1} {file.source[span.start : span.end]}")
+    return found
+
+
+@pytest.mark.parametrize("suffix", ["btq", "xml"])
+def test_definition_is_the_class_and_the_port_in_the_code(robot: Path, suffix: str) -> None:
+    xml = '<root BTCPP_format="4"><BehaviorTree ID="M"><Drive goal="{g}" speed="1"/></BehaviorTree></root>\n'
+    text = "BehaviorTree M\n    ->\n        Drive (goal = {g} speed = 1)\n        IsOpen\n" if suffix == "btq" else xml
+    write(robot, f"trees/n.{suffix}", text)
+    workspace, path = open_workspace(str(robot)), f"{robot}/trees/n.{suffix}"
+    text = workspace.files[path].text
+    assert place(workspace, path, text.index("Drive")) == ["drive.hpp:2:7 Drive"]
+    assert place(workspace, path, text.index("speed")) == ['drive.cpp:7:20 BT::InputPort<double>("speed", 0.5, "m/s")']
+    if suffix == "btq":
+        registration = 'drive.cpp:21:3 factory.registerSimpleCondition("IsOpen", std::bind(isOpen))'
+        assert place(workspace, path, text.index("IsOpen")) == [registration]
+
+
+def test_editors_show_them(robot: Path) -> None:
+    write(robot, "trees/m.btq", MISSION.replace("gaol", "goal"))
+    workspace, path = open_workspace(str(robot)), f"{robot}/trees/m.btq"
+    text = workspace.files[path].text
+    shown = hover(workspace, path, text.index("Drive"))
+    assert shown is not None
+    assert shown.markdown == (
+        "```btq\nAction Drive\n```\n\n"
+        "- `input goal : Pose` (required): where to go\n"
+        '- `input fast : bool = ""`\n'
+        "- `input speed : double = 0.5`: m/s\n"
+        "- `output code : int`\n\n"
+        f"[include/drive.hpp:2](file://{robot}/include/drive.hpp#L2)"
+    )
+    shown = hover(workspace, path, text.index("fast"))
+    assert shown is not None
+    assert shown.markdown == f'`input fast : bool = ""`\n\n[src/drive.cpp:6](file://{robot}/src/drive.cpp#L6)'
+    assert {"speed", "code"} <= {one.label for one in complete(workspace, path, text.index("goal")).proposals}
+    for word in ("Drive", "goal"):
+        reason = f"cannot rename `{word}`: its definition is in src/drive.cpp, which is C++"
+        assert prepare_rename(workspace, path, text.index(word)) == Refusal(reason)
+    at = text.index("Drive")
+    references = [(each, span.start) for each, span in find_references(workspace, path, at, include_definition=False)]
+    assert references == [(path, at)]
+
+
+def test_a_build_knows_them_and_writes_no_models_of_them(robot: Path) -> None:
+    code, _, err = run_btq("build", cwd=robot)
+    assert (code, [line.removeprefix("nothing") for line in err.splitlines()]) == (1, [" was written"])
+    write(robot, "trees/m.btq", "BehaviorTree Main\n    Drive (goal = {g})\n")
+    assert run_btq("build", cwd=robot) == (0, "wrote trees/m.xml\n", "")
+    assert re.findall(r"<(\w+)", (robot / "trees/m.xml").read_text()) == ["root", "BehaviorTree", "Drive"]
+
+
+def test_a_source_is_parsed_again_only_if_it_changes(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from btq_lang.cpp import source
+
+    parsed: list[str] = []
+    parse = source.parse
+
+    def counting(text: str) -> object:
+        parsed.append(text)
+        return parse(text)
+
+    monkeypatch.setattr(source, "parse", counting)
+    files = Files()
+    (before,), _ = files.groups([str(robot)])
+    assert sorted(parsed) == [SOURCE, HEADER]
+    changed = SOURCE.replace('"fast"', '"quick"')
+    write(robot, "src/drive.cpp", changed)
+    (after,), _ = files.groups([str(robot)])
+    assert parsed[2:] == [changed]
+    of_each = [group.workspace.files[f"{robot}/include/drive.hpp"] for group in (before, after)]
+    assert of_each[0] is of_each[1]
