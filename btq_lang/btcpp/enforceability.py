@@ -154,6 +154,8 @@ def _can_stand_around(node: ResolvedNode, is_skipped_inside: bool) -> None:
         raise NotEnforced(
             f"{node.shown} may be skipped and has `{said}`, so with a guard around it the tree would behave differently"
         )
+    if node.behavior is not None and node.behavior.memory:
+        raise NotEnforced(f"a guard around {node.shown} would reset it, and it would forget what it waits for")
     # These nodes never reset their condition: when it is ticked again, an action repeats its result without evaluating
     # `_failureIf`.  A wrapper would reset it.
     asks = node.parent if node.parent is not None and node.parent.flow == "choice" else None

@@ -79,8 +79,9 @@ if TYPE_CHECKING:
     # The role of a port's value in the flow of its node.  count: how often it runs its child at most; -1: without end.
     # time: how long it waits, or lets its child run.  successes, failures: how many of its children must succeed or
     # fail for it to do so; a negative number counts from the end.  otherwise: what it returns without its child.
-    # retries: how often its second child may help its first.  wraps: whether its first child follows its last.
-    Role: TypeAlias = Literal["", "count", "time", "successes", "failures", "otherwise", "retries", "wraps"]
+    # retries: how often its second child may help its first.  wraps: whether its first child follows its last.  index:
+    # the entry with the number of its child, which it counts on.
+    Role: TypeAlias = Literal["", "count", "time", "successes", "failures", "otherwise", "retries", "wraps", "index"]
 
 # The text of a port: a value, a script, or the name of a blackboard entry, written without braces.
 Content: TypeAlias = "Literal['value', 'script', 'key']"

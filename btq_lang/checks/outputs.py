@@ -114,7 +114,9 @@ def _types(view: View, seen: ResolvedNode) -> dict[str, str]:
         return _outputs_of(seen.kind.tag)
     if seen.is_subtree:
         return dict.fromkeys(_outputs(subtree_ports(view, seen)), "")
-    return _outputs(view.model_ports(seen))
+    types = _outputs(view.model_ports(seen))
+    index = seen.behavior.port_for("index") if seen.behavior is not None else None
+    return types if index is None else {**types, index.name: index.type}
 
 
 @cache

@@ -77,7 +77,8 @@ def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def skipped_condition(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """`_skipIf` or `_while` on the condition of an IfThenElse or a WhileDoElse, which do not accept SKIPPED from it."""
+    """`_skipIf` or `_while` on the condition of an IfThenElse or a WhileDoElse, which do not accept SKIPPED from it, or
+    on a child of a node that accepts it from none."""
     for seen in view.seen.marked:
         pair = next((pair for pair in seen.node.attributes if pair.key.text in ("_skipIf", "_while")), None)
         if pair is None:
@@ -86,7 +87,7 @@ def skipped_condition(view: View, entry: Entry) -> Iterator[Diagnostic]:
         while condition.parent is not None and condition.parent.flow in _PASS_SKIPPED_ON:
             condition = condition.parent
         parent = condition.parent
-        if condition.index or parent is None or parent.flow != "choice":
+        if parent is None or not (parent.flow == "together" or (parent.flow == "choice" and not condition.index)):
             continue
         yield Diagnostic(
             "skipped-condition",

@@ -360,7 +360,7 @@ def _together(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
 def _resume(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     """It may begin with any child, and end before the first one.  With a number instead of an entry it begins there at
     every tick."""
-    word = node.node.attribute("current_child_idx")
+    word, _ = _port(node, "index")
     if word is not None and word.kind != BRACED:
         return unknown("begins with the same child at every tick")
     go, end, _ = _in_order([(each.success, each.failure, each.skip) for each in children])

@@ -252,3 +252,34 @@ def test_an_error_code_that_nobody_reads() -> None:
         '    AreErrorCodesPresent (error_code = {code} error_codes_to_check = "1")',
     )
     assert found(read, "jazzy") == []
+
+
+# ---- other rules ----
+
+
+def test_an_index_without_an_entry_is_never_counted_on() -> None:
+    text = tree("PersistentSequence (current_child_idx = 0)", "    Spin", "    Wait")
+    assert found(text, "lyrical") == [
+        "2:45 warning literal-for-output «0» expected a blackboard entry for the output `current_child_idx` of "
+        "`PersistentSequence`, found `0`"
+    ]
+    assert found(text.replace("= 0", "= {at}"), "lyrical") == []
+
+
+def test_a_skipped_child_where_none_may_be() -> None:
+    text = tree("NonblockingSequence", "    Spin", '    Wait (_skipIf = "@a > 1")')
+    assert found(text, "lyrical") == [
+        "4:15 warning skipped-condition «_skipIf» if `_skipIf` skips `Wait`, `NonblockingSequence` throws and the "
+        "mission ends"
+    ]
+    assert found(text.replace("NonblockingSequence", "PipelineSequence"), "lyrical") == []
+
+
+def test_a_guard_would_make_a_node_forget() -> None:
+    demand = "satisfies QualityReq q takes at most 5 s on violation fail"
+    text = tree("PipelineSequence", f"    RateController {demand}", "        Spin", "    Wait")
+    assert found(text, "jazzy") == [
+        "3:47 warning not-enforced «takes at most 5 s» the engine cannot enforce `on violation fail`: a guard around "
+        "`RateController` would reset it, and it would forget what it waits for"
+    ]
+    assert found(text.replace("RateController", "GoalUpdater (input_goal = {goal} output_goal = {g})"), "jazzy") == []

@@ -144,3 +144,14 @@ def test_unknown_names_are_reported_at_their_place(text: str, message: str) -> N
     (problem,) = parse_project(text)[1]
     assert problem.position is not None
     assert f"{problem.position.line + 1}:{problem.position.column + 1}: {problem.message}" == message
+
+
+def test_what_a_node_does_is_explained_and_shown(robot: Path) -> None:
+    text = "BehaviorTree Main\n    RateController\n        FollowPath (path = {path})\n"
+    (robot / "m.btq").write_text(text)
+    shown = hover(open_workspace(str(robot)), f"{robot}/m.btq", text.index("Rate"))
+    semantics = "when 1/hz seconds have passed since its last success; otherwise it returns RUNNING."
+    assert shown is not None
+    assert semantics in shown.markdown
+    _, out, _ = run_btq("explain", "RateController", cwd=robot)
+    assert semantics in " ".join(out.split())

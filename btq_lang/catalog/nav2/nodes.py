@@ -65,6 +65,16 @@ _CONTROL: Final = (
         "A sequence that keeps its index in an entry.",
         "It begins with the child whose index current_child_idx has, and counts on in that entry; a halt does not "
         "change it. After a failure and at its end the entry is 0. Without the entry it throws.",
+        (
+            PortKind(
+                "current_child_idx",
+                "inout",
+                "int",
+                "the entry that keeps the index of the child",
+                required=True,
+                role="index",
+            ),
+        ),
         flow="resume",
     ),
     NodeKind(
