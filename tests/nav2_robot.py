@@ -53,7 +53,9 @@ def findings_in(folder: Path, text: str, distribution: str | None = None) -> lis
     project = Project(str(folder), node_files=(PACKAGED[nodes],) if nodes else ())
     path = str(folder / "nav2_params.yaml")
     files = Files()
-    file, problem = parameter_file(Factory("robot", nav2="nav2_params.yaml"), project, None, {path: text}.get)
+    file, problem = parameter_file(
+        Factory("robot", nav2="nav2_params.yaml"), project, None, {path: text}.get, lambda _: None
+    )
     assert file is not None, problem
     return list(findings_of(file, lambda factory: files.workspace_of(factory, Found(project, None))))
 

@@ -180,6 +180,12 @@ def declared_format(workspace: Workspace, viewpoint: str) -> str | None:
 
 
 @of_viewpoint
+def has_parameters(workspace: Workspace, viewpoint: str) -> bool:
+    """Whether these entries are those that a parameter file says."""
+    return workspace.factory is not None and bool(workspace.factory.entries)
+
+
+@of_viewpoint
 def has_palette(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the models in scope are meant to be complete: a TreeNodesModel, or models of another file.  Those of Nav2
     or of C++ sources are not: programs register nodes of other packages, too."""

@@ -58,12 +58,13 @@ def error_code_not_collected(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
     from btq_lang.catalog.nav2.navigator import COLLECTED, COLLECTING, OF_BRINGUP  # only for Nav2
 
+    usual = () if view.look_up(lookups.has_parameters) else OF_BRINGUP
     for seen, _, tree in _of_nav2(view, distribution):
         for pair in seen.node.attributes:
             if pair.key.text not in COLLECTED or pair.value is None:
                 continue
             name = pointed_at(pair.key.text, pair.value.text)
-            if name is None or name in OF_BRINGUP or view.ask(_is_read, tree, name):
+            if name is None or name in usual or view.ask(_is_read, tree, name):
                 continue
             if any(distance(name, entry, 1) < 2 for entry, _ in view.look_up(lookups.outside_entries)):
                 continue  # it is misspelt, which is reported

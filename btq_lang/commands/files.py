@@ -236,7 +236,7 @@ class Files:
                 continue
             from btq_lang.commands.nav2_factory import parameter_file  # few projects are for Nav2
 
-            file, problem = parameter_file(found, home.project, home.path, self.overlay.get)
+            file, problem = parameter_file(found, home.project, home.path, self.overlay.get, self.xml.source_of)
             if problem is not None and file is None and home.path is not None:
                 problem = LoadProblem(home.path, f"`{factory.nav2}` {problem.message}")  # where editors show it
             problems += [problem] if problem is not None else []

@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import posixpath
 import subprocess
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.btcpp.marks import is_built_of, named_beside
@@ -100,11 +100,21 @@ class Revisions:
             from btq_lang.commands.factory_files import resolved  # few projects have any
 
             there = _Registered(self, commit)
-            found = [resolved(each, project.root, there, there.matching) for each in project.factories]
+            found: list[Factory] = []
+            for each in project.factories:
+                whole = resolved(each, project.root, there, there.matching)
+                found += self._of_nav2(commit, whole, project, there) if each.nav2 else (whole,)
             self._of_factories[key] = tuple(
                 self._read(commit, (*each.files, *each.node_files), project, {}, each) for each in found
             )
         return self._of_factories.get(key, ())
+
+    def _of_nav2(self, commit: str, factory: Factory, project: Project, there: _Registered) -> Iterator[Factory]:
+        """The factories that a parameter file of Nav2 describes, with the files that are in its folders today."""
+        from btq_lang.commands.nav2_factory import parameter_file  # few projects are for Nav2
+
+        file, _ = parameter_file(factory, project, None, lambda path: self.text(commit, path), there.source_of)
+        yield from (each for _, each in file.factories) if file is not None else ()
 
     def paths(self, commit: str) -> tuple[str, ...]:
         """All files of a commit, sorted."""

@@ -56,13 +56,18 @@ class ParameterFile(Record):
 
 
 def parameter_file(
-    factory: Factory, project: Project, project_file: str | None, known: Callable[[str], str | None]
+    factory: Factory,
+    project: Project,
+    project_file: str | None,
+    known: Callable[[str], str | None],
+    source_of: Callable[[str], str | None],
 ) -> tuple[ParameterFile | None, LoadProblem | None]:
     """The parameter file of a factory, or why it could not be read.
 
     Args:
         factory: with its files resolved; they are those that goals name.
         known: returns the text of an open file.
+        source_of: returns the mission that XML was built of, which counts in its place.
     """
     path = absolute(os.path.join(project.root, factory.nav2))
     text, problem = (known(path), None) if known(path) is not None else read(path)
@@ -81,7 +86,11 @@ def parameter_file(
     found = loads(
         parameters, distribution or "", project.root, factory.files, lambda file: known(file) or read(file)[0]
     )
-    factories = tuple((load, _factory_of(load, factory, parameters, distribution, path)) for load in found)
+    registered = [tuple(dict.fromkeys(source_of(each) or each for each in load.files)) for load in found]
+    factories = tuple(
+        (load, replace(_factory_of(load, factory, parameters, distribution, path), files=files))
+        for load, files in zip(found, registered, strict=True)
+    )
     return replace(empty, parameters=parameters, distribution=distribution, factories=factories), problem
 
 
@@ -114,7 +123,6 @@ def _factory_of(load: Load, factory: Factory, parameters: Parameters, distributi
     return replace(
         factory,
         name=f"{factory.name} ({load.label})",
-        files=load.files,
         node_files=nodes,
         nav2=path,
         has_gaps=distribution is None or not load.is_whole or bool(load.refused),

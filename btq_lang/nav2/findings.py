@@ -174,6 +174,8 @@ def _name(place: Place | None, parts: int = 1) -> str:
 def _unloaded(found: Loaded, parameters: Parameters, libraries: Libraries) -> Iterator[Diagnostic]:
     """Nodes that nothing registers."""
     span = parameters.key(NAMES) or parameters.place or Span(0, 0)
+    refused = ("while such a file is in a search directory, bt_navigator loads no tree at all",)
+    notes = refused if found.load.folders else ()  # as Lyrical does
     for name, place in _strangers(found.workspace).items():
         if name in libraries.nodes:
             continue
@@ -181,10 +183,10 @@ def _unloaded(found: Loaded, parameters: Parameters, libraries: Libraries) -> It
         library = libraries.library_of(name)
         if library is not None:
             message = f"bt_navigator does not load the library of `{name}`: add `{library}`"
-            yield Diagnostic("unloaded-node", span, message, related)
+            yield Diagnostic("unloaded-node", span, message, related, notes)
         elif libraries.are_all_known:
             message = f"no library that bt_navigator loads has a node `{name}`"
-            yield Diagnostic("unloaded-node", span, message, related, (f"name its library in `{NAMES}`",))
+            yield Diagnostic("unloaded-node", span, message, related, (f"name its library in `{NAMES}`", *notes))
 
 
 def _strangers(workspace: Workspace) -> dict[str, Place]:

@@ -83,6 +83,23 @@ def test_an_option(robot: Path) -> None:
     assert check(robot, "nav2_params.yaml") != []  # no tree need be there
 
 
+def test_error_codes_that_are_collected_are_those_of_the_parameters(robot: Path) -> None:
+    nodes = "".join(f'<Spin error_code_id="{{{each}_error_code}}"/>' for each in ("spin", "my"))
+    tree = f'<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence>{nodes}</Sequence></BehaviorTree></root>\n'
+    (robot / "trees/main.xml").write_text(tree)
+    (robot / "btq.toml").write_text(JAZZY.replace("jazzy", "kilted") + FACTORY)
+    message = "nothing reads `{}_error_code`, and the result of a goal does not have it"
+
+    def uncollected(more: str) -> list[str]:
+        (robot / "nav2_params.yaml").write_text(PARAMETERS + more)
+        found = check(robot, "trees/main.xml", "--select", "error-code-not-collected")
+        return [line.partition("] ")[2] for line in found]
+
+    assert uncollected("") == [message.format("my")]
+    assert uncollected("    error_code_name_prefixes: [my]\n") == [message.format("spin")]
+    assert uncollected("    error_code_name_prefixes: [my, spin]\n") == []
+
+
 def test_lyrical_reads_the_folder(robot: Path) -> None:
     parameters = PARAMETERS.replace("    goal_blackboard_id: target\n", "").replace("nav2_spin", "opennav_dock")
     folder = "    bt_search_directories: [$(find-pkg-share my_robot)/trees]\n"
@@ -183,3 +200,27 @@ def test_without_the_extra(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None
     (robot / "btq.toml").unlink()
     code, _, err = run_btq("check", "--nav2-params", "nav2_params.yaml", cwd=robot)
     assert (code, err) == (2, f"btq: nav2_params.yaml: {message}\n")
+
+
+def test_a_built_tree_stands_for_its_mission(robot: Path) -> None:
+    (robot / "trees/main.xml").unlink()
+    (robot / "trees/main.btq").write_text("BehaviorTree Main\n    DockRobot (dock_pose = {targt})\n")
+    run_btq("build", "trees/main.btq", cwd=robot)
+    assert check(robot, "trees/main.btq") == [MISSPELT.replace("trees/main.xml:6:30", "trees/main.btq:2:29")]
+    assert check(robot, "nav2_params.yaml") == [UNLOADED, TWICE]
+
+
+def test_a_diff_with_a_revision_uses_its_parameters(robot: Path) -> None:
+    """What a tree is called in another file is known on both sides, so nothing else has changed."""
+    (robot / "nav2_params.yaml").write_text(
+        "bt_navigator:\n  ros__parameters:\n    default_nav_to_pose_bt_xml: $(find-pkg-share my_robot)/trees/main.xml\n"
+    )
+    (robot / "trees/main.btq").write_text('include "dock.btq"\nBehaviorTree Main\n    SubTree Dock\n')
+    (robot / "trees/dock.btq").write_text("BehaviorTree Dock\n    DockRobot\n")
+    run_btq("build", "--force", "trees/main.btq", cwd=robot)
+    for words in (("init",), ("add", "."), ("-c", "user.name=a", "-c", "user.email=a@b", "commit", "-m", "first")):
+        subprocess.run(["git", "-C", str(robot), *words], check=True, capture_output=True)
+    assert run_btq("diff", "--git", "HEAD", "trees/main.btq", cwd=robot)[:2] == (0, "")
+    (robot / "trees/dock.btq").write_text("BehaviorTree Dock\n    UndockRobot\n")
+    code, out, _ = run_btq("diff", "--git", "HEAD", "trees/dock.btq", cwd=robot)
+    assert (code, "UndockRobot" in out) == (1, True)
