@@ -12,7 +12,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
-from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4
+from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
 from btq_lang.checks import lookups
 from btq_lang.checks.engines import old_words
 from btq_lang.checks.view import COUNTS, View, misspelt_clause
@@ -247,7 +247,7 @@ def _is_of(view: View, word: str) -> bool:
     known = KNOWN_WORDS.get(word)
     if known is None or known.until is None:
         return False
-    return at_least(known.until, view.target) or (is_before_4(view.target) and known.tag in view.ask(old_words))
+    return at_least(last_of(known.until), view.target) or (is_before_4(view.target) and known.tag in view.ask(old_words))
 
 
 def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
