@@ -12,7 +12,7 @@ from btq_lang.catalog.changes import Change
 
 _IN_TURN: Final = ("Sequence", "AsyncSequence", "SequenceWithMemory", "Fallback", "AsyncFallback")
 _LOOPS: Final = ("LoopInt", "LoopBool", "LoopDouble", "LoopString")
-_SWITCHES: Final = {number: tuple(f"Switch{cases}" for cases in range(max(number, 2), 7)) for number in range(1, 7)}
+_SWITCHES: Final = tuple(f"Switch{cases}" for cases in range(2, 7))
 _WITHOUT_CYCLE: Final = (
     ("Repeat", "num_cycles", "succeeded", "succeeds"),
     ("RetryUntilSuccessful", "num_attempts", "failed", "fails"),
@@ -23,9 +23,8 @@ _NUMBER: Final = r"-?\d+(\.\d*)?([eE][-+]?\d+)?"
 
 def _cases(since: str, what: str, value: str, after: str = "") -> tuple[Change, ...]:
     instead = "give the cases and the variable one form"
-    return tuple(
-        Change(since, nodes, what, instead, f"case_{number}", value, after=after) for number, nodes in _SWITCHES.items()
-    )
+    ports = (f"case_{number}" for number in range(1, 7))
+    return tuple(Change(since, _SWITCHES, what, instead, port, value, after=after) for port in ports)
 
 
 ENGINE_CHANGES: Final = (

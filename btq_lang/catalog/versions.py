@@ -1,14 +1,15 @@
 """The versions of BehaviorTree.CPP that missions are written for, and what changed between them: one row a change.
 
-One invariant: every difference between versions is a row here, a field of a row in `engine_nodes` (since when a node
-exists, a port's type before), or in `syntax/script/versions.py`, where it is one of the scripting language.  Determined
+One invariant: every difference between versions is a row here, a field of a row in `engine_nodes` or `words` (since or
+until when a node exists, a port's type before), a row of `engine_changes`, where a node does something else, or in
+`syntax/script/versions.py`, where it is one of the scripting language.  Determined
 from the sources of the releases and by experiment.
 """
 
 from __future__ import annotations
 
 from functools import cache
-from typing import Final
+from typing import Final, Literal
 
 from btq_lang.util.record import Record
 
@@ -21,37 +22,74 @@ VERSION_3: Final = "3.8"
 
 
 class Change(Record):
-    """A behavior that one version introduces and all later ones keep."""
+    """A behavior that one version introduces and all later ones keep.
+
+    Attributes:
+        what: the rest of a sentence that begins with a version.
+        effect: what it is for a file that an earlier version reads.
+    """
 
     since: str
     what: str
+    effect: Literal["refused", "differs", "new"] = "refused"
 
     def holds(self, version: str) -> bool:
         """Whether a version does it."""
         return at_least(version, self.since)
 
 
-ENTRIES_OF_SUBTREE: Final = Change("4.0", "takes `key` at a port of a SubTree for a text; before, for an entry's name")
-LAST_TREE_COUNTS: Final = Change("4.0", "takes the last of several trees with one ID; before, the first")
+ENTRIES_OF_SUBTREE: Final = Change(
+    "4.0", "takes `key` at a port of a SubTree for a text; before, for an entry's name", "differs"
+)
+LAST_TREE_COUNTS: Final = Change("4.0", "takes the last of several trees with one ID; before, the first", "differs")
 ID_IN_COMPACT_FORM: Final = Change("4.0", "refuses an `ID` in the compact form of a node")
-UNDERSCORES: Final = Change("4.0", "takes no attribute that begins with `_` for a port; before, it refuses most")
-ENTRY_WITHOUT_DOLLAR: Final = Change("4.3.4", "takes `${key}` for a text; before, for an entry")
+UNDERSCORES: Final = Change(
+    "4.0",
+    "ignores `__shared_blackboard` and `__autoremap` (write `_autoremap`), and takes no attribute that begins with `_` "
+    "for a port",
+    "differs",
+)
+ENTRY_WITHOUT_DOLLAR: Final = Change("4.3.4", "takes `${key}` for a text; before, for an entry", "differs")
 PORTS_OF_SUBTREE: Final = Change("4.4", "requires the ports without default that the model of a SubTree has")
-OUTPUT_IN_BRACES: Final = Change("4.4.2", "writes an output only to an entry in braces; before, `key` names one too")
+OUTPUT_IN_BRACES: Final = Change(
+    "4.4.2", "writes an output only to an entry in braces; before, `key` names one too", "differs"
+)
 ID_OF_EACH_TREE: Final = Change("4.6", "refuses a tree without an ID beside other trees")
-DEEP_TREES: Final = Change("4.7", "reads trees of any depth; before, no node may have 97 others above it")
+DEEP_TREES: Final = Change("4.7", "reads trees of any depth; before, no node may have 97 others above it", "new")
 ONE_ASYNC_SEQUENCE: Final = Change("4.7", "refuses a second AsyncSequence in a ReactiveSequence")
 NO_EXPLICIT_CHILD: Final = Change("4.7", "refuses the explicit form of a node directly in a ReactiveSequence")
-SCRIPT_RANKS: Final = Change("4.7", "ranks the operators of scripts otherwise than 4.6 does")
-BOOL_LISTS: Final = Change("4.7.3", "reads a list of bool from text")
+SCRIPT_RANKS: Final = Change("4.7", "ranks the operators of scripts otherwise than 4.6 does", "differs")
+BOOL_LISTS: Final = Change("4.7.3", "reads a list of bool from text", "new")
 NAME_RULES: Final = Change("4.8", "refuses names of trees, nodes and ports with characters that it forbids")
 UNIQUE_SUBTREES: Final = Change("4.8", "refuses two SubTrees of one name in one tree")
 NEW_SCRIPTS: Final = Change(
-    "4.9", 'reads scripts by a grammar of its own: every operator has a rank, and `"` no meaning'
+    "4.9", 'reads scripts by a grammar of its own: every operator has a rank, and `"` no meaning', "differs"
 )
 STRICT_NUMBERS: Final = Change("4.9", "reads numbers as std::from_chars does: no blank, no `+`, no hexadecimal digits")
-JSON_LISTS: Final = Change("4.9", "reads a list from `json:[1, 2]`")
-TYPED_CONSTANTS: Final = Change("4.9.1", "keeps a number that a SubTree gives to a port as a number")
+JSON_LISTS: Final = Change("4.9", "reads a list from `json:[1, 2]`", "new")
+TYPED_CONSTANTS: Final = Change("4.9.1", "keeps a number that a SubTree gives to a port as a number", "differs")
+
+CHANGES: Final = (
+    ENTRIES_OF_SUBTREE,
+    LAST_TREE_COUNTS,
+    ID_IN_COMPACT_FORM,
+    UNDERSCORES,
+    ENTRY_WITHOUT_DOLLAR,
+    PORTS_OF_SUBTREE,
+    OUTPUT_IN_BRACES,
+    ID_OF_EACH_TREE,
+    DEEP_TREES,
+    ONE_ASYNC_SEQUENCE,
+    NO_EXPLICIT_CHILD,
+    SCRIPT_RANKS,
+    BOOL_LISTS,
+    NAME_RULES,
+    UNIQUE_SUBTREES,
+    NEW_SCRIPTS,
+    STRICT_NUMBERS,
+    JSON_LISTS,
+    TYPED_CONSTANTS,
+)
 
 
 @cache
@@ -62,7 +100,7 @@ def at_least(version: str, since: str) -> bool:
 
 
 def last_of(version: str) -> str:
-    """The last release of a line; a release is its own."""
+    """A version that no release of a line is after; a release is its own."""
     return version if version.count(".") > 1 else f"{version}.99"
 
 

@@ -247,7 +247,9 @@ def _is_of(view: View, word: str) -> bool:
     known = KNOWN_WORDS.get(word)
     if known is None or known.until is None:
         return False
-    return at_least(last_of(known.until), view.target) or (is_before_4(view.target) and known.tag in view.ask(old_words))
+    return at_least(last_of(known.until), view.target) or (
+        is_before_4(view.target) and known.tag in view.ask(old_words)
+    )
 
 
 def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:

@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 from check_asserts import assert_fixes_mend, assert_sound, show
 from in_process import run_btq
+from moving_pages import moving_pages
 
 from btq_lang.btcpp.opening import file_of
+from btq_lang.catalog import versions
 from btq_lang.catalog.changes import ANY, Change
 from btq_lang.catalog.engine_changes import ENGINE_CHANGES
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, PACKAGED
@@ -109,6 +111,15 @@ def test_each_change_of_the_engine_is_found_where_it_is_between(row: Change) -> 
     assert [line for line in moved_engine(text, after, before) if row.what in line] == []
     if row.until:
         assert [line for line in moved_engine(text, before, row.until) if row.what in line] == []
+
+
+def test_each_change_of_the_engine_is_on_the_page_of_one_step() -> None:
+    pages = [page for path, page in moving_pages().items() if path[7:8].isdigit()]
+    assert len(pages) == 3
+    for what in {row.what for row in (*ENGINE_CHANGES, *versions.CHANGES)}:
+        assert sum(what in page for page in pages) == 1, what
+    named = [each for name, each in vars(versions).items() if name.isupper() and isinstance(each, versions.Change)]
+    assert named == [*versions.CHANGES]
 
 
 def test_what_a_tree_of_humble_meets_on_the_way_to_lyrical() -> None:

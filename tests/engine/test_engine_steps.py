@@ -68,7 +68,7 @@ SEEN: dict[tuple[str, str, str], tuple[str, Callable[[Answer], object], object, 
         True,
     ),
     **{
-        ("4.10", f"Switch{max(case, 2)}", f"case_{case}"): (
+        ("4.10", "Switch2", f"case_{case}"): (
             '<Switch6 variable="5" {}>{}</Switch6>'.format(
                 " ".join(f'case_{each}="{"5abc" if each == case else "x"}"' for each in range(1, 7)),
                 "".join(ONE if each == case else "<AlwaysFailure/>" for each in range(1, 8)),
