@@ -255,7 +255,9 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         "  btq verify run.db3 --mission mission.btq           or named\n"
         "  btq verify bag/ --mission nav.btq                  a ROS 2 bag with /behavior_tree_log of Nav2\n"
         "  btq verify run.db3 --signals battery.csv           with samples of signals\n"
-        "  btq verify logs/ --format junit -o verdicts.xml    for CI\n",
+        "  btq verify logs/ --format junit -o verdicts.xml    for CI\n"
+        "  btq verify logs/ --store evidence --label v1.4     kept beside earlier runs\n"
+        "  btq verify --store evidence --by label             the verdicts of all that is kept\n",
     )
     parser.add_argument(
         "logs",
@@ -277,7 +279,18 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         help="samples as CSV or Parquet: seconds since the epoch, then one column for each signal or entry",
     )
     kept = parser.add_argument_group("keeping verdicts")
-    kept.add_argument("--store", metavar="DIR", help="keep what is found in each log in a folder, as Parquet files")
+    kept.add_argument(
+        "--store",
+        metavar="DIR",
+        help="keep what is found in each log in a folder, as Parquet files; without logs: print what is kept there",
+    )
+    kept.add_argument(
+        "--by",
+        action="append",
+        default=[],
+        choices=("label", "robot"),
+        help="without logs: verdicts for each label or robot; may be repeated",
+    )
     label, robot = kept.add_mutually_exclusive_group(), kept.add_mutually_exclusive_group()
     label.add_argument("--label", metavar="NAME", help="of these runs, such as a version")
     label.add_argument("--label-by", choices=("folder",), help="label each log with the name of its folder")

@@ -1,24 +1,39 @@
-"""The store of `btq verify`: where the command line asks to keep verdicts."""
+"""The store of `btq verify`: verdicts are kept there, and those of all runs in it are printed."""
 
 from __future__ import annotations
 
+import sys
 from argparse import Namespace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
+from btq_lang.commands.output import form_of, form_problem
+from btq_lang.commands.verdict_formats import FORMATS
+from btq_lang.commands.verdict_report import print_report
 from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.store.sets import Keeping
 
-_NAMES = ("--label", "--label-by", "--robot", "--robot-by")
+
+def store_problem(options: Namespace) -> str | None:
+    """What is wrong with a command line about a store."""
+    given = vars(options)
+    named = [each for each in (*_OF_LOGS, *_OF_KEEPING, "--by") if given[each.strip("-").replace("-", "_")]]
+    if options.store is None:
+        wrong = [each for each in named if each not in _OF_LOGS]
+        return f"{wrong[0]} goes with --store DIR" if wrong else None
+    if options.logs:
+        return "--by goes with --store DIR and no log" if options.by else None
+    if named not in ([], ["--by"]):
+        return f"{named[0]} goes with logs; without any, --store DIR prints what is kept there"
+    if form_of(options, FORMATS) == "html":
+        return "a page is made of logs; choose another format for a store"
+    return form_problem(options, FORMATS)
 
 
 def opened(options: Namespace, problems: list[str]) -> Keeping | None:
-    """The store that a command line names, without what killed writers left; errors are appended to the problems."""
+    """The store to keep verdicts in, without what killed writers left; errors are appended to the problems."""
     if options.store is None:
-        values = vars(options)
-        named = [each for each in _NAMES if values[each.strip("-").replace("-", "_")] is not None]
-        problems += [f"{each} goes with --store DIR" for each in named]
         return None
     from btq_lang.evidence.store.engine import NoEngine, imported
     from btq_lang.evidence.store.sets import Keeping, tidy
@@ -33,3 +48,20 @@ def opened(options: Namespace, problems: list[str]) -> Keeping | None:
     except OSError as error:
         problems.append(f"{shown(options.store)}: cannot be read: {error.strerror or error}")
     return Keeping(options.store, options.label, options.label_by, options.robot, options.robot_by)
+
+
+def summarise(options: Namespace) -> int:
+    """Print the verdicts of all runs in a store; returns the exit code."""
+    from btq_lang.evidence.store.engine import NoEngine, asked
+    from btq_lang.evidence.store.summary import summary
+
+    try:
+        report = summary(asked(options.store), options.store, tuple(dict.fromkeys(options.by)))
+    except NoEngine as error:
+        print(f"btq verify: {error}", file=sys.stderr)
+        return 2
+    return print_report(options, report, ())
+
+
+_OF_LOGS: Final = ("--mission", "--signals")
+_OF_KEEPING: Final = ("--label", "--label-by", "--robot", "--robot-by")

@@ -14,17 +14,17 @@ from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import side_path, xml_path
 from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import Files, usage_problem
-from btq_lang.commands.output import form_of, form_problem, is_coloured, terminal_width, write_output
+from btq_lang.commands.output import form_of, form_problem
 from btq_lang.commands.progress import Progress
-from btq_lang.commands.stored import opened
-from btq_lang.commands.verdict_formats import FORMATS, write
+from btq_lang.commands.stored import opened, store_problem, summarise
+from btq_lang.commands.verdict_formats import FORMATS
+from btq_lang.commands.verdict_report import print_report
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.notes import foreign_runs
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.readers.side import SideFile, side_file_at, side_files_beside
 from btq_lang.evidence.signal_sources import signal_sources
-from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
 from btq_lang.evidence.verifying import judged, logs_below
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import IS_SPECIAL, find_project, is_special, shown
@@ -35,7 +35,12 @@ if TYPE_CHECKING:
 
 
 def run(options: Namespace) -> int:
-    """Read the logs and print the verdicts."""
+    """Read the logs, or a store, and print the verdicts."""
+    if problem := usage_problem([*options.logs, *options.mission]) or store_problem(options):
+        print(f"btq verify: {problem}", file=sys.stderr)
+        return 2
+    if options.store is not None and not options.logs:
+        return summarise(options)
     problems: list[str] = []
     logs, missions, samples = _given(options, problems)
     roots = (each.workspace.project.root for each in missions if each.workspace.project.evidence)
@@ -62,23 +67,15 @@ def run(options: Namespace) -> int:
         remarks = report.remarks if form != "table" else ()  # the table has them
         for note in (*remarks, *foreign_runs(report)):
             print(f"btq verify: {note}", file=sys.stderr)
-        to_terminal = options.output is None and sys.stdout.isatty()
-        colour = is_coloured(options, to_terminal)
-        width = terminal_width() if to_terminal else None
-        text = write(report, missions, form, colour=colour, verbose=options.verbose, width=width)
-        if code := write_output("verify", options.output, text):
-            return code
+        code = print_report(options, report, missions)
     for problem in problems:
         print(f"btq verify: {problem}", file=sys.stderr)
-    if problems:
-        return 2
-    wrong = report.verdicts - {SATISFIED} if options.strict else report.verdicts & {VIOLATED}
-    return int(bool(wrong))
+    return 2 if problems else code
 
 
 def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequence[Candidate], dict[str, Series]]:
     """The logs, missions and samples of a command line; errors are appended to the problems."""
-    problem = usage_problem([*options.logs, *options.mission]) or form_problem(options, FORMATS)
+    problem = form_problem(options, FORMATS)
     if options.jobs < 1:
         problem = problem or f"--jobs {options.jobs}: expected a number of processes"
     if problem:

@@ -53,7 +53,7 @@ def _rows(report: Report) -> Iterator[dict[str, str | float]]:
                     "cut_off": clause.cut_off,
                     "worst": worst.text if worst is not None else "",
                     "worst_si": worst.si if worst is not None else "",
-                    "worst_run": worst.run if worst is not None else "",
+                    "worst_run": worst.run if worst is not None and worst.run is not None else "",
                     "low": low,
                     "high": high,
                     "more": clause.more if clause.more is not None else "",

@@ -16,7 +16,8 @@ def result(clause: ClauseVerdict) -> str:
     """The counts, and how far the worst measure is from its bound."""
     parts = [_counted(clause)]
     if clause.worst is not None and clause.interval is None and clause.verdict != UNKNOWN:
-        parts.append(f"worst {clause.worst.text} in run {clause.worst.run}")
+        run = clause.worst.run
+        parts.append(f"worst {clause.worst.text} in run {run}" if run is not None else f"worst {clause.worst.text}")
     if clause.cut_off and clause.verdict != NEVER:
         parts.append(f"{clause.cut_off} cut off by the end of a log")
     return ", ".join(parts)

@@ -41,7 +41,7 @@ def _heading(mission: MissionVerdicts) -> Iterator[str]:
     """The mission and the logs that were read."""
     for source in mission.sources:
         found = f"{source.joined} of {source.nodes} nodes"
-        identity = f"{source.identity}, {found}"
+        identity = f"{source.identity}, {found}" if source.nodes else source.identity
         if source.joined < source.nodes:
             identity = f"{found} joined: {source.identity}"
         runs = f"{counted(source.runs, 'run')} in {source.file}"
@@ -116,8 +116,16 @@ def _summary(mission: MissionVerdicts) -> Iterator[str]:
         runs += [f"failures began at {', '.join(places)}"] if places else []
     for word, repeats in (("retries", mission.retries), ("recoveries", mission.recoveries)):
         if repeats.total:
-            runs.append(f"{word} {repeats.total}, at most {repeats.most} in run {repeats.run}")
+            run = f"run {repeats.run}" if repeats.run is not None else "a run"
+            runs.append(f"{word} {repeats.total}, at most {repeats.most} in {run}")
     yield " · ".join(map(printable, runs))
+    yield from _nodes(mission) if mission.nodes else ()  # the summary of a store has none
+    if mission.by_people:
+        yield printable(f"verified by people: {', '.join(mission.by_people)}")
+
+
+def _nodes(mission: MissionVerdicts) -> Iterator[str]:
+    """The nodes, in a line."""
     nodes = [f"nodes: exercised {sum(each.runs > 0 for each in mission.nodes)} of {len(mission.nodes)}"]
     if mission.contexts:
         nodes.append(f"contexts {sum(each.runs > 0 for each in mission.contexts)} of {len(mission.contexts)}")
@@ -128,8 +136,6 @@ def _summary(mission: MissionVerdicts) -> Iterator[str]:
     if blocks is not None and blocks.tick_p95 is not None and (worst := blocks.tick_worst or 0) >= _LONG_TICK:
         nodes.append(f"longest tick: {blocks.path} p95 {duration(blocks.tick_p95)}, worst {duration(worst)}")
     yield " · ".join(map(printable, nodes))
-    if mission.by_people:
-        yield printable(f"verified by people: {', '.join(mission.by_people)}")
 
 
 def _broken(lines: Iterable[str], room: int) -> Iterator[str]:

@@ -129,7 +129,7 @@ class Tally:
         self.violations.extend(replace(each, run=each.run + runs) for each in other.violations[:room])
         if other.worst is not None and other._worst_excess > self._worst_excess:
             self._worst_excess = other._worst_excess
-            self.worst = replace(other.worst, run=other.worst.run + runs)
+            self.worst = replace(other.worst, run=(other.worst.run or 0) + runs)
         self.distribution.add_all(other.distribution)
 
     def is_worse_than(self, other: Tally, run: int) -> bool:

@@ -74,11 +74,11 @@ class Violation(Record):
 
 
 class Worst(Record):
-    """The measure closest to the bound, or furthest beyond it."""
+    """The measure closest to the bound, or furthest beyond it; run: None in the summary of a store, where it holds."""
 
     si: float
     text: str
-    run: int
+    run: int | None
 
 
 class Histogram(Record):

@@ -64,7 +64,8 @@ def test_what_is_kept_of_a_log(robot: Path) -> None:
     log = next(store.iterdir()).name
     assert sorted(files(store)) == [f"{log}/about.json", *(f"{log}/{table}.parquet" for table in TABLES)]
     whose = (log, "v1.3", "main", "r7")
-    assert of(store, "runs", "* EXCLUDE (tree)") == [
+    assert of(store, "runs", "DISTINCT source") == [("v1/a.btlog",)]
+    assert of(store, "runs", "* EXCLUDE (tree, source)") == [
         (*whose, 1, START, START + 25_000, "succeeded", 3, 0, 0, None, 3, 3),
         (*whose, 2, START + 40_000, START + 55_000, "failed", 3, 0, 0, "Pick::3", 3, 3),
     ]
@@ -75,12 +76,25 @@ def test_what_is_kept_of_a_log(robot: Path) -> None:
     ]
     clause = ("quick", "Move takes at most 15 ms", "Move::2")
     assert of(store, "verdicts", "*") == [
-        (*whose, *clause, 1, "Move::2", START, START + 20_000, "violated", True, 0.02, 0.015, "took {}"),
-        (*whose, *clause, 2, "Move::2", START + 40_000, START + 50_000, "satisfied", True, 0.01, 0.015, None),
+        (
+            *whose,
+            *clause,
+            1,
+            "Move::2",
+            START,
+            START + 20_000,
+            "violated",
+            True,
+            START + 20_000,
+            0.02,
+            0.015,
+            "took {}",
+        ),
+        (*whose, *clause, 2, "Move::2", START + 40_000, START + 50_000, "satisfied", True, None, 0.01, 0.015, None),
     ]
     none = (None,) * 7
     assert of(store, "clauses", "* EXCLUDE (title, measures)") == [
-        (*whose, *clause, "activations", "ms", *none, True, 0, None),
+        (*whose, 0, *clause, "activations", "ms", *none, True, 0, None),
     ]
 
 

@@ -43,11 +43,11 @@ def test_no_line_is_wider_than_the_terminal(verify: Verify, monkeypatch: pytest.
     monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     for width in (60, 90, 120):
-        monkeypatch.setattr("btq_lang.commands.verify.terminal_width", lambda width=width: width)
+        monkeypatch.setattr("btq_lang.commands.verdict_report.terminal_width", lambda width=width: width)
         output = verify.text(*given)
         assert max(map(len, output.splitlines())) <= width
         assert sorted("".join(output.split())) == sorted("".join(whole.split()))
-    monkeypatch.setattr("btq_lang.commands.verify.terminal_width", lambda: 60)
+    monkeypatch.setattr("btq_lang.commands.verdict_report.terminal_width", lambda: 60)
     assert verify.text(*given).startswith(TABLE)
-    monkeypatch.setattr("btq_lang.commands.verify.terminal_width", lambda: 500)
+    monkeypatch.setattr("btq_lang.commands.verdict_report.terminal_width", lambda: 500)
     assert verify.text(*given) == whole

@@ -62,7 +62,7 @@ def test_the_verdicts_are_those_of_the_day(
     capsys.readouterr()
     monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
-    monkeypatch.setattr("btq_lang.commands.verify.terminal_width", lambda: 88)
+    monkeypatch.setattr("btq_lang.commands.verdict_report.terminal_width", lambda: 88)
     command, _, shown = blocks(page, "console")[1].partition("\n")
     assert main(shlex.split(command)[2:]) == 1
     assert f"\n\n{shown}\n" in capsys.readouterr().out

@@ -6,6 +6,7 @@ One invariant: nothing else imports DuckDB for the store, and any failure is a N
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Any, Final
 
@@ -17,8 +18,11 @@ class NoEngine(Exception):
     """The engine is missing, or cannot do what it should; the message says why."""
 
 
-def write_parquet(folder: str, log: str, label: str) -> None:
+def write_parquet(folder: str, common: Mapping[str, str]) -> None:
     """Write the Parquet files of a set from its rows.
+
+    Args:
+        common: what all rows of a table have in common.
 
     Raises:
         NoEngine: DuckDB is missing, or fails.
@@ -27,11 +31,44 @@ def write_parquet(folder: str, log: str, label: str) -> None:
     cursor = _writer(os.getpid()).cursor()
     try:
         for table in ROWS:
-            cursor.execute(_copy(folder, table, {"log": log, "label": label}))
+            cursor.execute(_copy(folder, table, common))
     except duckdb.Error as error:
         raise NoEngine(" ".join(str(error).split())) from error
     finally:
         cursor.close()
+
+
+def asked(store: str) -> Callable[[str], list[dict[str, Any]]]:
+    """A function that gives DuckDB a question about a store, and returns the rows by the names of their columns.
+
+    Raises:
+        NoEngine: DuckDB is missing, or the store has no sets or a damaged one; so does the function.
+    """
+    duckdb = imported()
+    connection = duckdb.connect()
+
+    def ask(question: str) -> list[dict[str, Any]]:
+        try:
+            found = connection.execute(question)
+            names = [str(column[0]) for column in found.description]
+            return [dict(zip(names, row, strict=True)) for row in found.fetchall()]
+        except duckdb.Error as error:
+            raise NoEngine(f"{store}: {' '.join(str(error).split())}") from error
+
+    try:
+        for table in ROWS:
+            files = quoted(files_of(store, table))
+            connection.execute(f"CREATE VIEW {table} AS SELECT * FROM read_parquet({files}, union_by_name = true)")
+    except duckdb.IOException as error:
+        raise NoEngine(f"{store}: no verdicts are kept there; keep some with btq verify LOG --store {store}") from error
+    except duckdb.Error as error:
+        raise NoEngine(f"{store}: {' '.join(str(error).split())}") from error
+    return ask
+
+
+def files_of(store: str, table: str) -> str:
+    """The pattern of the files of a table; what is still being written has other names."""
+    return f"{store.rstrip('/')}/{SETS}/{table}.parquet"
 
 
 def imported() -> Any:
@@ -60,16 +97,16 @@ def _writer(process: int) -> Any:
     return imported().connect(config={"threads": 1})
 
 
-def _copy(folder: str, table: str, common: dict[str, str]) -> str:
+def _copy(folder: str, table: str, common: Mapping[str, str]) -> str:
     """The statement that writes a table, in the order of its rows."""
-    columns = [f"{quoted(common[name])} AS {name}" for name in COMMON]
+    columns = [f"{quoted(common[name])} AS {name}" for name in COMMON[table]]
     sources = _rows(folder, table)
     if table == "verdicts":  # a join would change the order
         lists = ", ".join(f"list({name} ORDER BY clause_index) AS {name}s" for name in OF_CLAUSE)
         sources += f", (SELECT {lists} FROM {_rows(folder, 'clauses')}) AS names"
         columns += [f"coalesce(names.{name}s[verdicts.clause_index + 1], '') AS {name}" for name in OF_CLAUSE]
     for name in ROWS[table]:
-        if name != "clause_index":
+        if (table, name) != ("verdicts", "clause_index"):
             columns.append(f"coalesce({name}, '') AS {name}" if name in OF_CLAUSE else name)
     target = quoted(os.path.join(folder, f"{table}.parquet"))
     return f"COPY (SELECT {', '.join(columns)} FROM {sources}) TO {target} ({_OPTIONS})"
@@ -82,4 +119,5 @@ def _rows(folder: str, table: str) -> str:
     return f"read_csv({quoted(file_of(folder, table))}, columns = {{{types}}}, {form}, parallel = false) AS {table}"
 
 
+SETS: Final = "[0-9a-f]*"
 _OPTIONS: Final = "FORMAT parquet, COMPRESSION zstd, PARQUET_VERSION v2"

@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import os
+from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from functools import partial
@@ -109,10 +110,14 @@ class Part:
 
     def end(self, clauses: Sequence[JudgedClause]) -> None:
         """Write the clauses, when the log has been read."""
+        known: Counter[tuple[str, str, str]] = Counter()
         for written, clause in zip(self._clauses, clauses, strict=True):
             found, verdict, requirement = clause.findings(), clause.verdict(), clause.requirement
             odds, window = requirement.odds, requirement.window
-            named = (requirement.name, " ".join((requirement.title or "").split()), verdict.text, verdict.path)
+            same = requirement.name, verdict.text, verdict.path
+            known[same] += 1  # a requirement with parameters may be applied to a node twice
+            text = verdict.text if known[same] == 1 else f"{verdict.text} ({known[same]})"
+            named = (requirement.name, " ".join((requirement.title or "").split()), text, verdict.path)
             of_odds = (odds.probability, odds.relation, odds.experiments) if odds is not None else (None, None, None)
             of_window = (window.count, window.experiments, window.seconds) if window is not None else (None, None, None)
             means = (verdict.of, verdict.unit, written.unit, *of_odds, requirement.confidence, *of_window)
@@ -126,7 +131,8 @@ class Part:
         if measure is not None and clause.unit is None and measure.unit is not None:
             clause.unit = measure.unit.symbol
         why = None if judgement.holds else judgement.sentence
-        row = (clause.index, self._rows.run, path, begin, end, verdict, True, *numbers, why)
+        at = judgement.at if verdict == VIOLATED else None
+        row = (clause.index, self._rows.run, path, begin, end, verdict, True, at, *numbers, why)
         if of_runs:
             clause.open.append(row)
         else:

@@ -86,11 +86,12 @@ class Draft:
         now = {"format": FORMAT, "version": VERSION, "log": self._log, "label": label, "rows": digest(self._folder)}
         if now.items() <= before.items():
             return
-        write_parquet(self._folder, self._log, label)
+        named = source.encode(errors="replace").decode()
+        write_parquet(self._folder, {"log": self._log, "label": label, "source": named})
         for name in ROWS:
             os.remove(file_of(self._folder, name))
         with open(os.path.join(self._folder, ABOUT), "w", encoding="utf-8") as file:
-            json.dump({**now, "source": source}, file, indent=1)
+            json.dump(now, file, indent=1)
         _take_place(self._folder, target)
 
 

@@ -10,8 +10,13 @@ from __future__ import annotations
 
 from typing import Final
 
-# What all rows of a set have in common; the other columns of a table come from the rows that `rows.py` writes.
-COMMON: Final = {"log": "VARCHAR", "label": "VARCHAR"}
+# What all rows of a table have in common in a set; the other columns are in the rows that `rows.py` writes.
+COMMON: Final = {
+    "runs": ("log", "label", "source"),
+    "activations": ("log", "label"),
+    "clauses": ("log", "label"),
+    "verdicts": ("log", "label"),
+}
 _WHOSE: Final = {"mission": "VARCHAR", "robot": "VARCHAR"}
 
 ROWS: Final = {
@@ -70,8 +75,8 @@ ROWS: Final = {
         "missing": "VARCHAR",
     },
     # What was judged: an activation, or a run for clauses about runs.  `verdict`: `satisfied`, `violated` or `unknown`;
-    # `counted`: whether it counts: where runs are counted, one judgement of each run does; `why`: what happened, with
-    # `{}` for what was measured, or why it is unknown.
+    # `counted`: whether it counts: where runs are counted, one judgement of each run does; `at_us`: when it was
+    # violated; `why`: what happened, with `{}` for what was measured, or why it is unknown.
     "verdicts": {
         "clause_index": "INTEGER",
         "run": "INTEGER",
@@ -80,6 +85,7 @@ ROWS: Final = {
         "end_us": "BIGINT",
         "verdict": "VARCHAR",
         "counted": "BOOLEAN",
+        "at_us": "BIGINT",
         "measured_si": "DOUBLE",
         "bound_si": "DOUBLE",
         "why": "VARCHAR",

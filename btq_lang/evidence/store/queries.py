@@ -1,0 +1,103 @@
+"""The questions that a summary asks of a store: all SQL of it, as one table.
+
+One invariant: it is the part of SQL that every engine has, in DuckDB's words: aggregates, CASE, joins, and windows that
+number rows.  So one text runs on DuckDB and, translated word by word, on other engines.
+
+`{by}` are the columns that part the summary: `mission`, and those that the user names.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+QUERIES: Final = {
+    "runs": """
+        SELECT {by}, COUNT(DISTINCT log) AS logs, COUNT(*) AS runs,
+            MIN(start_us) AS start_us, MAX(end_us) AS end_us,
+            SUM(CASE WHEN outcome = 'succeeded' THEN 1 ELSE 0 END) AS succeeded,
+            SUM(CASE WHEN outcome = 'failed' THEN 1 ELSE 0 END) AS failed,
+            SUM(CASE WHEN outcome = 'halted' THEN 1 ELSE 0 END) AS halted,
+            SUM(CASE WHEN outcome = 'interrupted' THEN 1 ELSE 0 END) AS interrupted,
+            SUM(retries) AS retries, MAX(retries) AS most_retries,
+            SUM(recoveries) AS recoveries, MAX(recoveries) AS most_recoveries,
+            SUM(CASE WHEN joined < nodes THEN 1 ELSE 0 END) AS partly_joined
+        FROM runs
+        GROUP BY {by}
+        ORDER BY {by}
+    """,
+    # A clause at its nodes.  Its columns are the same in all logs, but for what happened in them.
+    "clauses": """
+        SELECT {by}, requirement, clause, node,
+            MIN(clause_index) AS clause_index, MAX(title) AS title, MAX(measures) AS measures, MAX(counts) AS counts,
+            MAX(unit) AS unit, MAX(odds) AS odds, MAX(relation) AS relation, MAX(experiments) AS experiments,
+            MAX(confidence) AS confidence, MAX(last_number) AS last_number, MAX(last_of) AS last_of,
+            MAX(last_seconds) AS last_seconds, MAX(CASE WHEN exercised THEN 1 ELSE 0 END) AS exercised,
+            SUM(cut_off) AS cut_off, MIN(missing) AS missing
+        FROM clauses
+        GROUP BY {by}, requirement, clause, node
+        ORDER BY {by}, clause_index, requirement, clause, node
+    """,
+    # What was counted of it, how far the measures are from their bounds, and the extreme ones.
+    "verdicts": """
+        SELECT {by}, requirement, clause, node,
+            SUM(CASE WHEN counted AND verdict = 'satisfied' THEN 1 ELSE 0 END) AS kept,
+            SUM(CASE WHEN counted AND verdict = 'violated' THEN 1 ELSE 0 END) AS violated,
+            SUM(CASE WHEN counted AND verdict = 'unknown' THEN 1 ELSE 0 END) AS unclear,
+            MIN(CASE WHEN verdict = 'unknown' THEN why END) AS why,
+            MIN(CASE WHEN verdict = 'satisfied' THEN measured_si - bound_si END) AS least,
+            MAX(CASE WHEN verdict = 'satisfied' THEN measured_si - bound_si END) AS most,
+            MIN(CASE WHEN verdict = 'satisfied' THEN measured_si END) AS lowest,
+            MAX(CASE WHEN verdict = 'satisfied' THEN measured_si END) AS highest
+        FROM verdicts
+        GROUP BY {by}, requirement, clause, node
+    """,
+    # The violations furthest beyond their bounds, with their runs.
+    "violations": """
+        SELECT ranked.*, runs.source AS source, runs.start_us AS run_start_us
+        FROM (
+            SELECT *, ROW_NUMBER() OVER (
+                PARTITION BY {by}, requirement, clause, node
+                ORDER BY ABS(measured_si - bound_si) DESC NULLS LAST, start_us, log, path
+            ) AS place
+            FROM verdicts
+            WHERE verdict = 'violated' AND counted
+        ) AS ranked
+        JOIN runs ON ranked.log = runs.log AND ranked.run = runs.run
+        WHERE place <= 10
+        ORDER BY place
+    """,
+    # The judgements of clauses over the last runs, activations or hours, each with how many came later.
+    "recent": """
+        SELECT * FROM (
+            SELECT {by_verdicts}, verdicts.requirement AS requirement, verdicts.clause AS clause,
+                verdicts.node AS node, verdicts.log AS log, verdicts.run AS run, verdicts.path AS path,
+                verdicts.end_us AS end_us, verdicts.at_us AS at_us, verdicts.verdict AS verdict,
+                verdicts.measured_si AS measured_si, verdicts.bound_si AS bound_si, verdicts.why AS why,
+                runs.source AS source, runs.start_us AS run_start_us, runs.end_us AS run_end_us,
+                windows.last_number AS last_number, windows.last_of AS last_of, windows.last_seconds AS last_seconds,
+                DENSE_RANK() OVER (
+                    PARTITION BY {by_verdicts}, verdicts.requirement, verdicts.clause, verdicts.node
+                    ORDER BY runs.start_us DESC, runs.log, runs.run
+                ) AS runs_back,
+                ROW_NUMBER() OVER (
+                    PARTITION BY {by_verdicts}, verdicts.requirement, verdicts.clause, verdicts.node
+                    ORDER BY runs.start_us DESC, verdicts.end_us DESC, runs.log, runs.run
+                ) AS judgements_back,
+                MAX(runs.end_us) OVER (PARTITION BY {by_verdicts}) AS last_us
+            FROM verdicts
+            JOIN (
+                SELECT DISTINCT log, mission, robot, requirement, clause, last_number, last_of, last_seconds
+                FROM clauses
+                WHERE last_number IS NOT NULL OR last_seconds IS NOT NULL
+            ) AS windows
+                ON verdicts.log = windows.log AND verdicts.mission = windows.mission
+                AND verdicts.robot = windows.robot AND verdicts.requirement = windows.requirement
+                AND verdicts.clause = windows.clause
+            JOIN runs ON verdicts.log = runs.log AND verdicts.run = runs.run
+        ) AS placed
+        WHERE (last_of = 'runs' AND runs_back <= last_number)
+            OR (last_of = 'activations' AND judgements_back <= last_number)
+            OR (last_seconds IS NOT NULL AND end_us >= last_us - last_seconds * 1000000)
+        ORDER BY {by}, requirement, clause, node, run_start_us, log, run, end_us
+    """,
+}

@@ -1,0 +1,236 @@
+"""The report of a whole store, or of its parts: the verdicts of all runs, counted by the engine.
+
+One invariant: what is loaded are counts, a few violations of each clause, and what windows such as `over last 200 runs`
+cover; and verdicts come from counts as for logs (`tally.py`, `clause.verdict_of`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+from btq_lang.catalog.units import parse_unit
+from btq_lang.diagnostics.model import Place
+from btq_lang.evidence.clause import verdict_of
+from btq_lang.evidence.limits import Measure
+from btq_lang.evidence.store.queries import QUERIES
+from btq_lang.evidence.tally import Run, Tally
+from btq_lang.evidence.verbs import Judgement
+from btq_lang.evidence.verdicts import (
+    OUTCOMES,
+    SATISFIED,
+    UNKNOWN,
+    ClauseVerdict,
+    MissionVerdicts,
+    Repeats,
+    Report,
+    RequirementVerdict,
+    Source,
+    Violation,
+    Worst,
+    worst_of,
+)
+from btq_lang.evidence.wording import measured, quantity
+from btq_lang.requirements.model import Odds, Value
+from btq_lang.util.text import Span, counted
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.units import Unit
+
+    Row: TypeAlias = Mapping[str, Any]
+    Ask: TypeAlias = Callable[[str], Sequence[Row]]  # the rows of a question, by the names of their columns
+
+PARTS: Final = ("label", "robot")  # what a summary may be parted by
+
+
+def summary(ask: Ask, store: str, parts: Sequence[str] = ()) -> Report:
+    """The verdicts of all runs in a store.
+
+    Args:
+        ask: gives an engine a question.
+        store: its name, as people read it.
+        parts: of PARTS, those that have verdicts of their own.
+    """
+    by = ("mission", *parts)
+    columns = {"by": ", ".join(by), "by_verdicts": ", ".join(f"verdicts.{each}" for each in by)}
+    found = {name: ask(text.format(**columns)) for name, text in QUERIES.items()}
+    at_clause = (*by, "requirement", "clause", "node")
+    counts = {_key(row, at_clause): row for row in found["verdicts"]}
+    broken, recent = (_grouped(found[name], at_clause) for name in ("violations", "recent"))
+    clauses = _grouped(found["clauses"], by)
+    missions = []
+    for part in found["runs"]:
+        judged: dict[str, list[ClauseVerdict]] = {}
+        titles = {}
+        for row in clauses.get(_key(part, by), ()):
+            key = _key(row, at_clause)
+            verdict = _verdict(row, counts.get(key), broken.get(key, ()), recent.get(key, ()))
+            judged.setdefault(row["requirement"], []).append(verdict)
+            titles[row["requirement"]] = row["title"] or ""
+        requirements = [
+            RequirementVerdict(name, titles[name], worst_of(each.verdict for each in verdicts), tuple(verdicts))
+            for name, verdicts in judged.items()
+        ]
+        missions.append(_mission(part, parts, store, requirements))
+    return Report(tuple(missions), (), ())
+
+
+def _mission(
+    part: Row, parts: Sequence[str], store: str, requirements: Sequence[RequirementVerdict]
+) -> MissionVerdicts:
+    """A mission in a part of the store."""
+    named = [f"{each} {part[each] or '(none)'}" for each in parts]
+    identity = [counted(int(part["logs"]), "log")]
+    if part["partly_joined"]:
+        identity.append(f"{counted(int(part['partly_joined']), 'run')} of another version")
+    source = Source(
+        file=store,
+        runs=int(part["runs"]),
+        first_run=1,
+        begin=part["start_us"],
+        end=part["end_us"],
+        identity=", ".join(identity),
+        joined=0,
+        nodes=0,
+        remarks=(),
+    )
+    return MissionVerdicts(
+        name=", ".join([part["mission"], *named]),
+        file="",
+        sources=(source,),
+        requirements=tuple(requirements),
+        outcomes=tuple((each, int(part[each])) for each in OUTCOMES.values() if part[each]),
+        nodes=(),
+        contexts=(),
+        retries=Repeats(int(part["retries"]), int(part["most_retries"]), None),
+        recoveries=Repeats(int(part["recoveries"]), int(part["most_recoveries"]), None),
+        by_people=(),
+    )
+
+
+def _verdict(row: Row, counts: Row | None, broken: Sequence[Row], recent: Sequence[Row]) -> ClauseVerdict:
+    """The verdict on a clause.
+
+    Args:
+        row: of the clause.
+        counts: of its judgements; None without any.
+        broken: its violations, the worst first.
+        recent: the judgements that its window covers.
+    """
+    unit = parse_unit(row["unit"] or "1")
+    assert unit is not None, "a unit of the table, as it was written"
+    is_windowed = row["last_number"] is not None or row["last_seconds"] is not None
+    tally = _recent(row, recent, unit) if is_windowed else _counted(row, counts, broken, unit)
+    verdict, why = verdict_of(tally, row["missing"] or "", bool(row["exercised"]))
+    return ClauseVerdict(
+        text=row["clause"],
+        path=row["node"],
+        of=row["measures"] or "",
+        verdict=verdict,
+        counted=tally.counted,
+        violated=tally.violated,
+        unknown=tally.unknown,
+        cut_off=tally.cut_off,
+        unit=row["counts"],
+        worst=tally.worst,
+        interval=tally.interval(),
+        confidence=row["confidence"],
+        more=tally.more(),
+        violations=tuple(tally.violations),
+        why=why,
+        histogram=None,
+    )
+
+
+def _counted(row: Row, counts: Row | None, broken: Sequence[Row], unit: Unit) -> Tally:
+    """The tally of a clause whose judgements all count."""
+    tally = _tally(row)
+    if counts is None:
+        return tally
+    tally.violated, tally.unknown = int(counts["violated"]), int(counts["unclear"])
+    tally.counted = int(counts["kept"]) + tally.violated
+    tally.why = counts["why"] or ""
+    tally.violations.extend(_violation(each, unit) for each in broken)
+    worst = broken[0] if broken else None
+    if worst is None:
+        tally.worst = _closest(counts, unit)
+    elif worst["measured_si"] is not None:
+        si = worst["measured_si"]
+        tally.worst = Worst(si, measured(si, unit, worst["bound_si"]), worst["run"])
+    return tally
+
+
+def _closest(counts: Row, unit: Unit) -> Worst | None:
+    """The measure closest to its bound, where all of them hold; None if the bound varies."""
+    least, most, lowest, highest = (counts[name] for name in ("least", "most", "lowest", "highest"))
+    if most is None or abs((highest - lowest) - (most - least)) > _SAME * max(abs(highest), abs(lowest)):
+        return None
+    si, beyond = (highest, most) if abs(most) <= abs(least) else (lowest, least)
+    return Worst(si, measured(si, unit, si - beyond), None)
+
+
+def _recent(row: Row, judgements: Sequence[Row], unit: Unit) -> Tally:
+    """The tally of a clause of whose judgements only the last ones count."""
+    tally = _tally(row)
+    for (_, number), found in groupby(judgements, key=lambda each: (each["log"], each["run"])):
+        of_run = [*found]
+        for each in of_run:
+            holds = None if each["verdict"] == UNKNOWN else each["verdict"] == SATISFIED
+            judgement = Judgement(holds, each["at_us"] or 0, each["why"] or "", _measure(each, unit))
+            tally.add(judgement, each["path"], each["end_us"], ())
+        first = of_run[0]
+        tally.end_run(Run(number, first["source"], first["run_start_us"], first["run_end_us"]))
+    return tally
+
+
+def _tally(row: Row) -> Tally:
+    """An empty tally for a clause."""
+    odds = None
+    if row["odds"] is not None:
+        odds = Odds(row["relation"], row["odds"], row["experiments"], "", Place(Span(0, 0)))
+    is_of_odds = odds is None or odds.experiments == row["last_of"]
+    tally = Tally(odds, row["confidence"], row["last_number"] if is_of_odds else None)
+    tally.cut_off = int(row["cut_off"])
+    return tally
+
+
+def _violation(row: Row, unit: Unit) -> Violation:
+    si, bound = row["measured_si"], row["bound_si"]
+    value = measured(si, unit, bound) if si is not None else ""
+    return Violation(
+        run=row["run"],
+        source=row["source"],
+        path=row["path"],
+        start=row["run_start_us"],
+        at=(row["at_us"] - row["run_start_us"]) / 1e6,
+        measured=value,
+        bound=quantity(bound, unit) if si is not None else "",
+        why=(row["why"] or "").replace("{}", value),
+        chain=(),
+    )
+
+
+def _measure(row: Row, unit: Unit) -> Measure | None:
+    """What was measured, on the side of its bound that the verdict tells."""
+    si, bound = row["measured_si"], row["bound_si"]
+    if si is None:
+        return None
+    beyond = abs(si - bound)
+    return Measure(
+        si, Value(quantity(bound, unit), bound, unit), beyond if row["verdict"] != SATISFIED else -beyond, si > bound
+    )
+
+
+def _grouped(rows: Sequence[Row], columns: Sequence[str]) -> dict[tuple[Any, ...], list[Row]]:
+    found: dict[tuple[Any, ...], list[Row]] = {}
+    for row in rows:
+        found.setdefault(_key(row, columns), []).append(row)
+    return found
+
+
+def _key(row: Row, columns: Sequence[str]) -> tuple[Any, ...]:
+    return tuple(row[each] for each in columns)
+
+
+_SAME: Final = 1e-9  # of the larger value: what subtracting and adding a bound may round off
