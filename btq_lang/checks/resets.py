@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.ports import adding_fix
 from btq_lang.checks.results import result
 from btq_lang.checks.statuses import SUCCESS
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
     from btq_lang.workspace.resolved import ResolvedNode
 
 _REMEMBERING: Final[tuple[Flow, ...]] = ("notices", "throttle", "throttle-or-fail", "pass-once")
-# They leave their child as it is when that has ended; in version 3, the engine itself resets the child of a decorator.
-_LEAVING: Final[frozenset[Flow]] = frozenset(("pass", "throttle", "throttle-or-fail", "pass-once", "pause"))
 # They tick children that have succeeded again, while a later one runs.
 _REPEATING: Final[frozenset[Flow]] = frozenset(("pipeline", "together"))
 
@@ -33,7 +30,7 @@ def memory_lost(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A node that has an effect only if it is ticked again as it was left, below one that resets it before."""
     for seen in view.seen.of_flow(*_REMEMBERING):
         parent = seen.parent
-        if parent is None or not parent.flow or _keeps(view, parent, seen):
+        if parent is None or _keeps(parent, seen):
             continue
         effect = "never succeeds" if seen.flow == "notices" else "holds nothing back"
         yield Diagnostic(
@@ -66,16 +63,17 @@ def last_success_lost(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def _keeps(view: View, parent: ResolvedNode, child: ResolvedNode) -> bool:
+def _keeps(parent: ResolvedNode, child: ResolvedNode) -> bool:
     """Whether a node may tick a child again after its end without a reset."""
-    if parent.flow in _LEAVING:
-        return not (parent.category == "Decorator" and is_before_4(view.target))
+    if parent.category == "Decorator":
+        return False  # after its tick the engine resets the child, if that has ended
     if parent.flow == "choice":
         return child.index == 0 and parent.behavior is not None and parent.behavior.reactive
     if parent.flow in _REPEATING:
         is_last = child.index == len(parent.node.children) - 1
         return child.behavior is not None and child.behavior.memory == "success" and not is_last
-    return parent.flow == "resume"  # with a number instead of an entry, it begins there at every tick
+    # What another node does is not known; with a number instead of an entry, one that resumes begins there every time.
+    return parent.flow in ("", "pause", "resume")
 
 
 def _kept_elsewhere(seen: ResolvedNode) -> str:

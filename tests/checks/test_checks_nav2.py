@@ -169,12 +169,15 @@ def test_a_throttle_is_kept_in_a_pipeline_before_its_last_child() -> None:
     assert trigger == ["`SingleTrigger` holds nothing back here: `->` resets it before it ticks it again"]
 
 
-def test_a_decorator_of_nav2_leaves_its_child_as_it_is_but_version_3_does_not() -> None:
-    text = tree("R->", "    GoalUpdater (input_goal = {goal} output_goal = {g})", "        GoalUpdated", "    Wait")
-    assert lost(text, "jazzy") == []
-    assert lost(text, "humble") == [
-        "`GoalUpdated` never succeeds here: `GoalUpdater` resets it before it ticks it again"
-    ]
+def test_the_engine_resets_the_child_of_every_decorator() -> None:
+    rate = ("        RateController", "            Spin", "    Wait")
+    own = "Decorator Own\n" + tree("PipelineSequence", "    Own", *rate)
+    nothing = "`RateController` holds nothing back here: `{}` resets it before it ticks it again"
+    assert lost(own) == [nothing.format("Own")]
+    updater = "GoalUpdater (input_goal = {goal} output_goal = {g})"
+    text = tree("PipelineSequence", f"    {updater}", *rate)
+    for distribution in ("humble", "jazzy", "lyrical"):
+        assert lost(text, distribution) == [nothing.format("GoalUpdater")]
 
 
 def test_of_nodes_that_are_not_known_nothing_is_said() -> None:
