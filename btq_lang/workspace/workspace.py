@@ -303,13 +303,12 @@ class Workspace:
     def pooled(self, path: str, kind: Kind, name: str) -> tuple[Definition, ...]:
         """What an XML file may mean by a name outside its scope: a tree of its folder's XML, else of its project; the
         project's models of a node.  A program may register all of these files, or only some."""
-        pool = self.project.pool_of(path)
-        if self.files[path].origin is None or pool is None:
+        anywhere = self.defined_anywhere(kind, name) if self.files[path].origin is not None else ()
+        pool = self.project.pool_of(path) if anywhere else None  # most names that are looked up are nowhere
+        if pool is None:
             return ()
         scope = self.scope(path).paths
-        found = [
-            each for each in self.defined_anywhere(kind, name) if each.path.startswith(pool) and each.path not in scope
-        ]
+        found = [each for each in anywhere if each.path.startswith(pool) and each.path not in scope]
         folder = posixpath.dirname(path)
         near = [each for each in found if posixpath.dirname(each.path) == folder and each.path in self.origins]
         return tuple((near or found) if kind is Kind.TREE else found)
