@@ -8,7 +8,7 @@ from typing import Final
 from btq_lang.catalog.nav2.libraries import LIBRARIES
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.nav2.parameters import Parameters, Text
-from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span, counted
 
 NAMES: Final = "plugin_lib_names"
@@ -62,12 +62,13 @@ class Libraries:
         yield Diagnostic("library-loaded-twice", first.span, message, related, (_REFUSED,))
 
     def _meant(self, name: str) -> str | None:
-        """What a library that is not Nav2's in this distribution may mean, for a message; None: it is another's."""
+        """What a library that is not Nav2's in this distribution may mean, for a message; None: it is a team's own."""
         here = [each for each in LIBRARIES if self._exists(each)]
-        nodes = LIBRARIES[name][0] if name in LIBRARIES else ()
-        now = [library for node in nodes if (library := self.library_of(node)) is not None]
-        likely = tuple(now[:1]) or near(name, here, 1)
-        return did_you_mean(likely) if likely or name in LIBRARIES else None
+        if name not in LIBRARIES:
+            likely = [each for each in here if distance(name, each, 1) <= 1]  # own ones are often named alike
+            return did_you_mean(likely) if likely else None
+        now = [library for node in LIBRARIES[name][0] if (library := self.library_of(node)) is not None]
+        return did_you_mean(now[:1] or near(name, here, 1))
 
     def _exists(self, name: str) -> bool:
         return name in LIBRARIES and self._letter in LIBRARIES[name][1]

@@ -15,14 +15,15 @@ from nav2_robot import findings_in
 from btq_lang.catalog.nav2 import DISTRIBUTIONS
 from btq_lang.nav2.parameters import read_parameters
 
-PARAMETERS = "nav2_bringup/params/nav2_params.yaml"
+FOLDER = "nav2_bringup/params"
+PARAMETERS = f"{FOLDER}/nav2_params.yaml"
 
 
 @pytest.fixture(scope="module", params=DISTRIBUTIONS)
 def branch(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
     """A branch, and a folder with its trees and parameters."""
     folder = tmp_path_factory.mktemp(request.param)
-    command = ["git", "-C", str(clone()), "archive", request.param, "nav2_bt_navigator", PARAMETERS]
+    command = ["git", "-C", str(clone()), "archive", request.param, "nav2_bt_navigator", FOLDER]
     with tarfile.open(fileobj=BytesIO(run(command, capture_output=True, check=True).stdout)) as archive:
         archive.extractall(folder, filter="data")
     return request.param, folder
@@ -33,6 +34,18 @@ def test_the_parameters_tell_the_distribution_and_are_right_there(branch: tuple[
     text = (folder / PARAMETERS).read_text()
     assert read_parameters(text).distribution == distribution
     assert findings_in(folder, text) == findings_in(folder, text, distribution) == []
+
+
+def test_its_other_parameters(branch: tuple[str, Path]) -> None:
+    """Those for several robots on the branch of Humble are for Iron: bt_navigator cannot load four of the libraries."""
+    distribution, folder = branch
+    found = Counter(
+        (path.name, each.rule)
+        for path in sorted((folder / FOLDER).glob("*.yaml"))
+        for _, each in findings_in(folder, path.read_text(), distribution)
+    )
+    wrong = {("nav2_multirobot_params_all.yaml", rule): 4 for rule in ("nav2-parameter", "unknown-library")}
+    assert found == (wrong if distribution == "humble" else {})
 
 
 def test_what_is_wrong_with_them_on_the_next_branch(branch: tuple[str, Path]) -> None:

@@ -185,3 +185,8 @@ def test_parameters_of_earlier_distributions(robot: Path) -> None:
     text = f"{HEAD}    enable_groot_monitoring: true\n"
     message = "3:5 warning nav2-parameter Nav2 does not read `enable_groot_monitoring` in Humble"
     assert shown(robot, text, "humble") == [message]
+
+
+def test_libraries_of_ones_own_may_be_named_alike(robot: Path) -> None:
+    own = "nav2_skip_action_bt_node, my_spin_action_bt_node, nav2_spin_action_bt_node_v2, libmy_own.so"
+    assert shown(robot, f"{HEAD}    plugin_lib_names: [{own}]\n", "jazzy") == []
