@@ -29,11 +29,15 @@ def exact_edits(file: File, edit: Edit) -> tuple[Edit, ...] | None:
     origin = file.origin
     if origin is None or not origin.is_complete or is_generated(origin.text):
         return None
-    xml = origin.text
-    for start, end, begin, stop in origin.places.containing(edit.span):
+    xml, replaced = origin.text, edit.span
+    said = file.text[replaced.start : replaced.end]
+    is_string = len(said) > 2 and said[0] == said[-1] == '"'
+    if is_string:  # by a word without quotes, which XML spells as it is
+        replaced = Span(replaced.start + 1, replaced.end - 1)
+    for start, end, begin, stop in origin.places.containing(replaced):
         old = file.text[start:end]
-        if edit.span.start < edit.span.end and old == xml[begin:stop]:
-            new = file.text[start : edit.span.start] + edit.text + file.text[edit.span.end : end]
+        if replaced.start < replaced.end and old == xml[begin:stop]:
+            new = file.text[start : replaced.start] + edit.text + file.text[replaced.end : end]
             if not new or _SPECIAL.search(new):
                 return None
             if xml[begin - 1] == "<":
@@ -41,7 +45,7 @@ def exact_edits(file: File, edit: Edit) -> tuple[Edit, ...] | None:
                 return tuple(Edit(span, new) for span in ends) or None
             if xml[stop : stop + 1] not in _QUOTES and not _PLACED.isdisjoint((old, new)):
                 return None
-            is_quoted = file.text[start - 1 : start] == '"'
+            is_quoted = file.text[start - 1 : start] == '"' and not is_string
             is_same = string(new) == f'"{new}"' if is_quoted else new in (name(new), value(new))
             return (Edit(Span(begin, stop), new),) if is_same else None
     return None

@@ -66,7 +66,7 @@ def new_in_target(view: View, entry: Entry, checks: tuple[Check, ...], found: li
         if (each.rule, each.span) in known or each.effective_severity not in _SEVERE:
             continue
         breaks = each.effective_severity is Severity.ERROR or each.rule == "not-an-engine-node"
-        notes = (*each.notes, f"{workspace.project.target} has it so: `btq explain {each.rule}`")
+        notes = (*each.notes, f"in {workspace.project.target} this is {each.rule}: `btq explain {each.rule}`")
         yield replace(each, rule="target-breaks" if breaks else "target-differs", notes=notes, severity=None)
 
 

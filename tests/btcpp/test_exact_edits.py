@@ -31,6 +31,7 @@ XML = """\
         ("{a}", "{a}", "{b}", XML.replace("{a}", "{b}", 1)),
         ("2 note", "2", "30", XML.replace("'2'", "'30'")),
         ('left side"', "left", "right", XML.replace("left", "right")),
+        ('text = "left side"', '"left side"', "{side}", XML.replace("left side", "{side}")),
         (
             "Undock  #",
             "Undock",
@@ -55,6 +56,9 @@ def test_a_word_that_both_texts_have(line: str, old: str, new: str, xml: str) ->
         ("{a}", "{a}", '"a"'),
         ("2 note", "2", "2 s"),
         ("side", "side", 'si"de'),
+        ('= "left side"', '"left side"', "{side"),
+        ('= "left side"', '"left side"', '"right side"'),
+        ('= "left', '"left', "{side}"),
         ("side", "side", "si\nde"),
         ("Dock (", "Dock", "->"),
         ("Dock (", "Dock", "SubTree"),  # which would be read with the name that follows

@@ -235,4 +235,4 @@ def test_what_a_file_for_version_3_meets_on_the_way_to_4_10() -> None:
         "duplicate-instance-name",
     }
     (star, *_) = [each for each in found if each.rule == "target-breaks"]
-    assert star.notes[-1] == "4.10 has it so: `btq explain not-an-engine-node`"
+    assert star.notes[-1] == "in 4.10 this is not-an-engine-node: `btq explain not-an-engine-node`"
