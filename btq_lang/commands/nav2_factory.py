@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os.path
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import FILES, distribution_among
@@ -83,14 +84,9 @@ def parameter_file(
         at = min(error.offset, len(text))
         return replace(empty, problem=Diagnostic("yaml-syntax", Span(at, at), error.message)), problem
     distribution = distribution or parameters.distribution
-    found = loads(
-        parameters, distribution or "", project.root, factory.files, lambda file: known(file) or read(file)[0]
-    )
-    registered = [tuple(dict.fromkeys(source_of(each) or each for each in load.files)) for load in found]
-    factories = tuple(
-        (load, replace(_factory_of(load, factory, parameters, distribution, path), files=files))
-        for load, files in zip(found, registered, strict=True)
-    )
+    found = loads(parameters, distribution, project.root, factory.files, lambda each: known(each) or read(each)[0])
+    of_load = partial(_factory_of, factory, parameters, distribution, path, source_of)
+    factories = tuple((load, of_load(load)) for load in found)
     return replace(empty, parameters=parameters, distribution=distribution, factories=factories), problem
 
 
@@ -116,13 +112,22 @@ def _found(
         yield from findings(file.parameters, file.distribution, loaded)
 
 
-def _factory_of(load: Load, factory: Factory, parameters: Parameters, distribution: str | None, path: str) -> Factory:
+def _factory_of(
+    factory: Factory,
+    parameters: Parameters,
+    distribution: str | None,
+    path: str,
+    source_of: Callable[[str], str | None],
+    load: Load,
+) -> Factory:
+    """The factory for one of the trees that are created."""
     nodes = factory.node_files
     if distribution is not None and distribution_among(nodes) is None:
         nodes = (*nodes, FILES[distribution])
     return replace(
         factory,
         name=f"{factory.name} ({load.label})",
+        files=tuple(dict.fromkeys(source_of(each) or each for each in load.files)),
         node_files=nodes,
         nav2=path,
         has_gaps=distribution is None or not load.is_whole or bool(load.refused),

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os.path
 import re
 from collections.abc import Callable, Iterable, Iterator
+from functools import cache, partial
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.btcpp.listed_trees import listed_trees
@@ -17,10 +18,12 @@ from btq_lang.diagnostics.model import Place
 from btq_lang.nav2.parameters import Parameters, Text, is_id
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace.loader import absolute, matching, package_folder
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.loader import absolute, collect, matching, package_folder
 
 if TYPE_CHECKING:
     ReadFile: TypeAlias = Callable[[str], str | None]
+    FindPackage: TypeAlias = Callable[[str], str | None]
 
 
 class Located(Record):
@@ -93,7 +96,8 @@ def loads(
         of_goals: the files that goals name.
         read: returns the text of a file.
     """
-    folders = tuple(_folders(parameters, root)) if distribution == "lyrical" else None
+    find = cache(partial(package_folder, start=root))  # each time, it looks through the workspace
+    folders = tuple(_folders(parameters, find)) if distribution == "lyrical" else None
     found = []
     for navigator, (parameter, default, _) in NAVIGATORS.items():
         if navigator not in parameters.navigators:
@@ -102,20 +106,20 @@ def loads(
         if folders is not None and named is not None and is_id(named.text):
             found.append(_searched(navigator, None, named, folders, read))
             continue
-        tree = located(named, root) if named is not None else _of_nav2(f"behavior_trees/{default}", root)
+        tree = _located(named, find) if named is not None else _of_nav2(f"behavior_trees/{default}", find)
         found.append(_searched(navigator, tree, None, folders, read))
     for path in of_goals:
         found.append(_searched(os.path.basename(path), Located(None, path), None, folders, read))
     return tuple(found)
 
 
-def located(named: Text, root: str, is_folder: bool = False) -> Located:
+def _located(named: Text, find: FindPackage, is_folder: bool = False) -> Located:
     """The file or folder that a string names."""
     lost: list[str] = []
     packages: list[str] = []
 
     def share(match: re.Match[str]) -> str:
-        folder = package_folder(match[1], root)
+        folder = find(match[1])
         packages.extend([folder] if folder is not None else [])
         lost.extend([match[1]] if folder is None else [])
         return folder or ""
@@ -140,17 +144,17 @@ def located(named: Text, root: str, is_folder: bool = False) -> Located:
     return Located(named, None, f"this machine has no such {_KINDS[is_folder]}")
 
 
-def _folders(parameters: Parameters, root: str) -> Iterator[Located]:
+def _folders(parameters: Parameters, find: FindPackage) -> Iterator[Located]:
     given = parameters.texts("bt_search_directories")
     if given is None:
-        yield _of_nav2("behavior_trees", root)
+        yield _of_nav2("behavior_trees", find)
     for each in given or ():
-        yield located(each, root, is_folder=True)
+        yield _located(each, find, is_folder=True)
 
 
-def _of_nav2(inside: str, root: str) -> Located:
+def _of_nav2(inside: str, find: FindPackage) -> Located:
     """A file or folder of Nav2 itself, which is not here without Nav2."""
-    package = package_folder(OWN_PACKAGE, root)
+    package = find(OWN_PACKAGE)
     path = f"{package}/{inside}"
     return Located(None, path if package is not None and os.path.exists(path) else None)
 
@@ -161,11 +165,10 @@ def _is_installed(package: str) -> bool:
 
 def _elsewhere(package: str, path: str, is_folder: bool) -> str | None:
     """The only file or folder of a name in a package that is not built: a build may install it elsewhere."""
-    found = {
-        os.path.dirname(each) if is_folder else each
-        for each in matching(package, f"**/{os.path.basename(path)}{'/*.xml' if is_folder else ''}")
-    }
-    return found.pop() if len(found) == 1 else None
+    files, _ = collect((package,), Project(), (".xml",))
+    found = {os.path.dirname(each) if is_folder else each for each in files}
+    named = [each for each in found if os.path.basename(each) == os.path.basename(path)]
+    return named[0] if len(named) == 1 else None
 
 
 def _searched(

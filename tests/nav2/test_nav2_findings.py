@@ -190,3 +190,35 @@ def test_parameters_of_earlier_distributions(robot: Path) -> None:
 def test_libraries_of_ones_own_may_be_named_alike(robot: Path) -> None:
     own = "nav2_skip_action_bt_node, my_spin_action_bt_node, nav2_spin_action_bt_node_v2, libmy_own.so"
     assert shown(robot, f"{HEAD}    plugin_lib_names: [{own}]\n", "jazzy") == []
+
+
+@pytest.mark.parametrize("distribution", ["humble", "lyrical"])
+@pytest.mark.parametrize(
+    "value",
+    [
+        "5",
+        "null",
+        "[[a], {b: c}]",
+        "{a: b}",
+        "''",
+        '"\\0"',
+        '"a\\nb"',
+        f"/{'a' * 5_000}",
+        "$(find-pkg-share",
+        "~",
+        "[]",
+    ],
+)
+def test_no_value_is_too_odd(robot: Path, value: str, distribution: str) -> None:
+    names = (
+        *(
+            "default_nav_to_pose_bt_xml",
+            "default_nav_through_poses_bt_xml",
+            "bt_search_directories",
+            "plugin_lib_names",
+        ),
+        *("navigators", "error_code_names", "error_code_name_prefixes", "goal_blackboard_id", "navigate_to_pose"),
+    )
+    for name in names:
+        rules = {each.rule for _, each in findings_in(robot, f"{HEAD}    {name}: {value}\n", distribution)}
+        assert rules <= {"nav2-parameter", "missing-nav2-tree"}
