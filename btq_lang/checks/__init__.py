@@ -226,6 +226,8 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
         children.switch_cases,
         children.parallel_threshold,
         unreachable.unreachable_child,
+        resets.memory_lost,
+        resets.last_success_lost,
     )
 )
 # Of models, of which a file has many, `_OF_PORTS` need only the ports, and these only the ports of trees' models.

@@ -185,6 +185,11 @@ def test_of_nodes_that_are_not_known_nothing_is_said() -> None:
     assert lost(tree("GoalUpdated")) == []
 
 
+def test_where_it_is_unknown_which_node_is_whose_child_nothing_is_said() -> None:
+    text = "BehaviorTree Main\n    Inverter\n        GoalUpdated\n      Wait\n"
+    assert [line.split()[2] for line in found(text, "jazzy")] == ["inconsistent-indentation"]
+
+
 # ---- the last success ----
 
 
@@ -286,3 +291,17 @@ def test_a_guard_would_make_a_node_forget() -> None:
         "`RateController` would reset it, and it would forget what it waits for"
     ]
     assert found(text.replace("RateController", "GoalUpdater (input_goal = {goal} output_goal = {g})"), "jazzy") == []
+
+
+def test_how_long_a_recovery_may_take() -> None:
+    text = tree(
+        "RecoveryNode (number_of_retries = 2)",
+        "    satisfies QualityReq a takes at most 20 s",
+        "    FollowPath (path = {path}) satisfies QualityReq b takes at most 5 s",
+        "    Spin satisfies QualityReq c takes at most 3 s",
+    )
+    assert found(text, "jazzy") == [
+        "3:32 warning budget-exceeded «takes at most 20 s» `RecoveryNode` may take 21 s, more than `20 s` allows: "
+        "3 × `FollowPath` 5 s + 2 × `Spin` 3 s"
+    ]
+    assert found(text.replace("20 s", "21 s"), "jazzy") == []
