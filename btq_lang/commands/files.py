@@ -242,7 +242,7 @@ class Files:
             problems += [problem] if problem is not None else []
             if file is not None:
                 self.parameter_files.append(file)
-                factories += [each for _, each in file.factories if each.files]
+                factories += file.distinct
         return tuple(factories), problems
 
     def _requested_factories(self, home: Found) -> Iterator[Factory]:

@@ -114,7 +114,7 @@ class Revisions:
         from btq_lang.commands.nav2_factory import parameter_file  # few projects are for Nav2
 
         file, _ = parameter_file(factory, project, None, lambda path: self.text(commit, path), there.source_of)
-        yield from (each for _, each in file.factories) if file is not None else ()
+        yield from file.distinct if file is not None else ()
 
     def paths(self, commit: str) -> tuple[str, ...]:
         """All files of a commit, sorted."""

@@ -34,8 +34,9 @@ class ParameterFile(Record):
     Attributes:
         project: that names it, or in whose files it is looked at.
         project_file: of that project.
-        factories: one for each tree that is created, with what is read for it; None: nothing is known of that.
-        problem: why it could not be read.
+        parameters: of bt_navigator; None: the file is not YAML, which is the `problem`.
+        distribution: named in the project, or else the only one that the parameters can be for.
+        factories: one for each tree that is created, with what is read for it.
     """
 
     path: str
@@ -46,6 +47,16 @@ class ParameterFile(Record):
     distribution: str | None
     factories: tuple[tuple[Load, Factory], ...] = ()
     problem: Diagnostic | None = None
+
+    @property
+    def distinct(self) -> list[Factory]:
+        """The factories with files, without those that register the same ones: Lyrical reads one folder for both
+        navigators."""
+        found: dict[tuple[frozenset[str], bool], Factory] = {}
+        for _, each in self.factories:
+            if each.files:
+                found.setdefault((frozenset(each.files), each.has_gaps), each)
+        return [*found.values()]
 
     @property
     def used(self) -> frozenset[str]:
