@@ -19,7 +19,7 @@ from btq_lang.checks.statuses import RUNNING, SKIPPED
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Tree
+from btq_lang.syntax.tree import Entry, Tree, is_name
 from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
@@ -75,11 +75,12 @@ def _entries(seen: ResolvedNode) -> Iterator[Diagnostic]:
     for pair in seen.node.attributes:
         if pair.value is not None and is_port_name(pair.key.text) and not is_pointer(pair.value.text):
             text, since = pair.value.text, ENTRIES_OF_SUBTREE.since
+            fix = replace_fix(f"Replace `{text}` with `{{{text}}}`", pair.value.span, f"{{{text}}}")
             yield Diagnostic(
                 "target-differs",
                 pair.value.span,
                 f"from {since} on `{text}` is a text that the SubTree gets, no longer the name of an entry",
-                fixes=(replace_fix(f"Replace `{text}` with `{{{text}}}`", pair.value.span, f"{{{text}}}"),),
+                fixes=(fix,) if is_name(text) else (),  # `0` was hardly meant as a name
             )
 
 

@@ -236,3 +236,10 @@ def test_what_a_file_for_version_3_meets_on_the_way_to_4_10() -> None:
     }
     (star, *_) = [each for each in found if each.rule == "target-breaks"]
     assert star.notes[-1] == "in 4.10 this is not-an-engine-node: `btq explain not-an-engine-node`"
+
+
+def test_a_number_is_hardly_the_name_of_an_entry() -> None:
+    text = "BehaviorTree Main\n    SubTree Rest (goal = goal n = 0)\nBehaviorTree Rest\n    Own\n"
+    workspace = with_target(Workspace.of({"main.btq": text}, Project(engines=("3.8",))), "4.10")
+    found = [each for each in check(workspace, "main.btq") if each.rule == "target-differs"]
+    assert [[fix.title for fix in each.fixes] for each in found] == [["Replace `goal` with `{goal}`"], []]
