@@ -30,7 +30,7 @@ class Libraries:
         self._built_in = own if self._named is None or self._letter not in _REPLACING else set()
         loaded = self._built_in | {each.text for each in self._named or ()}
         self.nodes = frozenset(node for name in loaded if self._exists(name) for node in LIBRARIES[name][0])
-        self.are_all_known = all(each.text in LIBRARIES for each in self._named or ())
+        self.are_all_known = all(self._exists(each.text) for each in self._named or ())
 
     def library_of(self, node: str) -> str | None:
         """The library of Nav2 in this distribution that registers a node."""
@@ -64,6 +64,8 @@ class Libraries:
     def _meant(self, name: str) -> str | None:
         """What a library that is not Nav2's in this distribution may mean, for a message; None: it is a team's own."""
         here = [each for each in LIBRARIES if self._exists(each)]
+        if name in LIBRARIES and name.startswith(_BESIDE):
+            return None
         if name not in LIBRARIES:
             likely = [each for each in here if distance(name, each, 1) <= 1]  # own ones are often named alike
             return did_you_mean(likely) if likely else None
@@ -75,5 +77,6 @@ class Libraries:
 
 
 _REPLACING: Final = "hi"  # the distributions in which the named libraries take the place of Nav2's own
+_BESIDE: Final = "opennav_"  # packages that were beside Nav2 before they became a part of it, and still are for Humble
 _SHOWN: Final = 3  # of many that are equally wrong
 _REFUSED: Final = "bt_navigator refuses to configure"

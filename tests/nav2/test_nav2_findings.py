@@ -222,3 +222,11 @@ def test_no_value_is_too_odd(robot: Path, value: str, distribution: str) -> None
     for name in names:
         rules = {each.rule for _, each in findings_in(robot, f"{HEAD}    {name}: {value}\n", distribution)}
         assert rules <= {"nav2-parameter", "missing-nav2-tree"}
+
+
+def test_docking_was_a_package_beside_nav2(robot: Path) -> None:
+    """In Humble its library is no part of Nav2, but may be there."""
+    text = f"{HEAD}{POSE}/trees/dock.xml\n{DOCKING}"
+    assert shown(robot, text, "humble") == []
+    message = "4:5 error unloaded-node no library that bt_navigator loads has a node `DockRobot`"
+    assert shown(robot, text.replace("opennav_dock_action", "nav2_spin_action"), "humble") == [message]
