@@ -14,7 +14,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable
 from itertools import chain
-from threading import Event
+from threading import Event, Timer
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
@@ -104,7 +104,7 @@ class Server(LanguageServer):
         """As in pygls, except for how messages are read."""
         self._stop_event = Event()
         self.protocol.set_writer(StdoutWriter(stdout or sys.stdout.buffer))
-        reader = Messages(stdin or sys.stdin.buffer)
+        reader = Messages(stdin or sys.stdin.buffer, self._end_soon)
         self.is_outdated = lambda: reader.has_pending_edit
         report = self.report_server_error
         try:
@@ -133,6 +133,12 @@ class Server(LanguageServer):
     def end_with(self, process: int) -> None:
         """Exit soon after a process has ended: an editor that crashes may leave its end of the pipes open."""
         self._watching = asyncio.ensure_future(self._end_with(process))
+
+    def _end_soon(self) -> None:
+        """Exit a while after the editor has closed the input, if a long step, such as reading folders, goes on."""
+        timer = Timer(POLL, os._exit, (self.exit_code,))
+        timer.daemon = True
+        timer.start()
 
     async def _end_with(self, process: int) -> None:
         while _is_running(process):

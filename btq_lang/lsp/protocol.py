@@ -155,12 +155,16 @@ class Messages:
 
     A reader for `pygls.io_.run_async`.
 
+    Args:
+        at_end: called in that thread at the end of input, whatever the server is doing.
+
     Attributes:
         has_pending_edit: whether an edit has arrived that is not yet handled.
     """
 
-    def __init__(self, stream: BinaryIO) -> None:
+    def __init__(self, stream: BinaryIO, at_end: Callable[[], None] = lambda: None) -> None:
         self._stream = stream
+        self._at_end = at_end
         self._head: list[bytes] = []
         self._body = b""
         self.has_pending_edit = False
@@ -184,6 +188,8 @@ class Messages:
             self._head = [b"Content-Length: %d\r\n" % length, b"\r\n"]
             self._body = self._stream.read(length)
             self.has_pending_edit = _CHANGE in self._body
+        else:
+            self._at_end()
 
 
 def _failure(future: Future[Any]) -> BaseException | None:

@@ -117,6 +117,30 @@ def test_it_ends_with_its_standard_input(is_shut_down: bool, editor: Editor) -> 
     assert editor.process.wait(timeout=20) == (0 if is_shut_down else 1)
 
 
+def test_it_ends_with_its_standard_input_while_it_reads_folders(tmp_path: Path) -> None:
+    """As with a folder so large that it takes minutes, without handling messages."""
+    program = (
+        "import os, sys\n"
+        "from btq_lang.commands.files import Files\n"
+        "from btq_lang.server import main\n"
+        "def groups(*_, **__):\n"
+        "    os.write(2, b'reading')\n"
+        "    while True: pass\n"
+        "Files.groups = groups\n"
+        "sys.exit(main([]))"
+    )
+    editor = Editor(tmp_path, program=program)
+    with editor.process as server:
+        assert server.stderr is not None
+        assert server.stderr.read(7) == b"reading"
+        assert server.stdin is not None
+        server.stdin.close()
+        try:
+            assert server.wait(timeout=60) == 1
+        finally:
+            server.kill()
+
+
 def test_it_ends_after_the_process_of_its_editor(tmp_path: Path) -> None:
     """While its standard input stays open, as where another process has inherited it."""
     with subprocess.Popen((sys.executable, "-c", "input()"), stdin=subprocess.PIPE) as crashing:
