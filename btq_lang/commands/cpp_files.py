@@ -6,6 +6,7 @@ places of the file say.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.factories import Factory
 
+_OF_FIELD = re.compile(r".*::_\w+_type").fullmatch
 MISSING = "C++ is read with tree-sitter; install it with pip install 'btq-lang[cpp]'"
 
 
@@ -145,10 +147,18 @@ def _text(texts: dict[str, str], path: str) -> str:
 
 
 def _certain(node: CppNode) -> CppNode:
-    """A node with an empty default for each input without which it is not seen to fail."""
+    """A node with an empty default for each input without which it is not seen to fail, and without types that only
+    other files say: `_error_code_type` is what ROS calls the type of a message's field, whatever it is."""
     needed = {name for name, without in node.without if without == "fails"}
     needed.update(port.name for port in node.ports if port.direction == "output" or port.default is not None)
-    ports = tuple(port if port.name in needed else replace(port, default="") for port in node.ports)
+    ports = tuple(
+        replace(
+            port,
+            default=port.default if port.name in needed else "",
+            type="" if _OF_FIELD(port.type) else port.type,
+        )
+        for port in node.ports
+    )
     return replace(node, ports=ports)
 
 

@@ -103,6 +103,15 @@ def test_a_port_is_missing_only_if_the_code_is_seen_to_fail_without_it(robot: Pa
     ]
 
 
+def test_the_type_of_a_field_of_a_message_is_not_known(robot: Path) -> None:
+    write(robot, "src/drive.cpp", SOURCE.replace("OutputPort<int>", "OutputPort<typename Result::_code_type>"))
+    write(robot, "trees/m.btq", "BehaviorTree Main\n    Drive (goal = {g} code = {c})\n")
+    workspace, path = open_workspace(str(robot)), f"{robot}/trees/m.btq"
+    shown = hover(workspace, path, workspace.files[path].text.index("code"))
+    assert shown is not None
+    assert shown.markdown.splitlines()[0] == "`output code`"
+
+
 def test_a_comment_and_the_project_file_silence_what_is_found_in_cpp(robot: Path) -> None:
     silent = SOURCE.replace('"sped", speed_);', '"sped", speed_);  // btq: ignore[undeclared-port-in-cpp] of a base')
     write(robot, "src/drive.cpp", silent)
