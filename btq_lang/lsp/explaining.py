@@ -18,7 +18,12 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     def show(params: types.HoverParams) -> Json | None:
         side = session.side_file(convert.path(params.text_document.uri))
-        answer = server.ask(params.text_document, params.position, partial(features.explain, side=side), reads=True)
+        answer = server.ask(
+            params.text_document,
+            params.position,
+            lambda workspace, path, offset: features.explain(workspace, path, offset, side),
+            reads=True,
+        )
         return convert.hover(answer[0], answer[1], answer[2]) if answer and answer[2] else None
 
     @server.feature(
