@@ -291,6 +291,7 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         choices=("label", "robot"),
         help="without logs: verdicts for each label or robot; may be repeated",
     )
+    kept.add_argument("--engine", metavar="URL", help="without logs: ask another engine than DuckDB, through Ibis")
     label, robot = kept.add_mutually_exclusive_group(), kept.add_mutually_exclusive_group()
     label.add_argument("--label", metavar="NAME", help="of these runs, such as a version")
     label.add_argument("--label-by", choices=("folder",), help="label each log with the name of its folder")

@@ -18,14 +18,15 @@ if TYPE_CHECKING:
 def store_problem(options: Namespace) -> str | None:
     """What is wrong with a command line about a store."""
     given = vars(options)
-    named = [each for each in (*_OF_LOGS, *_OF_KEEPING, "--by") if given[each.strip("-").replace("-", "_")]]
+    named = [each for each in (*_OF_LOGS, *_OF_KEEPING, *_OF_SUMMARY) if given[each.strip("-").replace("-", "_")]]
     if options.store is None:
         wrong = [each for each in named if each not in _OF_LOGS]
         return f"{wrong[0]} goes with --store DIR" if wrong else None
     if options.logs:
-        return "--by goes with --store DIR and no log" if options.by else None
-    if named not in ([], ["--by"]):
-        return f"{named[0]} goes with logs; without any, --store DIR prints what is kept there"
+        wrong = [each for each in named if each in _OF_SUMMARY]
+        return f"{wrong[0]} goes with --store DIR and no log" if wrong else None
+    if wrong := [each for each in named if each not in _OF_SUMMARY]:
+        return f"{wrong[0]} goes with logs; without any, --store DIR prints what is kept there"
     if form_of(options, FORMATS) == "html":
         return "a page is made of logs; choose another format for a store"
     return form_problem(options, FORMATS)
@@ -56,7 +57,13 @@ def summarise(options: Namespace) -> int:
     from btq_lang.evidence.store.summary import summary
 
     try:
-        report = summary(asked(options.store), options.store, tuple(dict.fromkeys(options.by)))
+        if options.engine is None:
+            ask = asked(options.store)
+        else:
+            from btq_lang.evidence.store.fleet import asked_by
+
+            ask = asked_by(options.engine, options.store)
+        report = summary(ask, options.store, tuple(dict.fromkeys(options.by)))
     except NoEngine as error:
         print(f"btq verify: {error}", file=sys.stderr)
         return 2
@@ -64,4 +71,5 @@ def summarise(options: Namespace) -> int:
 
 
 _OF_LOGS: Final = ("--mission", "--signals")
+_OF_SUMMARY: Final = ("--by", "--engine")
 _OF_KEEPING: Final = ("--label", "--label-by", "--robot", "--robot-by")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
+import sys
 from collections import Counter
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from random_runs import Case, case
 from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.model import Session
 from btq_lang.evidence.store import engine
+from btq_lang.evidence.store.fleet import asked_by
 from btq_lang.evidence.store.rows import Rows
 from btq_lang.evidence.store.summary import summary
 from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts
@@ -201,3 +203,28 @@ def test_the_question_of_the_page(kept: Path, monkeypatch: pytest.MonkeyPatch) -
         ("v2", "Move::2", 0.012),
         ("v1", "Pick::3", 0.005),
     ]
+
+
+@pytest.mark.parametrize("parts", [(), ("label",), ("label", "robot")])
+def test_a_second_engine_says_the_same(parts: tuple[str, ...], kept: Path) -> None:
+    pytest.importorskip("ibis", reason="Ibis is not installed: pip install -e '.[fleet]'")
+    pytest.importorskip("polars", reason="Polars is not installed: pip install 'ibis-framework[polars]'")
+    store = str(kept / "kept")
+    assert summary(asked_by("polars://", store), store, parts) == summary(engine.asked(store), store, parts)
+
+
+def test_a_second_engine_counts_windows_and_odds_alike(tmp_path: Path) -> None:
+    pytest.importorskip("ibis", reason="Ibis is not installed: pip install -e '.[fleet]'")
+    pytest.importorskip("polars", reason="Polars is not installed: pip install 'ibis-framework[polars]'")
+    for seed in range(20):
+        store = tmp_path / str(seed)
+        store.mkdir()
+        judged_and_kept(case(seed), store)
+        name = str(store)
+        assert summary(asked_by("polars://", name), name) == summary(engine.asked(name), name), f"seed {seed}"
+
+
+def test_without_ibis_the_extra_is_named(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "ibis", None)
+    message = "btq verify: other engines are asked with ibis; install it with pip install 'btq-lang[fleet]'\n"
+    assert run_btq("verify", "--store", "kept", "--engine", "polars://", cwd=kept) == (2, "", message)

@@ -5,7 +5,8 @@ One invariant: of each log there is one set of files, whole or not at all, named
     tables.py      the tables and their columns
     rows.py        what is found in a log, as rows of text, while it is judged
     sets.py        a log's set of files, published at once; what writers that were killed leave is removed
-    engine.py      DuckDB, or another engine, asked for rows
+    engine.py      DuckDB, which writes the files and is asked for rows
+    fleet.py       other engines, asked through Ibis
     queries.py     the questions, as SQL
     summary.py     the report of a whole store
 """

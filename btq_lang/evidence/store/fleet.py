@@ -1,0 +1,43 @@
+"""Other engines, asked through Ibis: the questions are translated from DuckDB's SQL, and the engine reads the files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from btq_lang.evidence.store.engine import NoEngine, files_of
+from btq_lang.evidence.store.tables import ROWS
+
+
+def asked_by(url: str, store: str) -> Callable[[str], list[dict[str, Any]]]:
+    """A function that gives an engine a question about a store, and returns the rows by the names of their columns.
+
+    Args:
+        url: of the engine, as Ibis takes it: `polars://`.
+
+    Raises:
+        NoEngine: Ibis or the engine is missing, or the engine fails; so does the function.
+    """
+    try:
+        import ibis
+    except ImportError as error:
+        raise NoEngine("other engines are asked with ibis; install it with pip install 'btq-lang[fleet]'") from error
+
+    def ask(question: str) -> list[dict[str, Any]]:
+        try:
+            rows: list[dict[str, Any]] = connection.sql(question, dialect="duckdb").to_pyarrow().to_pylist()
+        except Exception as error:  # each engine has errors of its own
+            raise _failed(url, error) from error
+        return rows
+
+    try:
+        connection = ibis.connect(url)
+        for table in ROWS:
+            connection.read_parquet(files_of(store, table), table_name=table)
+    except Exception as error:  # likewise
+        raise _failed(url, error) from error
+    return ask
+
+
+def _failed(url: str, error: Exception) -> NoEngine:
+    return NoEngine(f"{url}: {' '.join(str(error).split()) or type(error).__name__}")
