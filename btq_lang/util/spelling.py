@@ -17,16 +17,11 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
     One edit is allowed for every three letters of the word, three in all, and at most one more than the best candidate
     needs.  A candidate that differs in case alone leaves no room for any other; the word itself is never an answer.
     """
-    return _near(word, frozenset(candidates), limit)
-
-
-@lru_cache(256)  # the files of a project use the same unknown words
-def _near(word: str, candidates: frozenset[str], limit: int) -> tuple[str, ...]:
     folded, letters = word.casefold(), _letters(word)
     cutoff = min(len(folded) // 3, 3)
     same_letters: list[tuple[int, str]] = []
     found: list[tuple[int, int, str]] = []
-    for candidate in candidates:
+    for candidate in set(candidates):
         # This rejects most candidates cheaply: an edit mends at most one letter that only one of the two has.
         others = _letters(candidate)
         if (letters & ~others).bit_count() > cutoff or (others & ~letters).bit_count() > cutoff or candidate == word:

@@ -32,7 +32,7 @@ def test_a_builtin() -> None:
     check_hover(
         "BehaviorTree Main\n    <hover>Inv$0erter</hover>\n        Pick\n",
         """
-        **Inverter** (Decorator) · `Inverter` · children: 1 · since 4.6
+        **Inverter** (Decorator) · `Inverter` · children: 1 · since 3.8
 
         Turns success into failure and failure into success.
 

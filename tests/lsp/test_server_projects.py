@@ -23,10 +23,10 @@ MISTAKES = [
     (
         'engine = "4.11"\n',
         (0, 9, 15),
-        "unknown engine version `4.11`; did you mean `4.10`? btq supports 4.6 to 4.10",
+        "unknown engine version `4.11`; did you mean `4.10`? btq supports 3.8 and 4.6 to 4.10",
     ),
-    ("engine = []\n", (0, 0, 6), "`engine` must name at least one version; btq supports 4.6 to 4.10"),
-    ('engine = "5.0"\n', (0, 9, 14), "unknown engine version `5.0`; btq supports 4.6 to 4.10"),
+    ("engine = []\n", (0, 0, 6), "`engine` must name at least one version; btq supports 3.8 and 4.6 to 4.10"),
+    ('engine = "5.0"\n', (0, 9, 14), "unknown engine version `5.0`; btq supports 3.8 and 4.6 to 4.10"),
     ('[rules]\nunknwn-node = "off"\n', (1, 0, 11), "unknown rule `unknwn-node`; did you mean `unknown-node`?"),
     ("ignore = [\n  'unknwn-node']\n", (1, 2, 15), "unknown rule `unknwn-node`; did you mean `unknown-node`?"),
     (

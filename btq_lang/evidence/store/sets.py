@@ -5,7 +5,7 @@ that is judged again leaves its set as it is if the same was found; otherwise th
 
 Two renames replace a set: the old folder goes aside, the new one takes its name.  If a writer is killed between them,
 the next one gives the old folder its name back.  Folders that killed writers were still filling have names that nobody
-reads, and are removed when nothing in them has changed for a day.
+reads, and are removed a day after their last change.
 """
 
 from __future__ import annotations
