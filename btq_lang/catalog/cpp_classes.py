@@ -72,18 +72,17 @@ TAGS: Final = {
     "RunOnceNode": "RunOnce",
     "LoopNode": "LoopString",
 }
-# Of behaviortree_ros2 and nav2_behavior_tree; they have ports, which differ from version to version.
+# Of behaviortree_ros2, each with the port that it adds; versions differ in the default, and none needs a value.
+ROS_PORTS: Final = {
+    "RosActionNode": ("action_name", "Action server name"),
+    "RosServiceNode": ("service_name", "Service name"),
+    "RosTopicPubNode": ("topic_name", "Topic name"),
+    "RosTopicSubNode": ("topic_name", "Topic name"),
+}
+# Of behaviortree_ros2 and nav2_behavior_tree; the latter have ports, which differ from version to version.
 LIBRARIES: Final[dict[str, Category]] = {
     **dict.fromkeys(
-        (
-            "RosActionNode",
-            "RosServiceNode",
-            "RosTopicPubNode",
-            "BtActionNode",
-            "BtCancelActionNode",
-            "BtServiceNode",
-        ),
-        "Action",
+        ("RosActionNode", "RosServiceNode", "BtActionNode", "BtCancelActionNode", "BtServiceNode"), "Action"
     ),
-    "RosTopicSubNode": "Condition",
+    **dict.fromkeys(("RosTopicPubNode", "RosTopicSubNode"), "Condition"),
 }

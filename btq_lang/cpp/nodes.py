@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.cpp.grammar import arguments, callee, enclosing, field, place_of, text_of, walk
+from btq_lang.cpp.library_ports import library_ports
 from btq_lang.cpp.model import CppNode, CppNodes, Place
 from btq_lang.cpp.ports import Body, PortsReader, Provided
 from btq_lang.cpp.source import Call, Source
@@ -100,7 +101,7 @@ class _Reader:
             return None
         place = place_of(call.path, call.node)
         bound = self.sources.find(type_, call.scope, call.path, place)
-        if bound.class_ is None:
+        if bound.class_ is None and library_ports(bound, place) is None:
             self._report(call, f"the class `{type_}` of the node `{name}` is not in the sources")
             return None
         category = self.sources.category(bound)
@@ -112,6 +113,8 @@ class _Reader:
         provided = self._ports.of_argument(ports, body) if ports is not None and _may_be_ports(ports, body) else None
         if provided is None:
             provided = self._ports.of_class(bound, place)
+        if bound.class_ is None:
+            return _node(name, category, bound.name, place, place, provided)
         class_place = place_of(bound.class_.path, field(bound.class_.node, "name") or bound.class_.node)
         return _node(name, category, bound.class_.name, place, class_place, provided, Uses(self.sources, bound))
 

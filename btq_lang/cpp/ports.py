@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.catalog.cpp_classes import ENGINE, TAGS
-from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.cpp.grammar import arguments, callee, contents, enclosing, field, named, place_of, text_of, walk
+from btq_lang.cpp.library_ports import library_ports
 from btq_lang.cpp.model import CppPort, Place
 from btq_lang.cpp.source import REGISTERS
 from btq_lang.cpp.sources import Bound, Sources
@@ -69,7 +68,7 @@ class PortsReader:
                 node, path = bodies[0]
                 return Body(self, Frame(each, each.scope, path, depth)).result(node)
             if each.class_ is None:
-                if (ports := self._of_engine(each, place)) is not None:
+                if (ports := library_ports(each, place)) is not None:
                     if ports:
                         return ports
                     continue
@@ -79,20 +78,6 @@ class PortsReader:
                 return {}
         return {}
 
-    def _of_engine(self, bound: Bound, place: Place) -> Ports | None:
-        """The ports that a class of the engine provides; None if it is not one."""
-        name = bound.name.rpartition("::")[2]
-        if name not in ENGINE:
-            return None
-        ports: Ports = {}
-        for port in BUILTINS[TAGS[name]].ports if name in TAGS else ():
-            of_item = name == "LoopNode" and port.name == "value"
-            type_ = bound.meanings.get("0", port.type) if of_item else port.type
-            ports[port.name] = CppPort(
-                port.name, port.direction, type_, port.default, port.default or "", port.doc, place
-            )
-        return ports
-
     def incomplete(self, message: str, place: Place) -> None:
         """Report what is not understood."""
         self._complete = False
@@ -101,16 +86,18 @@ class PortsReader:
     def helper(self, name: str, scope: str, frame: Frame, call: Node) -> tuple[Node, Frame] | None:
         """The function that a call means, a method of the class or of a base or any, and the frame of its body."""
         sources, place = self.sources, place_of(frame.path, call)
-        if scope:
-            owner: Bound | None = sources.find(substituted(scope, frame.meanings), frame.scope, frame.path, place)
-        else:
-            owner = frame.bound
-        for each in sources.ancestry(owner) if owner is not None else ():
+        for each in self._owners(scope, frame, place):
             for node, path in sources.methods(each, name)[:1]:
                 return node, Frame(each, each.scope, path, frame.depth + 1)
         whole = f"{scope}::{name}" if scope else name
         found = sources.function(whole, frame.scope, frame.path, place)
         return None if found is None else (found.node, Frame(None, found.scope, found.path, frame.depth + 1))
+
+    def basic_ports(self, scope: str, frame: Frame, call: Node) -> Ports | None:
+        """What `providedBasicPorts` of a library's class adds; None: unknown."""
+        place = place_of(frame.path, call)
+        libraries = [each for each in self._owners(scope, frame, place) if each.class_ is None]
+        return next(filter(None, (library_ports(each, place) for each in libraries)), None)
 
     def class_ports(self, scope: str, frame: Frame, call: Node) -> Ports:
         """The ports of the class before `::providedPorts()`."""
@@ -120,6 +107,13 @@ class PortsReader:
             self.incomplete("this calls itself", place)
             return {}
         return self._of_class(found, place, frame.depth + 1)
+
+    def _owners(self, scope: str, frame: Frame, place: Place) -> list[Bound]:
+        """The classes that may have the function that a call means; scope: what is before its name."""
+        if not scope:
+            return list(self.sources.ancestry(frame.bound)) if frame.bound is not None else []
+        owner = self.sources.find(substituted(scope, frame.meanings), frame.scope, frame.path, place)
+        return list(self.sources.ancestry(owner))
 
 
 class Body:
@@ -288,6 +282,9 @@ class Body:
         helper = self.reader.helper(name, scope, self.frame, node)
         if helper is None:
             known = [each for each in lists if each is not None]
+            basic = self.reader.basic_ports(scope, self.frame, node) if name == "providedBasicPorts" else None
+            if basic is not None and len(known) == len(lists) == 1:
+                return _united(basic, known[0])
             if not known and name not in ("providedPorts", "providedBasicPorts"):
                 return None
             message = f"`{name}` is not in the sources, and may add ports"

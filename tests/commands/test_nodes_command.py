@@ -123,7 +123,7 @@ def test_what_cannot_be_seen_and_what_the_code_does_otherwise_is_said(robot: Pat
 
 
 def test_a_node_that_may_have_more_ports_says_so(robot: Path) -> None:
-    text = DRIVE.replace("BT::StatefulActionNode", "BT::RosActionNode<Go>").replace(
+    text = DRIVE.replace("BT::StatefulActionNode", "nav2_behavior_tree::BtActionNode<Go>").replace(
         "return {", "return providedBasicPorts({"
     )
     (robot / "src/drive.cpp").write_text(text.replace('("code") }', '("code") })'), encoding="utf-8")

@@ -223,12 +223,56 @@ def test_the_category_is_that_of_the_base_class(base: str, category: str) -> Non
     assert moved(body, base).category == category
 
 
-def test_a_base_class_of_a_library_gives_the_category_and_its_ports_are_unseen() -> None:
+@pytest.mark.parametrize(
+    ("base", "category", "port"),
+    [
+        ("RosActionNode", "Action", "action_name"),
+        ("RosServiceNode", "Action", "service_name"),
+        ("RosTopicPubNode", "Condition", "topic_name"),
+        ("RosTopicSubNode", "Condition", "topic_name"),
+    ],
+)
+@pytest.mark.parametrize("scope", ["", "Base::"])
+def test_a_base_class_of_behaviortree_ros2_adds_its_port(base: str, category: str, port: str, scope: str) -> None:
+    body = f"""
+        using Base = BT::{base}<M>;
+        static PortsList providedPorts() {{ return {scope}providedBasicPorts({{ InputPort<int>("a") }}); }}
+    """
+    node = moved(body, f"BT::{base}<M>")
+    assert (node.category, [each.name for each in node.ports], node.complete) == (category, [port, "a"], True)
+    assert (node.ports[0].type, node.ports[0].default) == ("std::string", "")
+    assert [each.name for each in moved("", f"BT::{base}<M>").ports] == [port]
+
+
+def test_a_base_class_of_nav2_gives_the_category_and_its_ports_are_unseen() -> None:
     body = 'static PortsList providedPorts() { return providedBasicPorts({ InputPort<int>("a") }); }'
-    found = read(move(body, "BT::RosTopicSubNode<M>"))
+    found = read(move(body, "nav2_behavior_tree::BtActionNode<M>"))
     (node,) = found.nodes
-    assert (node.category, ports(node), node.complete) == ("Condition", ["input a : int"], False)
+    assert (node.category, ports(node), node.complete) == ("Action", ["input a : int"], False)
     assert unseen(found) == ["a.cpp:5:43: `providedBasicPorts` is not in the sources, and may add ports"]
+
+
+def test_a_template_of_the_engine_is_a_node_without_a_class_in_the_sources() -> None:
+    found = read(
+        """
+        void RegisterAll(BT::BehaviorTreeFactory& factory)
+        {
+          factory.registerNodeType<BT::LoopNode<Pose>>("LoopPose");
+          factory.registerNodeType<BT::SwitchNode<2>>("Choose");
+          factory.registerNodeType<BT::SwitchNode<N>>("ChooseMany");
+          factory.registerNodeType<BT::Unheard<2>>("Unheard");
+        }
+        """
+    )
+    assert [(node.name, node.category, node.complete, *(port.name for port in node.ports)) for node in found.nodes] == [
+        ("Choose", "Control", True, "variable", "case_1", "case_2"),
+        ("LoopPose", "Decorator", True, "queue", "if_empty", "value"),
+    ]
+    assert [port.type for port in found.nodes[1].ports] == ["BT::AnyTypeAllowed", "BT::NodeStatus", "Pose"]
+    assert unseen(found) == [
+        "a.cpp:6:3: the class `BT::SwitchNode<N>` of the node `ChooseMany` is not in the sources",
+        "a.cpp:7:3: the class `BT::Unheard<2>` of the node `Unheard` is not in the sources",
+    ]
 
 
 def test_all_ways_to_register_a_node() -> None:
