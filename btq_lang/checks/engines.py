@@ -46,12 +46,17 @@ def _declares_3(store: Store[Workspace], viewpoint: str) -> bool:
 def old_words(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
     """What in an XML file only version 3 of the engine understands; empty if the file may be for version 4, and if the
     project says what it is for."""
+    return () if _declares_3(store, viewpoint) else words_of_3(store, viewpoint) or ()
+
+
+def words_of_3(store: Store[Workspace], viewpoint: str) -> tuple[str, ...] | None:
+    """What in an XML file only version 3 of the engine understands; None if the file is for version 4."""
     declared = lookups.declared_format(store, viewpoint)
-    if declared not in ("", "3") or _declares_3(store, viewpoint):
-        return ()
+    if declared not in ("", "3"):
+        return None
     found = [store.ask(_words_in, viewpoint, tree) for tree in lookups.trees(store, viewpoint)]
     words = [word for each in found if each is not None for word in each]
-    return () if None in found else tuple(dict.fromkeys(['BTCPP_format="3"'] * (declared == "3") + words))
+    return None if None in found else tuple(dict.fromkeys(['BTCPP_format="3"'] * (declared == "3") + words))
 
 
 def _words_in(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[str, ...] | None:

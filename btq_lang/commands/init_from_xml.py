@@ -14,7 +14,9 @@ from argparse import Namespace
 from collections.abc import Iterator
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.versions import VERSIONS
+from btq_lang.catalog.versions import VERSION_3, VERSIONS
+from btq_lang.checks import check_each
+from btq_lang.checks.engines import words_of_3
 from btq_lang.commands.files import Files
 from btq_lang.commands.nav2_used import nav2_line
 from btq_lang.commands.xml_patterns import patterns
@@ -24,10 +26,9 @@ from btq_lang.workspace.file import GROOT_SUFFIX
 from btq_lang.workspace.loader import absolute, shown, write_whole
 from btq_lang.workspace.workspace import Workspace
 
-_HEAD = f"""\
-# What holds for all missions of this project
-engine = {json.dumps(VERSIONS)}  # the versions of BehaviorTree.CPP that must load them
-"""
+_HEAD = "# What holds for all missions of this project\n"
+_ENGINES = f"engine = {json.dumps(VERSIONS)}  # the versions of BehaviorTree.CPP that must load them\n"
+_ENGINE_3 = f"engine = {json.dumps(VERSION_3)}  # the XML is written for version 3 of BehaviorTree.CPP\n"
 _EXCLUDED = """\
 exclude = {}  # converted; delete the line when `btq build` writes these files
 """
@@ -54,14 +55,19 @@ def run(options: Namespace) -> int:
             return code
         trees, models = _by_kind(workspace)
         excluded = [f"/{each}.xml" for each in patterns(folder, trees, models)]
+    engine = _ENGINE_3 if _is_for_version_3(workspace) and not options.convert else _ENGINES
     ending = ".btq" if options.convert else ".xml"
+    rest = _EXCLUDED.format(json.dumps(excluded, ensure_ascii=False)) if excluded else ""
+    rest += "".join(f"\n{each.written(ending)}" for each in factories)
+
+    def holds(line: str) -> bool:
+        return _unknown_in(folder, line + rest) <= _unknown_in(folder, engine + rest)
+
+    nodes = nav2_line(workspace, holds)
+    if nodes.startswith("nodes"):
+        engine = ""  # a distribution has a version of its own
     try:
-        head = (
-            _HEAD
-            + nav2_line(workspace)
-            + (_EXCLUDED.format(json.dumps(excluded, ensure_ascii=False)) if excluded else "")
-        )
-        write_whole(target, "\n".join((head, *(each.written(ending) for each in factories))))
+        write_whole(target, f"{_HEAD}{engine}{nodes}{rest}")
     except OSError as error:
         print(f"btq init: {shown(target)}: {error.strerror}", file=sys.stderr)
         return 2
@@ -131,6 +137,26 @@ def _factories(workspace: Workspace, folder: str) -> Iterator[_Together]:
         main = tuple(sorted(each for each in trees if each not in called))
         others = [path for path in trees_in if path not in paths]
         yield _Together(name, tuple(patterns(folder, paths, others)), main, nodes)
+
+
+def _is_for_version_3(workspace: Workspace) -> bool:
+    """Whether some files are written for version 3 of the engine, and none for version 4."""
+    words = [words_of_3(workspace.store, path) for path in workspace.files]
+    return any(words) and None not in words
+
+
+def _unknown_in(folder: str, project: str) -> set[tuple[str, int]]:
+    """Where a check finds nodes and ports that are not known, by path and place, if this is the project file."""
+    files = Files()
+    files.overlay[f"{folder}/btq.toml"] = project
+    groups, _ = files.groups([folder], with_xml=True, for_checks=True)
+    return {
+        (path, each.span.start)
+        for group in groups
+        for path, found in zip(group.given, check_each(group.workspace, group.given), strict=True)
+        for each in found
+        if each.rule in ("unknown-node", "unknown-port")
+    }
 
 
 def _by_kind(workspace: Workspace) -> tuple[list[str], list[str]]:

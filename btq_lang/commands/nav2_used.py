@@ -3,7 +3,7 @@ tell."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
@@ -14,14 +14,21 @@ from btq_lang.workspace.workspace import Workspace
 _OF_VERSION_3 = ("humble", "iron")  # their Nav2 has version 3 of the engine, and so trees without BTCPP_format
 
 
-def nav2_line(workspace: Workspace) -> str:
-    """The line of a project file that names Nav2's nodes, a comment if it is unknown which; empty if XML uses none."""
+def nav2_line(workspace: Workspace, holds: Callable[[str], bool]) -> str:
+    """The line of a project file that names Nav2's nodes, a comment if it is unknown which; empty if XML uses none.
+
+    Args:
+        holds: whether such a line may be written, as far as its effect on the project is concerned.
+    """
     used = _used(workspace)
     if not any(used.values()):
         return ""  # a `Wait` alone may be anybody's
     fitting = [each for each in _of_format(workspace, used) if _has(each, used)]
     if len(fitting) == 1:
-        return f'nodes = ["nav2-{fitting[0]}"]  # the only distribution of Nav2 with the nodes and ports of the trees\n'
+        line = f'nodes = ["nav2-{fitting[0]}"]  # the only distribution of Nav2 with the nodes and ports of the trees\n'
+        if holds(line):
+            return line
+        fitting.clear()
     fit = f"they fit {', '.join(fitting)}" if fitting else "no distribution has all of these nodes and ports"
     return f'# nodes = ["nav2-DISTRIBUTION"]  # the trees use nodes of Nav2; name yours: {fit}\n'
 

@@ -133,10 +133,40 @@ def test_the_distribution_of_nav2(tmp_path: Path, root: str, nodes: str, line: s
     """Named if only one has the nodes with their ports; else a comment says which may be meant."""
     (tmp_path / "nav.xml").write_text(f'{root}<BehaviorTree ID="Main">{nodes}</BehaviorTree></root>\n')
     run_btq("init", "--from-xml", cwd=tmp_path)
-    said = (tmp_path / "btq.toml").read_text().removeprefix(HEAD)
+    said = (tmp_path / "btq.toml").read_text()
     if line.startswith("nav2"):
-        assert said == f'nodes = ["{line}"]  # the only distribution of Nav2 with the nodes and ports of the trees\n'
+        only = f'nodes = ["{line}"]  # the only distribution of Nav2 with the nodes and ports of the trees\n'
+        assert said == HEAD.splitlines(keepends=True)[0] + only
     else:
         what = f'# nodes = ["nav2-DISTRIBUTION"]  # the trees use nodes of Nav2; name yours: {line}\n'
-        assert said == (what if line else "")
+        assert said == HEAD + (what if line else "")
     assert run_btq("check", cwd=tmp_path)[0] < 2
+
+
+def test_a_distribution_that_lacks_a_port_is_not_proposed(tmp_path: Path) -> None:
+    """The project has a node of its own that is called as one of Nav2's."""
+    (tmp_path / "nav.xml").write_text(
+        "<root><BehaviorTree ID='Main'><SpeedController filter_duration='1'>"
+        "<Spin spin_dist='1' error_code_id='{e}'/></SpeedController></BehaviorTree></root>\n"
+    )
+    models = tmp_path / "models.xml"
+    model = "<Decorator ID='SpeedController'><input_port name='filter_duration'/></Decorator>"
+    models.write_text(f"<root><TreeNodesModel>{model}</TreeNodesModel></root>\n")
+    assert run_btq("init", "--from-xml", cwd=tmp_path)[0] == 0
+    said = "name yours: no distribution has all of these nodes and ports\n"
+    assert (tmp_path / "btq.toml").read_text().startswith(HEAD)
+    assert (tmp_path / "btq.toml").read_text().endswith(said)
+    assert run_btq("check", cwd=tmp_path)[:2] == (0, "No problems found in 2 files\n")
+
+
+@pytest.mark.parametrize(
+    ("beside", "engine"), [("<root>", '"3.8"'), ('<root BTCPP_format="4">', '["4.6", "4.8", "4.10"]')]
+)
+def test_the_engine_is_that_of_the_files(tmp_path: Path, beside: str, engine: str) -> None:
+    """Version 3 if a file can only be for it, and none can only be for version 4."""
+    (tmp_path / "old.xml").write_text(
+        "<root><BehaviorTree ID='Old'><SequenceStar><AlwaysSuccess/></SequenceStar></BehaviorTree></root>\n"
+    )
+    (tmp_path / "other.xml").write_text(f"{beside}<BehaviorTree ID='Other'><AlwaysSuccess/></BehaviorTree></root>\n")
+    assert run_btq("init", "--from-xml", cwd=tmp_path)[0] == 0
+    assert (tmp_path / "btq.toml").read_text().splitlines()[1].partition("  #")[0] == f"engine = {engine}"
