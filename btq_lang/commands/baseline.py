@@ -41,9 +41,9 @@ def compared(
     """
     checked: dict[str, set[str]] = {}
     for group in groups:
-        path = absolute(options.baseline) if options.baseline else group.workspace.project.baseline
+        path = absolute(options.baseline) if options.baseline else group.project.baseline
         if path is not None:
-            checked.setdefault(path, set()).update(group.given)
+            checked.setdefault(path, set()).update((*group.given, *group.cpp))
     problems: list[LoadProblem] = []
     new = [*findings]
     for path, files in checked.items():

@@ -83,6 +83,8 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
     empty = no_mission_below(trees, groups, "no .btq file and no BehaviorTree.CPP XML")
     try:
+        if options.update_baseline and not _has_baseline((*groups, *files.parameter_files), options):
+            raise _Refused("no baseline to update; name it with --baseline, or in btq.toml")
         groups = _chosen(groups, options)
         parameter_files = _parameter_files(files, options)
     except _Refused as reason:
@@ -178,8 +180,6 @@ def _chosen(groups: tuple[Group, ...], options: CheckOptions) -> tuple[Group, ..
     Raises:
         _Refused: there is nothing to compare with.
     """
-    if options.update_baseline and not _has_baseline(groups, options):
-        raise _Refused("no baseline to update; name it with --baseline, or in btq.toml")
     if options.target is not None:
         from btq_lang.commands.target import moving
 
@@ -198,8 +198,8 @@ def _chosen(groups: tuple[Group, ...], options: CheckOptions) -> tuple[Group, ..
     return groups
 
 
-def _has_baseline(groups: tuple[Group, ...], options: CheckOptions) -> bool:
-    return options.baseline is not None or any(group.workspace.project.baseline for group in groups)
+def _has_baseline(checked: Iterable[Group | ParameterFile], options: CheckOptions) -> bool:
+    return options.baseline is not None or any(each.project.baseline for each in checked)
 
 
 def _add_ignores(groups: tuple[Group, ...], findings: list[Finding], options: CheckOptions, files: Files) -> int:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from btq_lang.commands.cpp_files import CppFiles, Read
     from btq_lang.commands.nav2_factory import ParameterFile
     from btq_lang.commands.xml_below import XmlBelow
+    from btq_lang.workspace.config import Project
     from btq_lang.workspace.factories import Factory
 
 STDIN = "-"
@@ -54,6 +55,11 @@ class Group(Record):
     project_file: str | None
     pooled: frozenset[str] = frozenset()
     cpp: tuple[str, ...] = ()
+
+    @property
+    def project(self) -> Project:
+        """The project of the files."""
+        return self.workspace.project
 
     @property
     def watched(self) -> Iterator[str]:

@@ -134,6 +134,9 @@ def test_a_baseline(robot: Path) -> None:
     assert check(robot, "--baseline", "known.json", "--update-baseline") == ["known.json: 4 added, 0 removed, 0 kept"]
     assert check(robot, "--baseline", "known.json") == []
     assert check(robot, "nav2_params.yaml", "--baseline", "known.json") == []
+    toml = robot / "btq.toml"
+    toml.write_text(f'baseline = "its.json"\n{toml.read_text()}')
+    assert check(robot, "nav2_params.yaml", "--update-baseline") == ["its.json: 2 added, 0 removed, 0 kept"]
     (robot / "nav2_params.yaml").write_text(PARAMETERS.replace("spin", "wait"))  # another line is another finding
     assert check(robot, "--baseline", "known.json") == [UNLOADED, TWICE.replace("spin", "wait")]
 

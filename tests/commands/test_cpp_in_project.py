@@ -96,6 +96,17 @@ def test_checks_know_the_nodes_and_hold_the_code_against_them(robot: Path) -> No
     assert check(robot, "trees/m.btq", "src") == [*IN_MISSION, UNUSED, UNDECLARED]
 
 
+def test_a_baseline_holds_what_is_found_in_cpp(robot: Path) -> None:
+    known = ("--baseline", "known.json")
+    assert check(robot, *known, "--update-baseline") == [f"known.json: {len(IN_MISSION) + 2} added, 0 removed, 0 kept"]
+    assert check(robot, *known) == []
+    assert check(robot, "trees", *known, "--update-baseline") == [
+        f"known.json: 0 added, 0 removed, {len(IN_MISSION) + 2} kept"
+    ]
+    write(robot, "src/drive.cpp", SOURCE.replace('"sped"', '"spd"'))
+    assert check(robot, *known) == [UNDECLARED.replace("sped", "spd")]
+
+
 def test_a_port_is_missing_only_if_the_code_is_seen_to_fail_without_it(robot: Path) -> None:
     write(robot, "trees/m.xml", '<root BTCPP_format="4"><BehaviorTree ID="M"><Drive/></BehaviorTree></root>\n')
     assert check(robot, "trees/m.xml") == [
