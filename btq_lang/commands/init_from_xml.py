@@ -11,6 +11,7 @@ import posixpath
 import shlex
 import sys
 from argparse import Namespace
+from collections import Counter
 from collections.abc import Iterator
 
 from btq_lang.catalog.name_kinds import Kind
@@ -29,6 +30,8 @@ from btq_lang.workspace.workspace import Workspace
 _HEAD = "# What holds for all missions of this project\n"
 _ENGINES = f"engine = {json.dumps(VERSIONS)}  # the versions of BehaviorTree.CPP that must load them\n"
 _ENGINE_3 = f"engine = {json.dumps(VERSION_3)}  # the XML is written for version 3 of BehaviorTree.CPP\n"
+_WIDTH = 120
+_MANY_MORE = 10
 _EXCLUDED = """\
 exclude = {}  # converted; delete the line when `btq build` writes these files
 """
@@ -98,8 +101,13 @@ class _Together(Record):
             "main": self.main[0] if len(self.main) == 1 else list(self.main),
             "nodes": list(self.nodes),
         }
-        lines = (f"{key} = {json.dumps(value, ensure_ascii=False)}\n" for key, value in values.items() if value)
-        return f"[[factory]]\n{''.join(lines)}"
+        return "[[factory]]\n" + "".join(_line(key, value) for key, value in values.items() if value)
+
+
+def _line(key: str, value: str | list[str]) -> str:
+    """A key of the project file; a list that is too long for a line has an item on each."""
+    line = f"{key} = {json.dumps(value, ensure_ascii=False)}\n"
+    return line if len(line) <= _WIDTH else f"{key} = {json.dumps(value, ensure_ascii=False, indent=4)}\n"
 
 
 def _xml_below(folder: str) -> Workspace:
@@ -122,13 +130,17 @@ def _factories(workspace: Workspace, folder: str) -> Iterator[_Together]:
     xml = [path for path in models if not path.endswith(GROOT_SUFFIX)]
     nodes = (*(f"{each}.xml" for each in patterns(folder, xml, trees_in)), *of_groot)
     names: set[str] = set()
-    for paths in _connected(workspace):
+    groups = _connected(workspace)
+    grouped = {path for paths in groups for path in paths}
+    for paths in groups:
         trees = [name for path in paths for name in workspace.files[path].names_of(Kind.TREE)]
         if len(set(trees)) < len(trees):
             twice = next(name for name in sorted(trees) if trees.count(name) > 1)
             files = ", ".join(shown(path) for path in paths)
             print(f"not a factory, because several define the tree `{twice}`: {files}", file=sys.stderr)
             continue
+        paths += _beside(workspace, paths, [path for path in trees_in if path not in grouped])
+        trees = [name for path in paths for name in workspace.files[path].names_of(Kind.TREE)]
         name = posixpath.basename(posixpath.commonpath([posixpath.dirname(path) for path in paths])) or "robot"
         name = next(each for each in (name, *(f"{name}{number}" for number in range(2, 10_000))) if each not in names)
         names.add(name)
@@ -137,6 +149,20 @@ def _factories(workspace: Workspace, folder: str) -> Iterator[_Together]:
         main = tuple(sorted(each for each in trees if each not in called))
         others = [path for path in trees_in if path not in paths]
         yield _Together(name, tuple(patterns(folder, paths, others)), main, nodes)
+
+
+def _beside(workspace: Workspace, paths: list[str], lone: list[str]) -> list[str]:
+    """Files that need no other, in a folder with many more of a factory: its program loads the whole folder."""
+    members, others = (Counter(map(posixpath.dirname, each)) for each in (paths, lone))
+    names = {name for path in paths for name in workspace.files[path].names_of(Kind.TREE)}
+    found: list[str] = []
+    for path in lone:
+        own = workspace.files[path].names_of(Kind.TREE)
+        folder = posixpath.dirname(path)
+        if others[folder] * _MANY_MORE <= members[folder] and names.isdisjoint(own):
+            names.update(own)
+            found.append(path)
+    return found
 
 
 def _is_for_version_3(workspace: Workspace) -> bool:

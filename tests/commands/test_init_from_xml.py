@@ -170,3 +170,22 @@ def test_the_engine_is_that_of_the_files(tmp_path: Path, beside: str, engine: st
     (tmp_path / "other.xml").write_text(f"{beside}<BehaviorTree ID='Other'><AlwaysSuccess/></BehaviorTree></root>\n")
     assert run_btq("init", "--from-xml", cwd=tmp_path)[0] == 0
     assert (tmp_path / "btq.toml").read_text().splitlines()[1].partition("  #")[0] == f"engine = {engine}"
+
+
+def test_one_file_does_not_keep_a_folder_from_being_a_pattern(tmp_path: Path, write: Write) -> None:
+    """Unless it defines a tree of the others; and a long list has a line for each item."""
+    for number in range(10):
+        write(f"trees/strategy_{number}.xml", f"strategy_number_{number}: Dock")
+    write("trees/dock.xml", "Dock")
+    write("trees/alone.xml", "Alone")
+    run_btq("init", "--from-xml", cwd=tmp_path)
+    text = (tmp_path / "btq.toml").read_text()
+    main = "".join(f',\n    "strategy_number_{number}"' for number in range(10))
+    assert text.endswith(f'load = ["trees/*.xml"]\nmain = [\n    "Alone"{main}\n]\n')
+    assert run_btq("check", cwd=tmp_path)[:2] == (0, "No problems found in 12 files\n")
+    (tmp_path / "btq.toml").unlink()
+    write("trees/alone.xml", "Alone", "strategy_number_0")
+    run_btq("init", "--from-xml", cwd=tmp_path)
+    text = (tmp_path / "btq.toml").read_text()
+    assert "alone.xml" not in text
+    assert '    "trees/strategy_9.xml"\n]\nmain = [\n    "strategy_number_0",\n' in text
