@@ -61,13 +61,26 @@ def new_in_target(view: View, entry: Entry, checks: tuple[Check, ...], found: li
     """
     workspace = view.workspace.moved
     moved = View(workspace.store, view.viewpoint, view.facts)
-    known = {(each.rule, each.span) for each in found if each.effective_severity in _SEVERE}
+    known = {(each.rule, each.span) for each in found if is_severe(each)}
     for each in (each for check in checks for each in check(moved, entry)):
-        if (each.rule, each.span) in known or each.effective_severity not in _SEVERE:
-            continue
-        breaks = each.effective_severity is Severity.ERROR or each.rule == "not-an-engine-node"
-        notes = (*each.notes, f"in {workspace.project.target} this is {each.rule}: `btq explain {each.rule}`")
-        yield replace(each, rule="target-breaks" if breaks else "target-differs", notes=notes, severity=None)
+        if (each.rule, each.span) not in known and is_severe(each):
+            yield of_target(each, workspace.project.target)
+
+
+def is_severe(found: Diagnostic) -> bool:
+    """Whether it is more than a hint."""
+    return found.effective_severity in (Severity.ERROR, Severity.WARNING)
+
+
+def of_target(found: Diagnostic, target: str) -> Diagnostic:
+    """What is found for a target alone, as a finding of the rules about moving on.
+
+    Args:
+        target: its name, for a message.
+    """
+    breaks = found.effective_severity is Severity.ERROR or found.rule == "not-an-engine-node"
+    notes = (*found.notes, f"in {target} this is {found.rule}: `btq explain {found.rule}`")
+    return replace(found, rule="target-breaks" if breaks else "target-differs", notes=notes, severity=None)
 
 
 def _entries(seen: ResolvedNode) -> Iterator[Diagnostic]:
@@ -112,7 +125,6 @@ def _skipped_in_the_end(view: View, seen: ResolvedNode) -> bool:
     return all(ever & SKIPPED for ever in found) and any(ever & RUNNING for ever in found)
 
 
-_SEVERE: Final = (Severity.ERROR, Severity.WARNING)
 _WHEN: Final[Mapping[str, Callable[[View, ResolvedNode], bool]]] = {
     "runs on": _runs_on,
     "completes at once": _completes_at_once,

@@ -85,8 +85,8 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     try:
         if options.update_baseline and not _has_baseline((*groups, *files.parameter_files), options):
             raise _Refused("no baseline to update; name it with --baseline, or in btq.toml")
-        groups = _chosen(groups, options)
         parameter_files = _parameter_files(files, options)
+        groups = _chosen(groups, parameter_files, options)
     except _Refused as reason:
         print(f"btq check: {reason}", file=sys.stderr)
         return 2, _watched(groups)
@@ -132,7 +132,9 @@ def _report(
     if parameter_files:
         from btq_lang.commands.nav2_check import as_groups, nav2_findings
 
-        more, others = nav2_findings(parameter_files, files, checked, lambda project: _selecting(project, options))
+        more, others = nav2_findings(
+            parameter_files, files, checked, lambda project: _selecting(project, options), options.target
+        )
         findings += [each for each in more if _is_wanted(each.diagnostic, options)]
         findings.sort(key=lambda each: (each.path, each.diagnostic.span))
         texts, checked = {**others, **texts}, (*checked, *(each.path for each in parameter_files))
@@ -174,17 +176,19 @@ def _parameter_files(files: Files, options: CheckOptions) -> tuple[ParameterFile
         raise _Refused(f"--since: {reason}") from reason
 
 
-def _chosen(groups: tuple[Group, ...], options: CheckOptions) -> tuple[Group, ...]:
+def _chosen(
+    groups: tuple[Group, ...], parameter_files: Iterable[ParameterFile], options: CheckOptions
+) -> tuple[Group, ...]:
     """The groups for the target, with only what has changed.
 
     Raises:
         _Refused: there is nothing to compare with.
     """
     if options.target is not None:
-        from btq_lang.commands.target import moving
+        from btq_lang.commands.target import is_comparable, moving
 
         groups = moving(groups, options.target)
-        if not groups:
+        if not (is_comparable(groups, options.target) or any(each.distribution for each in parameter_files)):
             what = 'write `nodes = ["nav2-jazzy"]` into btq.toml'
             raise _Refused(f"--target needs to know what the trees are for: {what}")
     if options.since:

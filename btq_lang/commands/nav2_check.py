@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.commands.files import Group
-from btq_lang.commands.nav2_factory import ParameterFile, findings_of
+from btq_lang.commands.nav2_factory import ParameterFile, findings_of, in_distribution
 from btq_lang.render import Finding
 from btq_lang.util.record import replace
 from btq_lang.workspace.loader import Found, absolute, excluder, read
@@ -51,13 +52,18 @@ def as_groups(found: Iterable[ParameterFile]) -> tuple[Group, ...]:
 
 
 def nav2_findings(
-    found: Iterable[ParameterFile], files: Files, checked: Container[str], configured: Callable[[Project], Project]
+    found: Iterable[ParameterFile],
+    files: Files,
+    checked: Container[str],
+    configured: Callable[[Project], Project],
+    target: str | None = None,
 ) -> tuple[list[Finding], dict[str, str]]:
     """What is wrong with parameter files, and with trees that are checked; and the texts of files that this names.
 
     Args:
         checked: the paths of those trees.
         configured: returns a project with what the command line selects.
+        target: the distribution that the robot moves to, as a project names its nodes, or another target.
     """
     findings: list[Finding] = []
     texts: dict[str, str] = {}
@@ -70,7 +76,11 @@ def nav2_findings(
             texts.update((path, each.source) for path, each in workspace.files.items())
             return workspace
 
-        for path, diagnostic in findings_of(replace(file, project=configured(file.project)), workspace_of):
+        file = replace(file, project=configured(file.project))
+        moved = None
+        if target is not None and target in PACKAGED:
+            moved = in_distribution(file, target.removeprefix("nav2-"), files.overlay.get, files.xml.source_of)
+        for path, diagnostic in findings_of(file, workspace_of, moved):
             if path == file.path or path in checked:
                 findings.append(Finding(path, texts[path], diagnostic))
                 for other in [each.place.path for each in diagnostic.related if each.place.path is not None]:

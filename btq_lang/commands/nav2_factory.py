@@ -23,9 +23,13 @@ from btq_lang.workspace.config import configured
 from btq_lang.workspace.loader import LoadProblem, absolute, read
 
 if TYPE_CHECKING:
+    from typing import TypeAlias
+
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.factories import Factory
     from btq_lang.workspace.workspace import Workspace
+
+    _Finding: TypeAlias = tuple[str | None, Diagnostic]  # None: in the parameter file
 
 
 class ParameterFile(Record):
@@ -35,6 +39,7 @@ class ParameterFile(Record):
         project: that names it, or in whose files it is looked at.
         project_file: of that project.
         parameters: of bt_navigator; None: the file is not YAML, which is the `problem`.
+        factory: that names it; its files are those that goals name.
         distribution: named in the project, or else the only one that the parameters can be for.
         factories: one for each tree that is created, with what is read for it.
     """
@@ -43,6 +48,7 @@ class ParameterFile(Record):
     text: str
     project: Project
     project_file: str | None
+    factory: Factory
     parameters: Parameters | None
     distribution: str | None
     factories: tuple[tuple[Load, Factory], ...] = ()
@@ -86,7 +92,7 @@ def parameter_file(
     if text is None:
         return None, problem
     distribution = distribution_among((*factory.node_files, *project.node_files))
-    empty = ParameterFile(path, text, project, project_file, None, distribution)
+    empty = ParameterFile(path, text, project, project_file, factory, None, distribution)
     try:
         parameters = read_parameters(text)
     except YamlMissing:
@@ -94,26 +100,61 @@ def parameter_file(
     except YamlProblem as error:
         at = min(error.offset, len(text))
         return replace(empty, problem=Diagnostic("yaml-syntax", Span(at, at), error.message)), problem
-    distribution = distribution or parameters.distribution
-    found = loads(parameters, distribution, project.root, factory.files, lambda each: known(each) or read(each)[0])
-    of_load = partial(_factory_of, factory, parameters, distribution, path, source_of)
-    factories = tuple((load, of_load(load)) for load in found)
-    return replace(empty, parameters=parameters, distribution=distribution, factories=factories), problem
+    whole = replace(empty, parameters=parameters)
+    return in_distribution(whole, distribution or parameters.distribution, known, source_of), problem
 
 
-def findings_of(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) -> Iterator[tuple[str, Diagnostic]]:
+def in_distribution(
+    file: ParameterFile,
+    distribution: str | None,
+    known: Callable[[str], str | None],
+    source_of: Callable[[str], str | None],
+) -> ParameterFile:
+    """A parameter file with what a distribution loads by it; for the others see `parameter_file`."""
+    parameters = file.parameters
+    if parameters is None:
+        return file
+    root, of_goals = file.project.root, file.factory.files
+    found = loads(parameters, distribution, root, of_goals, lambda each: known(each) or read(each)[0])
+    of_load = partial(_factory_of, file.factory, parameters, distribution, file.path, source_of)
+    return replace(file, distribution=distribution, factories=tuple((load, of_load(load)) for load in found))
+
+
+def findings_of(
+    file: ParameterFile, workspace_of: Callable[[Factory], Workspace], moved: ParameterFile | None = None
+) -> Iterator[tuple[str, Diagnostic]]:
     """All that is wrong with a parameter file and with what it loads, with the file that it is in.
 
     Args:
         workspace_of: returns the workspace of a factory.
+        moved: the file in the distribution that its robot moves to.
     """
-    for path, diagnostic in _found(file, workspace_of):
+    found = [*_found(file, workspace_of)]
+    if moved is not None and file.distribution is not None:
+        found += _new_in_target(found, moved, workspace_of)
+    for path, diagnostic in found:
         yield from ((path or file.path, each) for each in configured(file.project, path or file.path, (diagnostic,)))
 
 
-def _found(
-    file: ParameterFile, workspace_of: Callable[[Factory], Workspace]
-) -> Iterator[tuple[str | None, Diagnostic]]:
+def _new_in_target(
+    found: list[_Finding], moved: ParameterFile, workspace_of: Callable[[Factory], Workspace]
+) -> Iterator[_Finding]:
+    """What the target refuses, or reads otherwise, and the distribution that the parameters are for does not."""
+    from btq_lang.checks.moved_engine import is_severe, of_target  # few checks have a target
+
+    known = {_key(each) for each in found if is_severe(each[1])}
+    for path, each in _found(moved, workspace_of):
+        if is_severe(each) and _key((path, each)) not in known:
+            yield path, of_target(each, (moved.distribution or "").capitalize())
+
+
+def _key(finding: _Finding) -> tuple[object, ...]:
+    """What two distributions have in common where they find the same; nodes without library share a place."""
+    path, found = finding
+    return path, found.rule, found.span, found.related[:1]
+
+
+def _found(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) -> Iterator[_Finding]:
     if file.problem is not None:
         yield None, file.problem
     if file.parameters is not None and file.distribution is None:

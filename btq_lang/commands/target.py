@@ -20,17 +20,18 @@ if TYPE_CHECKING:
 
 
 def moving(groups: Iterable[Group], target: str) -> tuple[Group, ...]:
-    """The groups, to be checked for a target too; empty if it is a distribution, and none says which one its trees are
-    for.
+    """The groups, to be checked for a target too.
 
     Args:
         target: a version of the engine, or as a project names its nodes: `nav2-lyrical`.
     """
-    groups = tuple(groups)
-    given = [(group.workspace.store, path) for group in groups for path in group.given]
-    if target in PACKAGED and all(distribution(store, path) is None for store, path in given):
-        return ()
     return tuple(replace(group, workspace=with_target(group.workspace, target)) for group in groups)
+
+
+def is_comparable(groups: Iterable[Group], target: str) -> bool:
+    """Whether it is known what some trees are for, if the target is a distribution."""
+    given = ((group.workspace.store, path) for group in groups for path in group.given)
+    return target not in PACKAGED or any(distribution(store, path) is not None for store, path in given)
 
 
 def with_target(workspace: Workspace, target: str) -> Workspace:

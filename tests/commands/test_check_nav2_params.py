@@ -83,6 +83,43 @@ def test_an_option(robot: Path) -> None:
     assert check(robot, "nav2_params.yaml") != []  # no tree need be there
 
 
+def test_a_target(robot: Path) -> None:
+    """What Jazzy finds as well is not of the target; `DockRobot` is loaded in neither."""
+    parameters = PARAMETERS.replace("goal_blackboard_id: target", "error_code_names: [spin_error_code]")
+    (robot / "nav2_params.yaml").write_text(parameters)
+    (robot / "trees/main.xml").write_text(MAIN.replace("{target}", "{goal}"))
+    refused = (
+        "nav2_params.yaml:5:5: error[target-breaks] bt_navigator refuses to start with `error_code_names` in Lyrical"
+    )
+    to_lyrical = ("--target", "nav2-lyrical")
+    assert check(robot, "nav2_params.yaml", *to_lyrical) == [UNLOADED, TWICE, refused]
+    assert refused in check(robot, *to_lyrical)
+    (robot / "btq.toml").write_text(JAZZY)
+    assert check(robot, "nav2_params.yaml", *to_lyrical) == [UNLOADED, TWICE, refused]
+    for target in ("nav2-jazzy", "4.10"):
+        assert [each for each in check(robot, "nav2_params.yaml", "--target", target) if "[target-" in each] == []
+    assert check(robot, "nav2_params.yaml", *to_lyrical, "--ignore", "target-breaks") == [UNLOADED, TWICE]
+
+
+def test_a_target_of_parameters_that_tell_their_distribution(robot: Path) -> None:
+    (robot / "btq.toml").unlink()
+    names = "[nav2_spin_action_bt_node, nav2_is_path_valid_condition_bt_node]"
+    (robot / "nav2_params.yaml").write_text(
+        PARAMETERS.replace("[nav2_spin_action_bt_node]", names) + "bt_navigator_navigate_to_pose_rclcpp_node:\n"
+        "  ros__parameters: {use_sim_time: true}\n"
+    )
+    found = [each for each in check(robot, "nav2_params.yaml", "--target", "nav2-lyrical") if "[target-" in each]
+    assert found == [
+        TWICE.replace("library-loaded-twice", "target-breaks").replace("Jazzy", "Lyrical"),
+        "nav2_params.yaml:4:50: error[target-breaks] Nav2 has no library `nav2_is_path_valid_condition_bt_node` in "
+        "Lyrical",
+        "nav2_params.yaml:5:5: warning[target-differs] Nav2 does not read `goal_blackboard_id` in Lyrical",
+    ]
+    (robot / "nav2_params.yaml").write_text("bt_navigator:\n  ros__parameters: {}\n")
+    (problem,) = check(robot, "nav2_params.yaml", "--target", "nav2-lyrical")
+    assert problem.startswith("btq check: --target needs to know what the trees are for: ")
+
+
 def test_error_codes_that_are_collected_are_those_of_the_parameters(robot: Path) -> None:
     nodes = "".join(f'<Spin error_code_id="{{{each}_error_code}}"/>' for each in ("spin", "my"))
     tree = f'<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence>{nodes}</Sequence></BehaviorTree></root>\n'
