@@ -12,7 +12,7 @@ import shlex
 import sys
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.versions import VERSION_3, VERSIONS
@@ -104,7 +104,7 @@ class _Together(Record):
         return "[[factory]]\n" + "".join(_line(key, value) for key, value in values.items() if value)
 
 
-def _line(key: str, value: str | list[str]) -> str:
+def _line(key: str, value: Sequence[str]) -> str:
     """A key of the project file; a list that is too long for a line has an item on each."""
     line = f"{key} = {json.dumps(value, ensure_ascii=False)}\n"
     return line if len(line) <= _WIDTH else f"{key} = {json.dumps(value, ensure_ascii=False, indent=4)}\n"
