@@ -1,7 +1,8 @@
-"""Where in C++ a node is, of which the workspace has the model."""
+"""Where in C++ a node is that a file can use."""
 
 from __future__ import annotations
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.util.text import Span
 from btq_lang.workspace.workspace import Workspace
 
@@ -10,13 +11,16 @@ def cpp_place(workspace: Workspace, path: str, node: str, port: str = "") -> tup
     """The class of a node, or one of its ports: the path, and the span as `File.on_disk` takes it.
 
     Args:
-        path: of the file with the model; None is returned if it is not C++.
+        path: of the file that uses the node; None is returned if no C++ in its scope registers it.
     """
-    origin = workspace.files[path].origin
-    found = origin.nodes.get(node) if origin is not None and origin.nodes is not None else None
+    models = workspace.scope(path).all(Kind.MODEL, node)
+    registered = (origin.nodes for each in models if (origin := workspace.files[each.path].origin) is not None)
+    found = next((nodes[node] for nodes in registered if nodes is not None and node in nodes), None)
     if found is None:
         return None
-    place = next((each.place for each in found.ports if each.name == port), found.class_place)
+    place = next((each.place for each in found.ports if each.name == port), None) if port else found.class_place
+    if place is None:
+        return None
     if place.path not in workspace.files or not workspace.files[place.path].is_cpp:
         place = found.place  # the class is not in a file of this factory
     file = workspace.files[place.path]

@@ -46,7 +46,7 @@ def node_kind(workspace: Workspace, path: str, name: str, quoted: bool = False, 
         _, known = inputs.declared(workspace.store, path, name)
         semantics = known.semantics if known is not None else ""
         shown_ports = _ports(ports_of_kind(workspace, path, name))
-        return "\n\n".join(filter(None, (shown, text, semantics, shown_ports, cpp_link(workspace, found.path, name))))
+        return "\n\n".join(filter(None, (shown, text, semantics, shown_ports, cpp_link(workspace, path, name))))
     if not quoted and name in KNOWN_WORDS:
         return f"`{name}`: {KNOWN_WORDS[name].why}."
     return f"`{name}`: a custom node without a model in this file or its includes."

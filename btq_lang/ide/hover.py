@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import phrase_at
-from btq_lang.catalog.name_kinds import Kind
 from btq_lang.ide import describe
 from btq_lang.ide.built_xml import said_in_xml
 from btq_lang.ide.cpp_places import cpp_link
@@ -124,6 +123,5 @@ def _port(workspace: Workspace, found: Found) -> str | None:
     port = port_of(workspace, found.path, node, found.mention.name) if node is not None else None
     if node is None or port is None:
         return None
-    model = workspace.scope(found.path).find(Kind.MODEL, node.id.text) if node.id is not None else None
-    link = cpp_link(workspace, model.path, model.symbol.name, port.name) if model is not None else ""
+    link = cpp_link(workspace, found.path, node.id.text, port.name) if node.id is not None else ""
     return "\n\n".join(filter(None, (describe.port(port), link)))

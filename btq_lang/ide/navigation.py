@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from btq_lang.ide.cpp_places import cpp_place
-from btq_lang.ide.meaning import Found, at, definition, everywhere, subject
+from btq_lang.ide.meaning import Found, Subject, at, definition, everywhere, subject
 from btq_lang.ide.ports import port_of
 from btq_lang.syntax.tree import Model
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
+from btq_lang.workspace.file import Definition
 from btq_lang.workspace.references import What
 from btq_lang.workspace.workspace import Workspace
 
@@ -37,7 +38,8 @@ class Highlight(Record):
 def goto_definition(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...]:
     """Where the word at a place is defined; for a name out of scope, its definitions elsewhere in the project.
 
-    A blackboard entry is defined where its tree declares it as a port, or else where it is first written.
+    A node and its ports are defined in the C++ that registers it, if that is known, and else in a model.  A blackboard
+    entry is defined where its tree declares it as a port, or else where it is first written.
     """
     found = at(workspace, path, offset)
     if found is None:
@@ -47,23 +49,28 @@ def goto_definition(workspace: Workspace, path: str, offset: int) -> tuple[Targe
         target = wanted.name
         return (Target(target, Span(0, 0), Span(0, 0), found.span),) if target in workspace.files else ()
     place = definition(workspace, path, wanted)
+    in_cpp = _in_cpp(workspace, found, wanted, place)
+    if in_cpp is not None:
+        return (Target(*in_cpp, in_cpp[1], found.span),)
     if place is not None:
-        in_cpp = cpp_place(workspace, place.path, place.symbol.name)
-        if in_cpp is not None:
-            return (Target(*in_cpp, in_cpp[1], found.span),)
         return (Target(place.path, place.whole, place.span, found.span),)
     if wanted.what in (What.KEY, What.PORT, What.PARAMETER, What.INSTANCE):
         places = list(everywhere(workspace, wanted))
         first = next((one for one in places if one.mention.defines), None)
         if first is None and wanted.what is What.KEY:
             first = next((one for one in places if writes(workspace, one)), None)
-        owner = first.mention.owner if first is not None else None
-        if first is not None and isinstance(owner, Model) and owner.name is not None:
-            in_cpp = cpp_place(workspace, first.path, owner.name.text, wanted.name)
-            if in_cpp is not None:
-                return (Target(*in_cpp, in_cpp[1], found.span),)
         return (Target(first.path, first.span, first.span, found.span),) if first else ()
     return ()
+
+
+def _in_cpp(workspace: Workspace, found: Found, wanted: Subject, place: Definition | None) -> tuple[str, Span] | None:
+    """Where in C++ a node or its port is, whatever models of it there are beside the code."""
+    if place is not None and isinstance(place.symbol.target, Model):
+        places = (cpp_place(workspace, each, place.symbol.name) for each in (found.path, place.path))
+        return next(filter(None, places), None)
+    node, owner = found.mention.node, found.mention.owner
+    name = owner.name if isinstance(owner, Model) else node.id if node is not None else None
+    return cpp_place(workspace, found.path, name.text, wanted.name) if wanted.what is What.PORT and name else None
 
 
 def find_references(

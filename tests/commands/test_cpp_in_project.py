@@ -233,6 +233,30 @@ def test_definition_is_the_class_and_the_port_in_the_code(robot: Path, suffix: s
         assert place(workspace, path, text.index("IsOpen")) == [registration]
 
 
+def test_definition_is_in_the_code_whatever_models_there_are(robot: Path) -> None:
+    model = '<Action ID="Drive"><input_port name="speed"/><input_port name="old"/></Action>'
+    tree = '<BehaviorTree ID="M"><Drive goal="{g}" speed="1" old="1"/></BehaviorTree>'
+    text = f'<root BTCPP_format="4">{tree}<TreeNodesModel>{model}</TreeNodesModel></root>\n'
+    write(robot, "trees/n.xml", text)
+    workspace, path = open_workspace(str(robot)), f"{robot}/trees/n.xml"
+    file = workspace.files[path]
+
+    def places(word: str) -> list[list[str]]:
+        """Where it leads to from the tree and from the model."""
+        begins = (text.index(word), text.rindex(word))
+        return [place(workspace, path, at) for each in begins if (at := file.from_disk(each)) is not None]
+
+    assert places("Drive") == [["drive.hpp:2:7 Drive"]] * 2
+    assert places("speed") == [['drive.cpp:7:20 BT::InputPort<double>("speed", 0.5, "m/s")']] * 2
+    column = text.rindex("old") + 1
+    assert places("old") == [[f"n.xml:1:{column} old"]] * 2
+    at = file.from_disk(text.index("speed"))
+    assert at is not None
+    shown = hover(workspace, path, at)
+    assert shown is not None
+    assert f"[src/drive.cpp:7](file://{robot}/src/drive.cpp#L7)" in shown.markdown
+
+
 def test_editors_show_them(robot: Path) -> None:
     write(robot, "trees/m.btq", MISSION.replace("gaol", "goal"))
     workspace, path = open_workspace(str(robot)), f"{robot}/trees/m.btq"
