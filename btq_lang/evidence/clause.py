@@ -330,6 +330,7 @@ class JudgedClause:
             unit="runs" if tally.counts_runs or is_once_a_run else "activations",
             worst=tally.worst,
             interval=tally.interval(),
+            limits=tally.limits,
             confidence=self.requirement.confidence,
             more=tally.more(),
             violations=tuple(tally.violations),

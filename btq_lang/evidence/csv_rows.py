@@ -11,6 +11,7 @@ The columns, which later versions add to but do not change:
     more            how many more without a violation decide
     result          in words
     look_at         what to look at, for a violated clause
+    limits          which limits low and high are: one look | window | every look
 """
 
 from __future__ import annotations
@@ -59,10 +60,11 @@ def _rows(report: Report) -> Iterator[dict[str, str | float]]:
                     "more": clause.more if clause.more is not None else "",
                     "result": result(clause),
                     "look_at": headline(clause, mission.medians) if clause.verdict == VIOLATED else "",
+                    "limits": clause.limits if clause.interval is not None else "",
                 }
 
 
 _COLUMNS: Final = (
     *("requirement", "title", "mission", "clause", "path", "verdict", "unit", "counted", "violated", "unknown"),
-    *("cut_off", "worst", "worst_si", "worst_run", "low", "high", "more", "result", "look_at"),
+    *("cut_off", "worst", "worst_si", "worst_run", "low", "high", "more", "result", "look_at", "limits"),
 )

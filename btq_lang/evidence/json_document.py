@@ -86,6 +86,7 @@ def _clause(clause: ClauseVerdict) -> Json:
         "cut_off": clause.cut_off,
         "worst": _fields(clause.worst) if clause.worst is not None else None,
         "interval": list(clause.interval) if clause.interval is not None else None,
+        "limits": clause.limits if clause.interval is not None else None,
         "confidence": clause.confidence,
         "more": clause.more,
         "violations": [

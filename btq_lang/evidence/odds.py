@@ -1,40 +1,45 @@
-"""Exact binomial confidence limits for k of n, and how many more runs would decide.
+"""Confidence limits of a probability for k of n, and how many more runs would decide.
 
-One invariant: the limits are Clopper and Pearson's, one-sided, so each holds with the requested confidence, for a
-single look at the data.  SciPy has the same in `scipy.stats.beta`, but takes a second to import.
+One invariant: limits hold with the requested confidence, or a higher one: those of Clopper and Pearson, one-sided, for
+a single look at the data; those of a confidence sequence, both together, at every look at growing data, however often.
+SciPy has the former in `scipy.stats.beta`, but takes a second to import.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from math import exp, inf, lgamma, log, log1p
-from typing import Final
+from typing import Final, Literal, TypeAlias
+
+Limits: TypeAlias = Literal["one look", "window", "every look"]  # `window`: of the last runs, and for one look
 
 
-def lower_limit(k: int, n: int, confidence: float) -> float:
+def lower_limit(k: int, n: int, confidence: float, limits: Limits = "one look") -> float:
     """The lower limit of the probability: with this confidence it is larger.
 
     Args:
         k: how many of the n counted hold.
-        confidence: of the one side, a fraction of one.
+        confidence: a fraction of one; of the one side, or at every look of both.
     """
     if k <= 0:
         return 0.0
+    if limits == "every look":
+        return _lower_at_every_look(k, n, confidence)
     return _root(lambda p: beta_cdf(p, k, n - k + 1) - (1 - confidence))
 
 
-def upper_limit(k: int, n: int, confidence: float) -> float:
+def upper_limit(k: int, n: int, confidence: float, limits: Limits = "one look") -> float:
     """The upper limit of the probability: with this confidence it is smaller."""
-    return 1.0 - lower_limit(n - k, n, confidence)
+    return 1.0 - lower_limit(n - k, n, confidence, limits)
 
 
-def runs_to_decide(k: int, n: int, confidence: float, probability: float) -> int | None:
+def runs_to_decide(k: int, n: int, confidence: float, probability: float, limits: Limits = "one look") -> int | None:
     """How many more, all of which hold, raise the lower limit to a probability; None: no number does."""
     if probability >= 1.0:
         return None
 
     def decides(more: int) -> bool:
-        return lower_limit(k + more, n + more, confidence) >= probability
+        return lower_limit(k + more, n + more, confidence, limits) >= probability
 
     high = 1
     while not decides(high):
@@ -70,6 +75,16 @@ def beta_cdf(x: float, a: float, b: float) -> float:
         if abs(step - 1) < _PRECISION:
             break
     return front * fraction
+
+
+def _lower_at_every_look(k: int, n: int, confidence: float) -> float:
+    """Where the data become 1 / (1 - confidence) times less likely than under a uniform mixture of all probabilities.
+
+    Under the true probability this ratio is a martingale that starts at 1, and by Ville's inequality it ever grows so
+    large at most as often as the confidence leaves.
+    """
+    least = lgamma(k + 1) + lgamma(n - k + 1) - lgamma(n + 2) + log1p(-confidence)
+    return _root(lambda p: k * log(p) + (n - k) * log1p(-p) - least if p * n < k else inf)
 
 
 def _root(function: Callable[[float], float]) -> float:

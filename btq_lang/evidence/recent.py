@@ -71,7 +71,7 @@ class Recent:
     def result(self) -> Tally:
         """The tally of the judgements in the window."""
         is_of_odds = self._odds is None or self._odds.experiments == self._window.experiments
-        tally = Tally(self._odds, self._confidence, self._window.count if is_of_odds else None)
+        tally = Tally(self._odds, self._confidence, "window", self._window.count if is_of_odds else None)
         tally.cut_off = self.cut_off
         for run, judgements in self._kept:
             for each in judgements:

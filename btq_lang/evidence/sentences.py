@@ -90,11 +90,13 @@ def _counted(clause: ClauseVerdict) -> str:
     if not clause.counted:
         return of
     low, high = clause.interval
+    looks = _LOOKS[clause.limits]
     if clause.confidence is None:
-        limits = f"{share(low)} to {share(high)} with confidence {share(USUAL_CONFIDENCE)} each"
+        each = "" if clause.limits == "every look" else " each"
+        limits = f"{share(low)} to {share(high)} with confidence {share(USUAL_CONFIDENCE)}{each}{looks}"
         return f"{of}, {share(held / clause.counted)}; limits {limits}"
     limit = f"at least {share(low)}" if clause.verdict == SATISFIED else f"at most {share(high)}"
-    return f"{of}, {limit} with confidence {share(clause.confidence)}"
+    return f"{of}, {limit} with confidence {share(clause.confidence)}{looks}"
 
 
 def _where(violation: Violation) -> str:
@@ -104,4 +106,5 @@ def _where(violation: Violation) -> str:
     return f"run {violation.run} of {violation.source}, {duration(violation.at)} after its start{begun}"
 
 
+_LOOKS: Final = {"one look": "", "window": " for one look", "every look": " at every look"}
 _RUNS: Final = 4  # named in addition to the first

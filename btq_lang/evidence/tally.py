@@ -16,6 +16,7 @@ from btq_lang.util.record import Record, replace
 if TYPE_CHECKING:
     from btq_lang.evidence.conditions import Reading
     from btq_lang.evidence.limits import Measure
+    from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.evidence.verdicts import Link, Verdict
     from btq_lang.requirements.model import Odds
@@ -36,9 +37,12 @@ class Tally:
     Attributes:
         counted, violated, unknown, cut_off, why, violations, worst: as in `ClauseVerdict`.
         distribution: of the measures.
+        limits: which limits of the probability decide.
     """
 
-    def __init__(self, odds: Odds | None, confidence: float | None, most: int | None = None) -> None:
+    def __init__(
+        self, odds: Odds | None, confidence: float | None, limits: Limits = "one look", most: int | None = None
+    ) -> None:
         """
         Args:
             most: the maximum that count; None: all.
@@ -52,6 +56,7 @@ class Tally:
         self.worst: Worst | None = None
         self.distribution: Final = Distribution()
         self.counts_runs: Final = odds is not None and odds.experiments == "runs"
+        self.limits: Final = limits
         self._odds: Final = odds
         self._confidence: Final = confidence
         self._most: Final = most
@@ -163,14 +168,14 @@ class Tally:
             return None
         confidence = self._confidence if self._confidence is not None else USUAL_CONFIDENCE
         n, k = self.counted, self.counted - self.violated
-        return lower_limit(k, n, confidence), upper_limit(k, n, confidence)
+        return lower_limit(k, n, confidence, self.limits), upper_limit(k, n, confidence, self.limits)
 
     def more(self) -> int | None:
         """How many more that hold would decide an undecided verdict."""
         if self._odds is None or self._confidence is None or self.verdict() != UNDECIDED:
             return None
         n, most, wanted = self.counted + self.unknown, self._most, self._odds.probability
-        found = runs_to_decide(self.counted - self.violated, n, self._confidence, wanted)
+        found = runs_to_decide(self.counted - self.violated, n, self._confidence, wanted, self.limits)
         if most is None or (found is not None and n + found <= most):
             return found
         return most if lower_limit(most, most, self._confidence) >= wanted else None  # they push out all others
@@ -181,9 +186,9 @@ class Tally:
         if self._confidence is None:
             share = k / n
             return SATISFIED if share > wanted or (share == wanted and self._odds.relation == ">=") else VIOLATED
-        if lower_limit(k, n, self._confidence) >= wanted:
+        if lower_limit(k, n, self._confidence, self.limits) >= wanted:
             return SATISFIED
-        return VIOLATED if upper_limit(k, n, self._confidence) < wanted else UNDECIDED
+        return VIOLATED if upper_limit(k, n, self._confidence, self.limits) < wanted else UNDECIDED
 
 
 def _violation(judgement: Judgement, path: str, chain: tuple[Link, ...], run: Run) -> Violation:

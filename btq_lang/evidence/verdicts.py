@@ -13,6 +13,7 @@ from btq_lang.util.record import Record
 if TYPE_CHECKING:
     from btq_lang.catalog.units import Unit
     from btq_lang.evidence.model import Outcome
+    from btq_lang.evidence.odds import Limits
     from btq_lang.workspace.resolved import ResolvedNode
 
     Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised"]
@@ -144,6 +145,7 @@ class ClauseVerdict(Record):
         cut_off: activations left out because the log ends while they are open.
         unit: what is counted: `activations` or `runs`.
         interval: the lower and the upper limit of the probability that it holds; None without odds.
+        limits: which ones these are, as in `odds.py`.
         confidence: that the requirement names; None if it names none, and each limit has 95 %.
         more: how many more runs (or activations) without a violation would decide; None: no known number would.
         violations: the first thousand of them.
@@ -163,6 +165,7 @@ class ClauseVerdict(Record):
     unit: Literal["activations", "runs"]
     worst: Worst | None
     interval: tuple[float, float] | None
+    limits: Limits
     confidence: float | None
     more: int | None
     violations: tuple[Violation, ...]

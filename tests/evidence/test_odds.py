@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import random
-from math import comb, log
+from bisect import bisect_left
+from fractions import Fraction
+from math import comb, log, log1p
 
 import pytest
 
-from btq_lang.evidence.odds import beta_cdf, lower_limit, runs_to_decide, upper_limit
+from btq_lang.evidence.odds import Limits, beta_cdf, lower_limit, runs_to_decide, upper_limit
 from btq_lang.evidence.wording import share
 
 # scipy.stats.beta.ppf of SciPy 1.17.1: (k, n, confidence, lower limit, upper limit).
@@ -97,6 +99,51 @@ def test_the_limits_cover_what_they_promise(p: float) -> None:
         below += lower <= p
         above += upper >= p
     assert min(below, above) >= 0.95 * 2000 - 3 * (2000 * 0.95 * 0.05) ** 0.5
+
+
+def covered(p: float, runs: int, limits: Limits) -> list[range]:
+    """Of how many that hold, by the number of runs, the limits are on both sides of the probability."""
+    found = []
+    for n in range(1, runs + 1):
+        low = bisect_left(range(n + 1), p, key=lambda k: upper_limit(k, n, 0.95, limits))
+        high = bisect_left(range(n + 1), p, key=lambda k: lower_limit(k, n, 0.95, limits))
+        found.append(range(low, high))
+    return found
+
+
+def series_missed(p: float, runs: int, limits: Limits) -> int:
+    """How many of 10 000 simulated series have the probability outside their limits after any of their runs."""
+    chance = random.Random(31)
+    fits = covered(p, runs, limits)
+    missed = 0
+    for _ in range(10_000):
+        k = 0
+        for inside in fits:
+            k += chance.random() < p
+            if k not in inside:
+                missed += 1
+                break
+    return missed
+
+
+@pytest.mark.parametrize(("p", "missed"), [(0.5, 347), (0.9, 290), (0.99, 174)])
+def test_limits_at_every_look_keep_their_promise_at_every_look(p: float, missed: int) -> None:
+    assert series_missed(p, 400, "every look") == missed <= 500
+
+
+def test_limits_of_one_look_do_not() -> None:
+    assert series_missed(0.9, 150, "one look") == 3370
+
+
+@pytest.mark.parametrize(("k", "n"), [(0, 1), (1, 1), (3, 4), (19, 20), (197, 200), (500, 1000), (99_990, 100_000)])
+def test_limits_at_every_look_are_where_a_mixture_is_twenty_times_as_likely(k: int, n: int) -> None:
+    mixture = Fraction(1, (n + 1) * comb(n, k))
+    for limit in (lower_limit(k, n, 0.95, "every look"), upper_limit(k, n, 0.95, "every look")):
+        if 0.0 < limit < 1.0:
+            of_limit = k * log(limit) + (n - k) * log1p(-limit)
+            assert log(mixture.numerator) - log(mixture.denominator) - of_limit == pytest.approx(log(20), abs=1e-6)
+    assert lower_limit(k, n, 0.95, "every look") < max(lower_limit(k, n, 0.95), 1e-9)
+    assert runs_to_decide(0, 0, 0.95, 0.95, "every look") == 158
 
 
 @pytest.mark.parametrize(

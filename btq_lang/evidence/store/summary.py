@@ -37,6 +37,7 @@ from btq_lang.util.text import Span, counted
 
 if TYPE_CHECKING:
     from btq_lang.catalog.units import Unit
+    from btq_lang.evidence.odds import Limits
 
     Row: TypeAlias = Mapping[str, Any]
     Ask: TypeAlias = Callable[[str], Sequence[Row]]  # the rows of a question, by the names of their columns
@@ -135,6 +136,7 @@ def _verdict(row: Row, counts: Row | None, broken: Sequence[Row], recent: Sequen
         unit=row["counts"],
         worst=tally.worst,
         interval=tally.interval(),
+        limits=tally.limits,
         confidence=row["confidence"],
         more=tally.more(),
         violations=tuple(tally.violations),
@@ -190,7 +192,9 @@ def _tally(row: Row) -> Tally:
     if row["odds"] is not None:
         odds = Odds(row["relation"], row["odds"], row["experiments"], "", Place(Span(0, 0)))
     is_of_odds = odds is None or odds.experiments == row["last_of"]
-    tally = Tally(odds, row["confidence"], row["last_number"] if is_of_odds else None)
+    is_windowed = row["last_number"] is not None or row["last_seconds"] is not None
+    limits: Limits = "window" if is_windowed else "every look"  # a store is looked at again when it has grown
+    tally = Tally(odds, row["confidence"], limits, row["last_number"] if is_of_odds else None)
     tally.cut_off = int(row["cut_off"])
     return tally
 
