@@ -4,8 +4,8 @@ One invariant: such a folder is whole, because it gets its name by one rename wh
 that is judged again leaves its set as it is if the same was found; otherwise the new set takes the old one's place.
 
 Two renames replace a set: the old folder goes aside, the new one takes its name.  If a writer is killed between them,
-the next one gives the old folder its name back.  Folders that killed writers were still filling have names that nobody
-reads, and are removed a day after their last change.
+the next one gives the old folder its name back.  Folders that killed writers were still filling are
+never read, and are removed a day after their last change.
 """
 
 from __future__ import annotations
