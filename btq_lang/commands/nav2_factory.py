@@ -151,7 +151,7 @@ def _new_in_target(
 def _key(finding: _Finding) -> tuple[object, ...]:
     """What two distributions have in common where they find the same; nodes without library share a place."""
     path, found = finding
-    return path, found.rule, found.span, found.related[:1]
+    return path, found.rule, found.span, found.related[:1] if found.rule == "unloaded-node" else ()
 
 
 def _found(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) -> Iterator[_Finding]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.btcpp.listed_trees import listed_trees
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import DISTRIBUTIONS
 from btq_lang.catalog.nav2.navigator import NAVIGATORS, OWN_PACKAGE, PARAMETERS
@@ -57,6 +58,7 @@ def findings(
     of_file = [*_parameters(parameters, distribution), *libraries.findings()]
     for each in found:
         of_file += _places(each)
+        of_file += _without_main(each, parameters) if distribution != "lyrical" else ()
         of_file += _unloaded(each, parameters, libraries)
     of_file += _folders(found, parameters)
     yield from ((None, each) for each in dict.fromkeys(of_file))
@@ -113,6 +115,28 @@ def _places(found: Loaded) -> Iterator[Diagnostic]:
         message = f"no file in the search directories has a tree `{load.main.text}`{likely}"
         notes = ("a file is named by a path that ends in `.xml`",)
         yield Diagnostic("missing-nav2-tree", load.main.span, message, notes=notes)
+
+
+def _without_main(found: Loaded, parameters: Parameters) -> Iterator[Diagnostic]:
+    """A file with several trees, with those that it includes, none of which is the main one; Lyrical creates a tree by
+    its ID."""
+    load, workspace = found.load, found.workspace
+    top = workspace.files.get((load.tree.path if load.tree is not None else None) or "")
+    listed = listed_trees(top.source) if top is not None else None
+    if top is None or listed is None or listed.main is not None:
+        return
+    trees = {
+        tree.name.text: Place(file.on_disk(tree.name.span.shifted(file.start_of(tree))), file.path)
+        for file in (workspace.files[path] for path in workspace.registered)
+        for tree in file.of_type(Tree)
+        if tree.name is not None
+    }
+    if len(trees) > 1:
+        place = Place(Span(0, 0), top.path)
+        message = f"bt_navigator refuses `{_name(place)}`: nothing says which of {len(trees)} trees is the main one"
+        related = (Related([*trees.values()][1], "second tree"),)
+        notes = ("write `main_tree_to_execute`",)
+        yield Diagnostic("refused-tree-file", _span(place, load, parameters), message, related, notes)
 
 
 def _folders(found: Iterable[Loaded], parameters: Parameters) -> Iterator[Diagnostic]:

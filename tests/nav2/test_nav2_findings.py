@@ -59,8 +59,9 @@ def test_the_tree_is_shown_beside_a_library(robot: Path) -> None:
 
 def test_a_node_of_nobody(robot: Path) -> None:
     (robot / "trees/own.xml").write_text(
-        '<root BTCPP_format="3"><BehaviorTree ID="Main"><SequenceStar><Own/><SubTree ID="Other"/></SequenceStar>'
-        '</BehaviorTree><BehaviorTree ID="Other"><Inverter><AlwaysSuccess/></Inverter></BehaviorTree></root>\n'
+        '<root BTCPP_format="3" main_tree_to_execute="Main"><BehaviorTree ID="Main"><SequenceStar><Own/>'
+        '<SubTree ID="Other"/></SequenceStar></BehaviorTree><BehaviorTree ID="Other"><Inverter>'
+        "<AlwaysSuccess/></Inverter></BehaviorTree></root>\n"
     )
     text = f"{HEAD}{POSE}/trees/own.xml\n"
     message = "1:1 error unloaded-node no library that bt_navigator loads has a node `Own`"
@@ -122,6 +123,29 @@ def test_nav2s_own_tree_counts_where_none_is_named(robot: Path, monkeypatch: pyt
     message = UNLOADED.format("FollowPath", "nav2_follow_path_action_bt_node")
     text = f"{HEAD}    plugin_lib_names: [nav2_spin_action_bt_node]\n"
     assert shown(robot, text, "humble") == [f"3:5 error unloaded-node {message}"]
+
+
+@pytest.mark.parametrize("distribution", ["humble", "jazzy", "kilted"])
+def test_several_trees_and_none_is_the_main_one(robot: Path, distribution: str) -> None:
+    text = f"{HEAD}{POSE}/several/two.xml\n"
+    why = "nothing says which of 2 trees is the main one"
+    assert shown(robot, text, distribution) == [f"3:33 error refused-tree-file bt_navigator refuses `two.xml`: {why}"]
+    two = robot / "several/two.xml"
+    two.write_text(two.read_text().replace("<root", '<root main_tree_to_execute="One"'))
+    assert shown(robot, text, distribution) == []
+
+
+def test_included_trees_count_before_lyrical(robot: Path) -> None:
+    (robot / "trees/more.xml").write_text(
+        '<root BTCPP_format="4"><include path="../same/navigate.xml"/><BehaviorTree ID="More"><SubTree ID="Navigate"/>'
+        "</BehaviorTree></root>\n"
+    )
+    text = f"{HEAD}{POSE}/trees/more.xml\n    bt_search_directories: []\n    navigators: [navigate_to_pose]\n"
+    found = [each for _, each in findings_in(robot, text, "jazzy") if each.rule == "refused-tree-file"]
+    assert [(Path(each.related[0].place.path or "").name, each.notes) for each in found] == [
+        ("more.xml", ("write `main_tree_to_execute`",))
+    ]
+    assert shown(robot, text, "lyrical") == []
 
 
 # ---- the folders of Lyrical ----

@@ -202,7 +202,7 @@ _TABLE = (
     Rule("unloaded-node", _E, "a node in a tree of which bt_navigator does not load the library"),
     Rule("missing-nav2-tree", _E, "a tree or a folder that bt_navigator does not find"),
     Rule("skipped-tree-file", _W, "a file in a search directory that bt_navigator skips"),
-    Rule("refused-tree-file", _E, "a file that keeps bt_navigator from loading any tree"),
+    Rule("refused-tree-file", _E, "a file that keeps bt_navigator from loading trees"),
     Rule("skipped-condition", _W, "a condition of IfThenElse or WhileDoElse that may be skipped: the engine throws"),
     Rule("unreachable-child", _W, "a child that can never run"),
     Rule(
