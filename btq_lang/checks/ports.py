@@ -42,6 +42,7 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         known = ports.all
         names = ", ".join(f"`{port.name}`" for port in known)
         required = {port.name for port in ports.required}
+        stale = _of_model_in_xml(view, seen)
         of_nav2 = ports_of(seen.id.text) if seen.id is not None and _is_of_pool(view, seen) else None
         for key, likely in meant.items():
             if key.text in (of_nav2 or ()):
@@ -56,7 +57,7 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "unknown-port",
                 key.span,
-                f"{seen.shown_kind} has no port `{key.text}`{did_you_mean(likely)}",
+                f"{seen.shown_kind} has no port `{key.text}`{did_you_mean(likely) or stale}",
                 related=_declared(view, seen),
                 notes=(f"it has {names}" if known else "it has no ports", *_of_version_3(view, seen, key.text)),
                 fixes=fixes,
@@ -267,6 +268,18 @@ def _of_version_3(view: View, seen: ResolvedNode, key: str) -> tuple[str, ...]:
     if seen.kind is None or (seen.kind.tag, key) not in OLD_PORTS:
         return ()
     return (f"version 3 of the engine has `{key}`", *way_in(view))
+
+
+def _of_model_in_xml(view: View, seen: ResolvedNode) -> str:
+    """The rest of a sentence about a port, if only a model in XML says which ones a node has: it may be an old one."""
+    name = seen.id if seen.is_defined and not (seen.kind or seen.is_subtree) else None
+    found = view.declaration(Kind.MODEL, name.text) if name is not None else None
+    origin = lookups.origin(view.store, found.path) if found is not None else None
+    if name is None or found is None or origin is None or origin.nodes is not None:
+        return ""
+    if view.is_repeated(Kind.MODEL, name.text):
+        return ""
+    return f": its model in {view.project.shown(found.path)} lacks it"
 
 
 def _is_of_pool(view: View, seen: ResolvedNode) -> bool:

@@ -135,3 +135,13 @@ def test_a_node_of_nav2_is_not_taken_for_another_of_its_name() -> None:
         "unknown-port: `Wait` has no port `wait_time`; did you mean `wait_duration`?"
     ]
     assert problems(pool(misspelt, "p/b.xml: " + other.format("duration"))) == []
+
+
+def test_the_model_that_lacks_a_port_is_named() -> None:
+    """It may be older than the node; a port that is surely misspelt is not the model's mistake."""
+    main = "p/a.xml: " + tree("Main", '<Go spaed="1"/>')
+    lacks = "unknown-port: `Go` has no port `spaed`: its model in p/b.xml lacks it"
+    assert problems(pool(main, "p/b.xml: " + model('duration" default="1') + tree("Other"))) == [lacks]
+    assert problems(pool(main, "p/b.xml: " + model("speed") + tree("Other"))) == [
+        "unknown-port: `Go` has no port `spaed`; did you mean `speed`?"
+    ]
