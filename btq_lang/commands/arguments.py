@@ -256,6 +256,7 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         "  btq verify bag/ --mission nav.btq                  a ROS 2 bag with /behavior_tree_log of Nav2\n"
         "  btq verify run.db3 --signals battery.csv           with samples of signals\n"
         "  btq verify logs/ --format junit -o verdicts.xml    for CI\n"
+        "  btq verify bag/ --events violations.mcap           for Foxglove and rqt_console\n"
         "  btq verify logs/ --store evidence --label v1.4     kept beside earlier runs\n"
         "  btq verify --store evidence --by label             the verdicts of all that is kept\n",
     )
@@ -277,6 +278,11 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         "--signals",
         metavar="FILE",
         help="samples as CSV or Parquet: seconds since the epoch, then one column for each signal or entry",
+    )
+    parser.add_argument(
+        "--events",
+        metavar="FILE",
+        help="write the violations as messages of a bag (.mcap), for the timeline of Foxglove and for rqt_console",
     )
     kept = parser.add_argument_group("keeping verdicts")
     kept.add_argument(

@@ -53,10 +53,15 @@ def write_output(command: str, path: str | None, text: str) -> int:
     if path is None or path == "-":
         write_stdout(text)
         return 0
+    return write_file(command, path, text)
+
+
+def write_file(command: str, path: str, content: str | bytes) -> int:
+    """Write a file, whole or not at all; returns the command's exit code."""
     target = absolute(path)
     try:
         os.makedirs(os.path.dirname(target), exist_ok=True)
-        write_whole(target, text)
+        write_whole(target, content)
     except OSError as error:
         print(f"btq {command}: {LoadProblem(target, f'cannot be written: {error.strerror}')}", file=sys.stderr)
         return 2

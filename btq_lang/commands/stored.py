@@ -70,6 +70,6 @@ def summarise(options: Namespace) -> int:
     return print_report(options, report, ())
 
 
-_OF_LOGS: Final = ("--mission", "--signals")
+_OF_LOGS: Final = ("--mission", "--signals", "--events")
 _OF_SUMMARY: Final = ("--by", "--engine")
 _OF_KEEPING: Final = ("--label", "--label-by", "--robot", "--robot-by")

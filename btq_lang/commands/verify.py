@@ -17,6 +17,7 @@ from btq_lang.commands.files import Files, usage_problem
 from btq_lang.commands.output import form_of, form_problem
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.stored import opened, store_problem, summarise
+from btq_lang.commands.verdict_events import events_problem, overwrites, write_events
 from btq_lang.commands.verdict_formats import FORMATS
 from btq_lang.commands.verdict_report import print_report
 from btq_lang.evidence.identity import Candidate
@@ -36,13 +37,16 @@ if TYPE_CHECKING:
 
 def run(options: Namespace) -> int:
     """Read the logs, or a store, and print the verdicts."""
-    if problem := usage_problem([*options.logs, *options.mission]) or store_problem(options):
+    named = [*options.logs, *options.mission]
+    if problem := usage_problem(named) or store_problem(options) or events_problem(options):
         print(f"btq verify: {problem}", file=sys.stderr)
         return 2
     if options.store is not None and not options.logs:
         return summarise(options)
     problems: list[str] = []
     logs, missions, samples = _given(options, problems)
+    if options.events is not None and (problem := overwrites(options.events, [*options.logs, *logs])):
+        problems.append(problem)
     roots = (each.workspace.project.root for each in missions if each.workspace.project.evidence)
     home = find_project(next(roots, "."))
     sources, of_files = signal_sources(home.project, shown(home.path or home.project.root), missions, problems)
@@ -68,6 +72,8 @@ def run(options: Namespace) -> int:
         for note in (*remarks, *foreign_runs(report)):
             print(f"btq verify: {note}", file=sys.stderr)
         code = print_report(options, report, missions)
+        if options.events is not None:
+            code = max(code, write_events(options.events, report, logs))
     for problem in problems:
         print(f"btq verify: {problem}", file=sys.stderr)
     return 2 if problems else code

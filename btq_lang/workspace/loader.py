@@ -254,10 +254,10 @@ def is_special(path: str) -> bool:
     return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
 
 
-def write_whole(path: str, text: str) -> None:
-    """Write a text into a file so that at every moment the file is entirely the old one or the new one.
+def write_whole(path: str, content: str | bytes) -> None:
+    """Write a text, or bytes, into a file so that at every moment the file is entirely the old one or the new one.
 
-    The new text goes into a temporary file beside it, which then takes the name (POSIX rename; MoveFileEx on Windows).
+    The new one goes into a temporary file beside it, which then takes the name (POSIX rename; MoveFileEx on Windows).
     A file that exists keeps its mode and its byte order mark, and a link stays a link.
 
     Raises:
@@ -266,7 +266,7 @@ def write_whole(path: str, text: str) -> None:
     """
     path = os.path.realpath(path)
     folder = os.path.dirname(path)
-    data = text.encode("utf-8")
+    data = content.encode("utf-8") if isinstance(content, str) else content
     mode = None
     if os.path.exists(path):
         if not os.access(path, os.W_OK):  # a rename would not check that

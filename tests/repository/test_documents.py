@@ -16,6 +16,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from evidence_bags import names_of, tree_log, write_bag
 from evidence_logs import as_logged, btlog, rows, samples, write_db3
 
 from btq_lang.btcpp.document import write
@@ -175,6 +176,7 @@ def _write_logs(folder: Path) -> None:
     (folder / "logs").mkdir()
     (folder / "logs" / "run.btlog").write_bytes(btlog(xml, rows("0 1R")))
     write_db3(folder / "run.db3", xml, [rows("0 1R")])
+    write_bag(folder / "bag", tree_log(rows("0 1R"), names_of(xml)))
     (folder / "battery.csv").write_text(samples("battery", {0: 50}), encoding="utf-8")
 
 

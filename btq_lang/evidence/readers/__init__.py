@@ -17,6 +17,7 @@ from btq_lang.evidence.readers.tree import NotALog as NotALog
 if TYPE_CHECKING:
     from types import ModuleType
 
+    from btq_lang.evidence.readers.topics import Clock
     from btq_lang.workspace.project_evidence import SignalSource
 
 SUFFIXES: Final = (".btlog", ".db3", ".btdb", ".mcap")  # of the files read below a folder
@@ -60,6 +61,15 @@ def samples_of_bags(
                 for time, value in zip(series.times, series.values, strict=True):
                     into.add(time, value)
     return found, remarks, bags
+
+
+def clocks(path: str) -> dict[str, Clock]:
+    """The clock of each log in a bag, by topic; empty for a log that is not a bag.
+
+    Raises:
+        NotALog, OSError: it cannot be read.
+    """
+    return tree_log.clocks(path) if _reader(path) is tree_log else {}
 
 
 def _reader(path: str) -> ModuleType:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from array import array
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.model import Series, is_sample
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Clock:
-    """The clock of a tree's log, in µs since the epoch, and how a bag's times of reception map to it.
+    """The clock of a tree's log, in µs since the epoch, and how it and a bag's times of reception map to each other.
 
     Computed from each message of the log: when it was received, and the newest stamp in it.
     """
@@ -43,25 +43,35 @@ class Clock:
 
     def of_reception(self, times: Times) -> Times | None:
         """Converts times of reception to this clock; None if that is impossible."""
-        if self.is_of_the_bag:
-            return times
-        from numpy import argsort, interp, unique
+        return times if self.is_of_the_bag else _mapped(times, self._received, self._stamped)
 
-        order = argsort(self._received, kind="stable")
-        known, first = unique(self._received[order], return_index=True)
-        there = self._stamped[order][first]
-        if len(known) < 2:
-            return times + (there[0] - known[0]) if len(self._received) == 1 else None
-        rate = (there[-1] - there[0]) / (known[-1] - known[0])
-        placed = interp(times, known, there)
-        placed[times < known[0]] = there[0] + (times[times < known[0]] - known[0]) * rate
-        placed[times > known[-1]] = there[-1] + (times[times > known[-1]] - known[-1]) * rate
-        return placed.astype("int64")
+    def to_reception(self, times: Sequence[int]) -> Sequence[int]:
+        """Converts times of this clock to times of reception; where that is impossible, it leaves them as they are."""
+        from numpy import array as numbers
+
+        mapped = None if self.is_of_the_bag else _mapped(numbers(times, "int64"), self._stamped, self._received)
+        return times if mapped is None else [int(each) for each in mapped]
 
     def overlaps(self, times: Times) -> bool:
         """Whether times are close to when the tree ran."""
         begin, end = int(self._stamped.min()) - _FAR_APART, int(self._stamped.max()) + _FAR_APART
         return begin <= int(times.max()) and int(times.min()) <= end
+
+
+def _mapped(times: Times, of: Times, to: Times) -> Times | None:
+    """Converts times of one clock to another, both of which are known at some moments; None if they are too few."""
+    from numpy import argsort, interp, unique
+
+    order = argsort(of, kind="stable")
+    known, first = unique(of[order], return_index=True)
+    there = to[order][first]
+    if len(known) < 2:
+        return times + (there[0] - known[0]) if len(of) == 1 else None
+    rate = (there[-1] - there[0]) / (known[-1] - known[0])
+    placed = interp(times, known, there)
+    placed[times < known[0]] = there[0] + (times[times < known[0]] - known[0]) * rate
+    placed[times > known[-1]] = there[-1] + (times[times > known[-1]] - known[-1]) * rate
+    return placed.astype("int64")
 
 
 class Topics:

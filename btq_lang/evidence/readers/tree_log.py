@@ -86,6 +86,20 @@ def samples(path: str, sources: Iterable[SignalSource]) -> tuple[dict[str, Serie
         return found, [*bag.remarks, *topics.remarks]
 
 
+def clocks(path: str) -> dict[str, Clock]:
+    """The clock of each log in a bag, by topic.
+
+    Raises:
+        NotALog: it is not a bag.
+        OSError: it cannot be read.
+    """
+    with opened(path) as bag:
+        logs = {each.topic: _Changes() for each in bag.of_type(TREE_LOG)}
+        for topic, received, message in bag.messages(bag.of_type(TREE_LOG)):
+            logs[topic].add(received, message)
+    return {topic: changes.clock() for topic, changes in logs.items()}
+
+
 def _namespace(topic: str) -> str:
     return topic.rpartition("/")[0]
 
