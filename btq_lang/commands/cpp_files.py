@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from btq_lang.commands.factory_files import in_folder
+from btq_lang.commands.factory_files import cpp_in_folder
 from btq_lang.commands.node_writers import models_in_btq
 from btq_lang.cpp.findings import findings
 from btq_lang.cpp.grammar import GrammarMissing
@@ -23,7 +23,7 @@ from btq_lang.util.record import Record, replace
 from btq_lang.util.source_map import Places
 from btq_lang.util.text import LineIndex, Placed, Span, counted
 from btq_lang.workspace.file import File, Origin
-from btq_lang.workspace.loader import Found, LoadProblem, matching, read
+from btq_lang.workspace.loader import Found, LoadProblem, excluder, matching, read
 from btq_lang.workspace.queries import Store
 
 if TYPE_CHECKING:
@@ -67,12 +67,13 @@ class CppFiles:
         project, problems = home.project, []
         own: dict[str, None] = {}
         for pattern in project.cpp:
-            found = in_folder(pattern, project.root, matching)
+            found = cpp_in_folder(pattern, project.root, matching)
             own.update(dict.fromkeys(found))
             if not found:
                 problems.append(_problem(home, pattern, f"no C++ file matches `{pattern}`"))
         paths = dict.fromkeys((*own, *(path for each in factories for path in each.cpp_files)))
-        texts = {path: text for path in paths if (text := read(path)[0]) is not None}
+        is_excluded = excluder(project)
+        texts = {path: text for path in paths if not is_excluded(path) and (text := read(path)[0]) is not None}
         try:
             nodes, files = self.files(texts, project.root)
         except GrammarMissing:

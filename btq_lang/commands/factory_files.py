@@ -43,7 +43,7 @@ def resolved(
     lost: dict[str, None] = {}
 
     def matched(pattern: str) -> tuple[str, ...]:
-        found = in_folder(pattern, root, find)
+        found = (cpp_in_folder if pattern.endswith(CPP_SUFFIXES) else in_folder)(pattern, root, find)
         if not found:
             lost[pattern] = None
         return found
@@ -77,6 +77,14 @@ def in_folder(pattern: str, root: str, find: Callable[[str, str], tuple[str, ...
     return find(folder, inside) if folder is not None else ()
 
 
+def cpp_in_folder(pattern: str, root: str, find: Callable[[str, str], tuple[str, ...]]) -> tuple[str, ...]:
+    """As `in_folder`, for C++: `**` leaves out the folders of tests, whose mocks have the names of real nodes."""
+    found = in_folder(pattern, root, find)
+    tests = _TESTS.difference(pattern.split("/")) if "**" in pattern else frozenset()
+    above = (_place(pattern, root)[0] or "").rstrip("/") + "/"
+    return tuple(path for path in found if tests.isdisjoint(path.removeprefix(above).split("/")[:-1]))
+
+
 def groot_projects(pools: Iterable[Iterable[str]], wanted: Container[str]) -> Iterator[Factory]:
     """The projects of Groot2 in some pools that register one of the wanted files, or are one, as factories."""
     for path in dict.fromkeys(path for pool in pools for path in pool if path.endswith(GROOT_SUFFIX)):
@@ -92,3 +100,6 @@ def _place(pattern: str, root: str) -> tuple[str | None, str]:
         return root, pattern
     package, _, inside = pattern.removeprefix(PACKAGE).partition("/")
     return package_folder(package, root), inside
+
+
+_TESTS: Final = frozenset(("test", "tests"))

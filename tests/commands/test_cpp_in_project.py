@@ -160,6 +160,25 @@ def test_no_node_is_unknown_where_one_may_be_hidden(robot: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize("line", ["nodes = {}\n", '[[factory]]\nname = "a"\nload = ["trees/*.btq"]\nnodes = {}\n'])
+def test_tests_and_excluded_sources_register_nothing(robot: Path, line: str) -> None:
+    for folder in ("test/unit", "src/mocks"):
+        (robot / folder).mkdir(parents=True)
+        name = folder.partition("/")[2]
+        write(robot, f"{folder}/{name}.cpp", f'void add(F& f) {{ f.registerSimpleAction("Of_{name}", drive); }}\n')
+    write(robot, "trees/m.btq", "BehaviorTree M\n    ->\n        Of_unit (no = 1)\n        Of_mocks (no = 1)\n")
+
+    def known(patterns: str, more: str = "") -> list[str]:
+        write(robot, "btq.toml", more + line.format(patterns))
+        found = check(robot, "trees", "--select", "unknown-port")
+        return [each.split("`")[1] for each in found]
+
+    assert known('["**/*.cpp"]') == ["Of_mocks"]
+    assert known('["**/*.cpp", "test/**/*.cpp"]') == ["Of_unit", "Of_mocks"]
+    assert known('["test/unit/*.cpp"]') == ["Of_unit"]
+    assert known('["**/*.cpp"]', 'exclude = ["src/mocks/"]\n') == []
+
+
 def test_messages_name_other_files_from_the_folder_of_the_project(robot: Path) -> None:
     write(robot, "src/other.cpp", 'void add(F& f) { f.registerSimpleAction("Drive", drive); }\n')
     write(robot, "trees/m.btq", "BehaviorTree Main\n    IsOpen\n")
