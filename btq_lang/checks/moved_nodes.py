@@ -12,6 +12,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, FILES
 from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_PORTS
 from btq_lang.checks import lookups
+from btq_lang.checks.pointers import pointed_at
 from btq_lang.checks.ports import adding_fix
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.syntax.tree import written
@@ -33,15 +34,29 @@ def is_of_nav2(view: View, distribution: str, node: str) -> bool:
 def changes_of(view: View, seen: ResolvedNode, name: Word, steps: tuple[str, ...]) -> Iterator[Diagnostic]:
     """What changes for a node of Nav2 on some steps."""
     renamed = _first(RENAMED, ((step, name.text) for step in steps))
-    if _ports(view, steps[-1], name.text) is None:
-        yield _without_node(view, name, renamed, steps)
     before, ports = _ports(view, steps[0], name.text), _ports(view, steps[-1], renamed or name.text)
     if before is not None and ports is not None:
         yield from _without_ports(seen, name.text, before - ports, steps)
     is_forward = DISTRIBUTIONS.index(steps[-1]) > DISTRIBUTIONS.index(steps[0])
-    for change in CHANGES:
-        if is_forward and change.since in steps[1:] and change.concerns(name.text):
-            yield from changed(view, seen, name, change)
+    differing = [
+        found
+        for change in (CHANGES if is_forward else ())
+        if change.since in steps[1:] and change.concerns(name.text) and (not change.when or _collects(view, seen))
+        for found in changed(view, seen, name, change)
+    ]
+    if _ports(view, steps[-1], name.text) is None:
+        yield _without_node(view, name, renamed, steps, [each.message for each in differing])
+    else:
+        yield from differing
+
+
+def _collects(view: View, seen: ResolvedNode) -> bool:
+    """Whether bt_navigator may collect the error code of a node in the distribution that the tree is for."""
+    value = seen.node.attribute("error_code_id")
+    name = pointed_at("error_code_id", value.text) if value is not None else None
+    if not view.look_up(lookups.has_parameters):
+        return True
+    return any(entry == name for entry, _ in view.look_up(lookups.outside_entries))
 
 
 def changed(view: View, seen: ResolvedNode, name: Word, change: Change) -> Iterator[Diagnostic]:
@@ -70,14 +85,17 @@ def _ports(view: View, distribution: str, node: str) -> frozenset[str] | None:
     return lookups.ports_in_file(view.store, FILES[distribution], Kind.MODEL, node)
 
 
-def _without_node(view: View, name: Word, renamed: str | None, steps: tuple[str, ...]) -> Diagnostic:
+def _without_node(
+    view: View, name: Word, renamed: str | None, steps: tuple[str, ...], differing: Iterable[str]
+) -> Diagnostic:
+    """The finding for a node that is gone, with what else changes on the way: it is to be replaced in any case."""
     gone = next(step for step in steps if _ports(view, step, name.text) is None)
     instead = INSTEAD.get((gone, name.text))
     return Diagnostic(
         "target-breaks",
         name.span,
         f"Nav2 has no `{name.text}` in {gone.title()}" + _called(renamed),
-        notes=(f"write {instead}",) if instead else (),
+        notes=(*([f"write {instead}"] if instead else ()), *differing),
         fixes=(replace_fix(f"Replace `{name.text}` with `{renamed}`", name.span, renamed),) if renamed else (),
     )
 

@@ -18,6 +18,7 @@ from btq_lang.catalog.nav2.changes import CHANGES
 from btq_lang.catalog.versions import at_least, last_of, numbers
 from btq_lang.checks import check
 from btq_lang.commands.target import with_target
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
 
@@ -28,18 +29,21 @@ WITH_PORT = {
     "goals": "ComputePathThroughPoses",
     "input_goals": "RemovePassedGoals",
     "error_code_id": "Spin",
-    "path": "FollowPath",
 }
 
 
 def moved(text: str, origin: str, target: str) -> list[str]:
     """What is found of the two rules."""
+    return show(text, found_moved(text, origin, target))
+
+
+def found_moved(text: str, origin: str, target: str) -> list[Diagnostic]:
     workspace = Workspace.of({"main.btq": text}, Project(node_files=(PACKAGED[f"nav2-{origin}"],)))
     workspace = with_target(workspace, f"nav2-{target}")
     found = [each for each in check(workspace, "main.btq") if each.rule.startswith("target-")]
     assert_sound(workspace, "main.btq", found)
     assert_fixes_mend(workspace, "main.btq", found)
-    return show(text, found)
+    return found
 
 
 def tree(*nodes: str) -> str:
@@ -58,7 +62,9 @@ def sample(change: Change) -> str:
 def test_each_change_is_found_on_the_step_that_brings_it(change: Change) -> None:
     before = DISTRIBUTIONS[DISTRIBUTIONS.index(change.since) - 1]
     said = f"from {change.since.title()} on"
-    assert [line for line in moved(tree(sample(change)), before, change.since) if said in line and change.what in line]
+    found = found_moved(tree(sample(change)), before, change.since)
+    said_of = [line for each in found for line in (each.message, *each.notes)]  # a note if the node is gone
+    assert [line for line in said_of if line.startswith(said) and change.what in line]
     assert moved(tree(sample(change)), before, before) == []
 
 
@@ -130,10 +136,6 @@ def test_what_a_tree_of_humble_meets_on_the_way_to_lyrical() -> None:
     )
     assert moved(f"{text}BehaviorTree Rest\n    Own\n", "humble", "lyrical") == [
         "3:9 error target-breaks «IsPathValid» Nav2 has no `IsPathValid` in Lyrical: it is called `ValidatePath`",
-        "3:9 warning target-differs «IsPathValid» from Kilted on `IsPathValid` ends the goal with an exception if "
-        "there is no answer in time; before, it failed",
-        "3:9 warning target-differs «IsPathValid» from Lyrical on `IsPathValid` takes a cost up to 254 for free "
-        "without `max_cost`, no longer up to 253",
         "4:68 error target-breaks «robot_frame» `TruncatePathLocal` has no port `robot_frame` in Lyrical: it is called "
         "`robot_base_frame`",
         "5:17 error target-breaks «Rest» from Jazzy on a SubTree has a blackboard of its own: Nav2's nodes in it "
@@ -141,6 +143,23 @@ def test_what_a_tree_of_humble_meets_on_the_way_to_lyrical() -> None:
         "5:30 warning target-differs «goal» from 4.0 on `goal` is a text that the SubTree gets, no longer the name "
         "of an entry",
     ]
+
+
+def test_what_else_changes_for_a_node_that_is_gone_is_in_its_notes() -> None:
+    (found,) = found_moved(tree("IsPathValid (path = {way})"), "humble", "lyrical")
+    assert (found.rule, found.notes) == (
+        "target-breaks",
+        (
+            "from Kilted on `IsPathValid` ends the goal with an exception if there is no answer in time; before, it "
+            "failed",
+            "from Lyrical on `IsPathValid` without `max_cost` regards a cost up to 254 as free, no longer up to 253",
+        ),
+    )
+
+
+def test_a_path_is_empty_only_for_nodes_that_read_it() -> None:
+    text = tree("ComputePathToPose (goal = {goal} path = {path})", "FollowPath (path = {path})")
+    assert [line.partition(" ")[0] for line in moved(text, "kilted", "lyrical")] == ["4:28"]
 
 
 def test_a_node_that_comes_back_is_missed_only_between() -> None:

@@ -101,6 +101,20 @@ def test_a_target(robot: Path) -> None:
     assert check(robot, "nav2_params.yaml", *to_lyrical, "--ignore", "target-breaks") == [UNLOADED, TWICE]
 
 
+def test_an_error_code_that_was_never_collected_does_not_change(robot: Path) -> None:
+    nodes = '<Spin error_code_id="{spin_code}"/><Wait error_code_id="{wait_code}"/>'
+    tree = f'<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence>{nodes}</Sequence></BehaviorTree></root>\n'
+    (robot / "trees/main.xml").write_text(tree)
+    (robot / "nav2_params.yaml").write_text(
+        PARAMETERS.replace("goal_blackboard_id: target", "error_code_names: [spin_code]")
+    )
+    found = check(robot, "trees/main.xml", "--target", "nav2-kilted")
+    assert [each for each in found if "[target-" in each] == [
+        "trees/main.xml:1:79: warning[target-differs] from Kilted on `Spin` writes its error where nobody collects it: "
+        "results have only entries that end in `_error_code`"
+    ]
+
+
 def test_a_target_of_parameters_that_tell_their_distribution(robot: Path) -> None:
     (robot / "btq.toml").unlink()
     names = "[nav2_spin_action_bt_node, nav2_is_path_valid_condition_bt_node]"

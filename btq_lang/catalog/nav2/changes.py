@@ -150,6 +150,7 @@ CHANGES: Final = (
         "write an entry such as `{follow_path_error_code}`",
         "error_code_id",
         r"\{(?!.*_error_code\}).+\}",
+        when="collected",
     ),
     Change(
         "kilted",
@@ -161,7 +162,7 @@ CHANGES: Final = (
     Change(
         "lyrical",
         ("IsPathValid",),
-        "takes a cost up to 254 for free without `max_cost`, no longer up to 253",
+        "without `max_cost` regards a cost up to 254 as free, no longer up to 253",
         port="max_cost",
         value=None,
         keeps="253",
@@ -192,7 +193,7 @@ CHANGES: Final = (
     Change("lyrical", _CLEARS, "fails if the service answers that it has not succeeded; before, it succeeded"),
     Change(
         "lyrical",
-        (ANY,),
+        ("FollowPath", "GetPoseFromPath", "IsPathValid", "PathExpiringTimer", "PathLongerOnApproach"),
         "finds an empty path in `{path}` at the start of each goal, no longer that of the last goal",
         port="path",
         value=r"\{path\}",
