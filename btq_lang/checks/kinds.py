@@ -21,7 +21,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES
-from btq_lang.syntax.tree import Entry, Include, Model, Word, quote, written
+from btq_lang.syntax.tree import Entry, Include, Model, Tree, Word, quote, written
 from btq_lang.util.spelling import did_you_mean, distance, without_digits
 from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Symbol, has_ports_of, interface
@@ -48,7 +48,8 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         elif name is None:
             continue
         elif view.defines(Kind.TREE, name.text):
-            yield _tree_as_node(view, seen, name)
+            if not is_of_tree_named(entry, name.text):  # else the tree's name is the mistake
+                yield _tree_as_node(view, seen, name)
         elif view.is_pooled(Kind.MODEL, name.text):
             continue  # models that differ: whichever the program means, it is known
         elif name.text in KNOWN_WORDS or _quoted_alias(seen, name) is not None:
@@ -59,6 +60,11 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic("unknown-node", name.span, message, fixes=(fix,))
         elif not (_is_refused(view, seen, name) or _is_clause(seen) or misspelt_clause(seen.node)):
             yield from _unknown(view, entry, seen, name)
+
+
+def is_of_tree_named(entry: Entry, name: str) -> bool:
+    """Whether an item is a tree of a name: no node in it can mean that tree."""
+    return isinstance(entry.item, Tree) and entry.item.name is not None and entry.item.name.text == name
 
 
 def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:

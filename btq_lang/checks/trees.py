@@ -268,6 +268,9 @@ def tree_named_like_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             f"a tree cannot have the name `{name.text}`: a node has it",
             related=view.declared_at(Kind.MODEL, name.text, "node declared here"),
         )
+    elif inside := [seen.id for seen in view.seen.strangers if seen.id is not None and seen.id.text == name.text]:
+        message = f"a tree cannot have the name `{name.text}`: a node in it has it"
+        yield Diagnostic("tree-named-like-node", name.span, message, (Related(Place(inside[0].span), "the node"),))
 
 
 def _as_node(use: Use) -> tuple[Fix, ...]:

@@ -270,6 +270,12 @@ def test_naming_the_mission() -> None:
 # ---- tree-root-count, tree-named-like-node ---------------------------------------------------------------------------
 
 
+def test_a_tree_with_a_node_of_its_own_name() -> None:
+    """Such a node cannot mean the tree that it is in; one elsewhere can."""
+    error = "1:14 error tree-named-like-node «Hover» a tree cannot have the name `Hover`: a node in it has it"
+    assert_problems("BehaviorTree Hover\n    ->\n        Action Hover\n        Hover\n", error)
+
+
 def test_one_diagnostic_for_all_the_nodes_too_many() -> None:
     assert_problems(
         "BehaviorTree A\n    X (\n        a = 1\n    )\n    Y\n    Z\n",
