@@ -100,16 +100,11 @@ def _places(found: Loaded) -> Iterator[Diagnostic]:
         is_folder = place is not load.tree
         what = "folder" if is_folder else "tree"
         message = f"cannot find the {what} `{place.named.text}`: {place.problem}"
-        notes: tuple[str, ...] = ("a launch file may put another value here",)
-        if place.is_certain:
-            effect = (
-                "without this folder bt_navigator loads no tree at all"
-                if is_folder
-                else "bt_navigator refuses to start"
-            )
-            notes = (effect,)
-        severity = None if place.is_certain else Severity.HINT
-        yield Diagnostic("missing-nav2-tree", place.named.span, message, notes=notes, severity=severity)
+        note = "a launch file may put another value here"
+        if place.severity is Severity.ERROR:
+            refused = "bt_navigator refuses to start"
+            note = "without this folder bt_navigator loads no tree at all" if is_folder else refused
+        yield Diagnostic("missing-nav2-tree", place.named.span, message, notes=(note,), severity=place.severity)
     if load.main is not None and load.is_whole and not _defines(found.workspace, load.main.text):
         likely = did_you_mean(near(load.main.text, _tree_names(found.workspace), 1))
         message = f"no file in the search directories has a tree `{load.main.text}`{likely}"

@@ -1,7 +1,8 @@
 """The trees that bt_navigator creates, and the files that it reads for them.
 
-One invariant: a file or folder that is not on this machine is a mistake only if the package that should have it is
-installed here: what a launch file or a build puts in its place is not known.
+One invariant: a file or folder that is not on this machine is an error only if the package that should have it is
+installed here, and a warning if its package is in the workspace: what a launch file or a build puts in its place is not
+known.
 """
 
 from __future__ import annotations
@@ -15,10 +16,13 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from btq_lang.btcpp.listed_trees import listed_trees
 from btq_lang.catalog.nav2.navigator import NAVIGATORS, OWN_PACKAGE
 from btq_lang.diagnostics.model import Place
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.nav2.parameters import Parameters, Text, is_id
 from btq_lang.util.record import Record
+from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span
 from btq_lang.workspace.config import Project
+from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import absolute, collect, matching, package_folder
 
 if TYPE_CHECKING:
@@ -33,13 +37,13 @@ class Located(Record):
         named: as it is written, and where; None: it counts because nothing is written.
         path: where it is; None if it is not here.
         problem: why it is not here, for a message; empty if nothing is wrong with that.
-        is_certain: whether it is not on the robot either.
+        severity: how sure it is that it is not on the robot either.
     """
 
     named: Text | None
     path: str | None = None
     problem: str = ""
-    is_certain: bool = False
+    severity: Severity = Severity.HINT
 
 
 class Skipped(Record):
@@ -130,17 +134,23 @@ def _located(named: Text, find: FindPackage, is_folder: bool = False) -> Located
     if "$(" in text:
         return Located(named)
     if not text:
-        return Located(named, None, "it is empty")
+        return Located(named, None, "it is empty", Severity.ERROR)
     if not os.path.isabs(text):
         return Located(named, None, "a relative path counts from the folder in which bt_navigator runs")
     path = absolute(text)
     if os.path.isdir(path) if is_folder else os.path.isfile(path):
         return Located(named, path)
     for package in packages:
+        lacks = f"the package in {package} has no such {_KINDS[is_folder]}"
         if _is_installed(package):
-            return Located(named, None, f"the package in {package} has no such {_KINDS[is_folder]}", True)
-        if (elsewhere := _elsewhere(package, path, is_folder)) is not None:
-            return Located(named, elsewhere)
+            return Located(named, None, lacks, Severity.ERROR)
+        found = _inside(package, is_folder)
+        elsewhere = [each for each in found if os.path.basename(each) == os.path.basename(path)]
+        if len(elsewhere) == 1:  # a build may install it elsewhere
+            return Located(named, elsewhere[0])
+        if _stem(path) not in map(_stem, found):
+            likely = near(os.path.basename(path), map(os.path.basename, found), 1)
+            return Located(named, None, lacks + did_you_mean(likely), Severity.WARNING)
     return Located(named, None, f"this machine has no such {_KINDS[is_folder]}")
 
 
@@ -163,12 +173,14 @@ def _is_installed(package: str) -> bool:
     return os.path.basename(os.path.dirname(package)) == "share"
 
 
-def _elsewhere(package: str, path: str, is_folder: bool) -> str | None:
-    """The only file or folder of a name in a package that is not built: a build may install it elsewhere."""
-    files, _ = collect((package,), Project(), (".xml",))
-    found = {os.path.dirname(each) if is_folder else each for each in files}
-    named = [each for each in found if os.path.basename(each) == os.path.basename(path)]
-    return named[0] if len(named) == 1 else None
+def _inside(package: str, is_folder: bool) -> list[str]:
+    """The files of a package that is not built, or the folders of its XML; XML may be built of a mission."""
+    files, _ = collect((package,), Project(), (".xml",) if is_folder else (".xml", *SUFFIXES))
+    return sorted({os.path.dirname(each) if is_folder else each for each in files})
+
+
+def _stem(path: str) -> str:
+    return os.path.splitext(os.path.basename(path))[0]
 
 
 def _searched(

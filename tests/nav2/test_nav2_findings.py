@@ -89,9 +89,7 @@ def test_a_build_may_install_a_file_elsewhere(robot: Path) -> None:
 @pytest.mark.parametrize(
     ("value", "problem"),
     [
-        (f"{HERE}/trees/gone.xml", "this machine has no such file"),
         ("/home/robot/gone.xml", "this machine has no such file"),
-        ("''", "it is empty"),
         ("see the launch file", "a relative path counts from the folder in which bt_navigator runs"),
         ("replace/me.xml", "a relative path counts from the folder in which bt_navigator runs"),
         (
@@ -103,6 +101,28 @@ def test_a_build_may_install_a_file_elsewhere(robot: Path) -> None:
 def test_what_is_not_here(robot: Path, value: str, problem: str) -> None:
     text = f"{HEAD}    default_nav_to_pose_bt_xml: {value}\n"
     message = f"3:33 hint missing-nav2-tree cannot find the tree `{value.strip(QUOTE)}`: {problem}"
+    assert shown(robot, text, "jazzy") == shown(robot, text, "lyrical") == [message]
+
+
+@pytest.mark.parametrize("distribution", ["jazzy", "lyrical"])
+def test_a_package_of_the_workspace_lacks_a_file(robot: Path, distribution: str) -> None:
+    def found(name: str) -> list[str]:
+        return shown(robot, f"{HEAD}{POSE}/trees/{name}.xml\n", distribution)
+
+    def lacking(name: str, likely: str = "") -> list[str]:
+        what = f"cannot find the tree `{HERE}/trees/{name}.xml`: the package in {robot} has no such file{likely}"
+        return [f"3:33 warning missing-nav2-tree {what}"]
+
+    assert found("dokc") == lacking("dokc", "; did you mean `dock.xml`?")
+    assert found("elsewhere") == lacking("elsewhere")
+    (robot / "missions").mkdir()
+    (robot / "missions/elsewhere.btq").write_text("BehaviorTree Main\n    AlwaysSuccess\n")  # of which it may be built
+    assert [each.split()[1] for each in found("elsewhere")] == ["hint"]
+
+
+def test_an_empty_value(robot: Path) -> None:
+    text = f"{HEAD}    default_nav_to_pose_bt_xml: ''\n"
+    message = "3:33 error missing-nav2-tree cannot find the tree ``: it is empty"
     assert shown(robot, text, "jazzy") == shown(robot, text, "lyrical") == [message]
 
 
@@ -177,8 +197,9 @@ def test_files_without_trees(robot: Path) -> None:
 def test_a_folder_that_is_not_there(robot: Path) -> None:
     text = f"{HEAD}    bt_search_directories: [{HERE}/gone, /nowhere]\n"
     assert [line.partition(": ")[2] for line in shown(robot, text, "lyrical")] == [
-        "this machine has no such folder"
-    ] * 2
+        f"the package in {robot} has no such folder",
+        "this machine has no such folder",
+    ]
 
 
 def test_the_tree_of_a_goal(robot: Path) -> None:
