@@ -80,6 +80,14 @@ def is_pooled(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bo
 
 
 @of_name
+def ends_at_once(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
+    """Whether the C++ of a node shows that it never returns RUNNING."""
+    origins = [workspace.files[each.path].origin for each in workspace.scope(viewpoint).all(kind, name)]
+    nodes = (each.nodes.get(name) for each in origins if each is not None and each.nodes is not None)
+    return any(each.at_once for each in nodes if each is not None)
+
+
+@of_name
 def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Meaning | None:
     """What a name means."""
     found = workspace.find(viewpoint, kind, name)

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.checks import lookups
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_kind
 from btq_lang.checks.view import View
 from btq_lang.syntax.tree import Node, Tree
@@ -82,7 +83,9 @@ def _of_node(view: View, seen: ResolvedNode, known: dict[int, Results]) -> Resul
         children = tuple([known.get(id(child), UNKNOWN) for child in seen.node.children])
         found = _of_known(seen.behavior, seen.node, children)
     elif not seen.node.children:
-        found = _CUSTOM.get(seen.stated_category or "", _UNKNOWN_LEAF)
+        name = seen.id.text if seen.id is not None and seen.stated_category == "Action" else None
+        at_once = name is not None and view.look_up(lookups.ends_at_once, Kind.MODEL, name)
+        found = _AT_ONCE if at_once else _CUSTOM.get(seen.stated_category or "", _UNKNOWN_LEAF)
     added = 0
     for pair in seen.node.attributes:
         added |= _ADDED.get(pair.key.text, 0)
@@ -113,8 +116,9 @@ _FEW: Final = 4  # there are not many such combinations
 _without_ports: Final[dict[tuple[int, ...], Results]] = {}
 _ANY_LEAF: Final = SUCCESS | FAILURE | RUNNING
 _UNKNOWN_LEAF: Final = Results(_ANY_LEAF, _ANY_LEAF, _ANY_LEAF)
+_AT_ONCE: Final = Results(SUCCESS | FAILURE, SUCCESS | FAILURE, SUCCESS | FAILURE)
 _CUSTOM: Final = {
     "Action": Results(_ANY_LEAF, RUNNING, _ANY_LEAF),
-    "Condition": Results(SUCCESS | FAILURE, SUCCESS | FAILURE, SUCCESS | FAILURE),
+    "Condition": _AT_ONCE,
 }
 _ADDED: Final = {"_failureIf": FAILURE, "_successIf": SUCCESS, "_skipIf": SKIPPED, "_while": SKIPPED}

@@ -10,6 +10,7 @@ records go out: neither the disk, nor how nodes are written in a mission, is kno
     ports.py       what `providedPorts()` returns; values.py: strings, defaults and types in it
     library_ports.py  what classes of the engine and of behaviortree_ros2 provide
     uses.py        which ports the code of a class reads and writes, and what it does without them
+    ticks.py       which classes end within the tick that starts them
     nodes.py       the nodes
     findings.py    what is wrong between ports and code, and what is unseen, as diagnostics
 """

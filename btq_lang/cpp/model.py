@@ -77,6 +77,7 @@ class CppNode(Record):
         unread: ports that its code never names.
         undeclared: reads and writes of ports that it does not provide.
         without: what its code does without an input that has no default: see `Use.without`.
+        at_once: whether it is seen to end within the tick that starts it.
     """
 
     name: str
@@ -89,6 +90,7 @@ class CppNode(Record):
     unread: tuple[CppPort, ...] = ()
     undeclared: tuple[Use, ...] = ()
     without: tuple[tuple[str, str], ...] = ()
+    at_once: bool = False
 
     def goes_on_without(self, port: CppPort) -> bool:
         """Whether the code is seen to go on if an input is not given."""

@@ -15,8 +15,10 @@ from btq_lang.cpp.model import CppNode, CppNodes, Place
 from btq_lang.cpp.ports import Body, PortsReader, Provided
 from btq_lang.cpp.source import Call, Source
 from btq_lang.cpp.sources import Sources
+from btq_lang.cpp.ticks import ends_within_tick
 from btq_lang.cpp.uses import Uses
 from btq_lang.cpp.values import string
+from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -116,7 +118,8 @@ class _Reader:
         if bound.class_ is None:
             return _node(name, category, bound.name, place, place, provided)
         class_place = place_of(bound.class_.path, field(bound.class_.node, "name") or bound.class_.node)
-        return _node(name, category, bound.class_.name, place, class_place, provided, Uses(self.sources, bound))
+        node = _node(name, category, bound.class_.name, place, class_place, provided, Uses(self.sources, bound))
+        return replace(node, at_once=ends_within_tick(self.sources, bound))
 
     def _name(self, call: Call, body: Body, node: Node) -> str | None:
         name = string(self.sources, node, body.frame)

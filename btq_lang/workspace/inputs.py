@@ -97,6 +97,9 @@ def _touched(after: Workspace, old: File, new: File) -> Iterator[Hashable]:
     for item in old.facts.keys() ^ new.facts.keys():
         for symbol in (old.facts.get(item) or new.facts[item]).summary.symbols:
             yield symbol.kind, symbol.name
+    if old.is_cpp and old.origin is not None and new.origin is not None:  # more is known of nodes than their models say
+        before, now = old.origin.nodes or {}, new.origin.nodes or {}
+        yield from ((Kind.MODEL, name) for name in before.keys() | now.keys() if before.get(name) != now.get(name))
 
 
 def project(store: Store[Workspace]) -> Project:

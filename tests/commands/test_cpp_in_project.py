@@ -96,6 +96,22 @@ def test_checks_know_the_nodes_and_hold_the_code_against_them(robot: Path) -> No
     assert check(robot, "trees/m.btq", "src") == [*IN_MISSION, UNUSED, UNDECLARED]
 
 
+def test_an_action_that_ends_within_its_tick_runs_over_no_second_one(robot: Path) -> None:
+    source = (
+        "struct Prune : BT::ActionNodeBase {{ static PortsList providedPorts() {{ return {{}}; }}\n"
+        "  NodeStatus tick() {{ return NodeStatus::{}; }} }};\n"
+        'void add(F& f) {{ f.registerNodeType<Prune>("Prune"); f.registerNodeType<Prune>("Follow"); }}\n'
+    )
+    write(robot, "btq.toml", 'nodes = ["src/prune.cpp"]\n')
+    write(robot, "src/prune.cpp", source.format("RUNNING"))
+    write(robot, "trees/m.btq", "BehaviorTree M\n    R->\n        Prune\n        Follow\n")
+    rule = ("--select", "reactive-multiple-async")
+    (found,) = check(robot, "trees", *rule)
+    assert found.startswith("trees/m.btq:4:9: hint[reactive-multiple-async] if `Prune` takes longer than one tick")
+    write(robot, "src/prune.cpp", source.format("SUCCESS"))
+    assert check(robot, "trees", *rule) == []
+
+
 def test_a_baseline_holds_what_is_found_in_cpp(robot: Path) -> None:
     known = ("--baseline", "known.json")
     assert check(robot, *known, "--update-baseline") == [f"known.json: {len(IN_MISSION) + 2} added, 0 removed, 0 kept"]

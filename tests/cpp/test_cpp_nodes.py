@@ -252,6 +252,31 @@ def test_a_base_class_of_nav2_gives_the_category_and_its_ports_are_unseen() -> N
     assert unseen(found) == ["a.cpp:5:43: `providedBasicPorts` is not in the sources, and may add ports"]
 
 
+@pytest.mark.parametrize(
+    ("base", "tick", "at_once"),
+    [
+        ("BT::SyncActionNode", "return status_;", True),
+        ("BT::ActionNodeBase", "if (a) { return FAILURE; } return BT::NodeStatus::SUCCESS;", True),
+        ("BT::ActionNodeBase", "return (a ? BT::NodeStatus::SUCCESS : BT::NodeStatus::FAILURE);", True),
+        ("BT::ActionNodeBase", "auto f = [] { return 1; }; return BT::NodeStatus::SUCCESS;", True),
+        ("BT::ActionNodeBase", "if (a) { return status_; } return BT::NodeStatus::SUCCESS;", False),
+        ("BT::ActionNodeBase", "return a ? BT::NodeStatus::RUNNING : BT::NodeStatus::SUCCESS;", False),
+        ("BT::CoroActionNode", "setStatusRunningAndYield(); return BT::NodeStatus::SUCCESS;", False),
+        ("BT::ThreadedAction", "return BT::NodeStatus::SUCCESS;", False),
+        ("ns::Unseen, public BT::ActionNodeBase", "return BT::NodeStatus::SUCCESS;", False),
+    ],
+)
+def test_what_ends_within_its_tick(base: str, tick: str, at_once: bool) -> None:
+    body = f"static PortsList providedPorts() {{ return {{}}; }} BT::NodeStatus tick() {{ {tick} }}"
+    assert [node.at_once for node in read(move(body, base)).nodes] == [at_once]
+
+
+def test_a_tick_that_is_not_in_the_sources_may_take_longer() -> None:
+    base = "struct Base : BT::ActionNodeBase { NodeStatus tick() { return NodeStatus::SUCCESS; } };"
+    assert moved("", "Base", base).at_once
+    assert not moved("NodeStatus tick() override;", "Base", base).at_once
+
+
 def test_a_template_of_the_engine_is_a_node_without_a_class_in_the_sources() -> None:
     found = read(
         """

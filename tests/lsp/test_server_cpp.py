@@ -68,6 +68,21 @@ def test_a_new_source_and_a_deleted_one_count(editor: Editor, folder: Path) -> N
     assert editor.diagnostics("robot/main.btq") == []
 
 
+def test_a_tick_that_takes_longer_after_a_save_counts(editor: Editor) -> None:
+    source = (
+        "struct Prune : BT::ActionNodeBase { static PortsList providedPorts() { return {}; }\n"
+        "  NodeStatus tick() { return NodeStatus::SUCCESS; } };\n"
+        'void more(F& f) { f.registerNodeType<Prune>("Prune"); }\n'
+    )
+    editor.write("robot/src/prune.cpp", source)
+    editor.open("robot/main.btq", "BehaviorTree M\n    R->\n        Prune\n        Prune\n")
+    assert editor.diagnostics("robot/main.btq") == []
+    editor.write("robot/src/prune.cpp", source.replace("SUCCESS", "RUNNING"))
+    assert editor.diagnostics("robot/main.btq") == [("reactive-multiple-async", 3, 8, 13)]
+    editor.write("robot/src/prune.cpp", source)
+    assert editor.diagnostics("robot/main.btq") == []
+
+
 def test_cpp_that_no_project_names_is_not_read(editor: Editor) -> None:
     editor.open("robot/main.btq", MISSION)
     assert editor.diagnostics("robot/main.btq") == []
