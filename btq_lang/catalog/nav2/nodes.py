@@ -100,7 +100,8 @@ _ROUND_ROBIN: Final = NodeKind(
     "Control",
     (1, None),
     "Ticks its children in turn.",
-    f"{_TURNS}Without wrap_around it also fails when its last child has ended, even if that has succeeded.",
+    f"{_TURNS}In Lyrical, without wrap_around it also fails when its last child has ended, even if that has succeeded; "
+    "before, the first child follows the last one.",
     (PortKind("wrap_around", "input", "bool", "whether the first child follows the last one", "false", role="wraps"),),
     flow="rotate",
 )
