@@ -83,8 +83,14 @@ def _parameters(parameters: Parameters, distribution: str) -> Iterator[Diagnosti
         right, wrong = (
             f"{OWN_PACKAGE}{sign}{class_}" for sign in (("/", "::") if distribution[0] == "i" else ("::", "/"))
         )
+        prefix = right.removesuffix(class_)
+        own = [f"{prefix}{each}" for _, _, each in NAVIGATORS.values()]
+        message = ""
         if plugin.text == wrong:
             message = f"the class of this navigator is called `{right}` in {shown}"
+        elif class_ and plugin.text.startswith(prefix) and plugin.text not in own:
+            message = f"Nav2 has no navigator `{plugin.text}`{did_you_mean(near(plugin.text, own, 1))}"
+        if message:
             yield Diagnostic("nav2-parameter", plugin.span, message, severity=Severity.ERROR)
 
 

@@ -232,6 +232,17 @@ def test_parameters_of_earlier_distributions(robot: Path) -> None:
     assert shown(robot, text, "humble") == [message]
 
 
+def test_a_navigator_that_nav2_does_not_have(robot: Path) -> None:
+    def found(name: str) -> list[str]:
+        return shown(robot, f"{HEAD}    navigate_to_pose: {{plugin: '{name}'}}\n", "jazzy")
+
+    own = "nav2_bt_navigator::NavigateTo"
+    meant = f"did you mean `{own}PoseNavigator`?"
+    message = f"3:32 error nav2-parameter Nav2 has no navigator `{own}PoseNavigater`; {meant}"
+    assert found(f"{own}PoseNavigater") == [message]
+    assert found(f"{own}PoseNavigator") == found("my_package::NavigateToPoseNavigater") == []
+
+
 def test_libraries_of_ones_own_may_be_named_alike(robot: Path) -> None:
     own = "nav2_skip_action_bt_node, my_spin_action_bt_node, nav2_spin_action_bt_node_v2, libmy_own.so"
     assert shown(robot, f"{HEAD}    plugin_lib_names: [{own}]\n", "jazzy") == []
