@@ -29,8 +29,8 @@ MARKER = re.compile(r"(?P<where>next-line |file )?(?P<severity>error|warning|inf
 COMMENT_WITH_MARKERS = re.compile(r"(?:#|<!--|//)\s*(?=(?:next-line |file )?(?:error|warning|info|hint): \[).*")
 
 NODES = re.compile(
-    r'^# (nodes = \["(?P<nodes>[\w-]+)"\]|engine = "(?P<engine>[\d.]+)") in btq.toml'
-    r"(, and: btq check --target (?P<target>[\w.-]+))?$",
+    r'^(?:#|<!--) (nodes = \["(?P<nodes>[\w-]+)"\]|engine = "(?P<engine>[\d.]+)") in btq.toml'
+    r"(, and(?:: btq check --target| the target is) (?P<target>[\w.-]+))?(?: -->)?$",
     re.MULTILINE,
 )
 
