@@ -24,7 +24,7 @@ from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Entry, Include, Model, Tree, Word, quote, written
 from btq_lang.util.spelling import did_you_mean, distance, without_digits
 from btq_lang.util.text import Span
-from btq_lang.workspace.symbols import Symbol, has_ports_of, interface
+from btq_lang.workspace.symbols import Symbol, differences, has_ports_of, interface
 
 if TYPE_CHECKING:
     from btq_lang.checks.lookups import Declaration
@@ -209,7 +209,9 @@ def duplicate_definition(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if other is None or _is_same_model(other.symbol, symbol) or _is_of_node(view, other, symbol):
             continue
         only_one = f"Nav2 registers a node `{symbol.name}`, and a program can register only one"
-        notes = (only_one,) if other.path in FILES.values() else ()
+        differing = ", ".join(differences(other.symbol, symbol))
+        unlike = (f"they differ in {differing}",) if differing else ()
+        notes = (*unlike, *((only_one,) if other.path in FILES.values() else ()))
         yield _second(symbol, symbol.span, (Related(other.place, which),), "duplicate definition of", notes)
 
 

@@ -121,6 +121,26 @@ def interface(model: syntax.Model) -> object:
     return model.category.raw, syntax.shape(ports)
 
 
+def differences(one: Symbol, other: Symbol) -> Iterator[str]:
+    """What two models say otherwise of their node, as a message names it: its category, or ports by name."""
+    first, second = one.target, other.target
+    if not (isinstance(first, syntax.Model) and isinstance(second, syntax.Model)):
+        return
+    if first.category.raw != second.category.raw:
+        yield f"the category ({first.category.raw}, {second.category.raw})"
+    ports, others = ({port.id.text: port for port in each.ports if port.id is not None} for each in (first, second))
+    for name in dict.fromkeys((*ports, *others)):
+        if name not in ports or name not in others:
+            yield f"the port `{name}`, which only one has"
+        elif ports[name].direction.raw != others[name].direction.raw:
+            yield f"the direction of `{name}`"
+        else:
+            if syntax.shape(ports[name].type) != syntax.shape(others[name].type):
+                yield f"the type of `{name}`"
+            if syntax.shape(ports[name].default) != syntax.shape(others[name].default):
+                yield f"the default of `{name}`"
+
+
 def has_ports_of(one: Symbol, other: Symbol) -> bool:
     """Whether a model has all ports of another, in its directions, and none of a type that is certainly different.
 

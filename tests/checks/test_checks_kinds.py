@@ -4,8 +4,9 @@ their pages do not show."""
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_clean, assert_fix, assert_problems
+from check_asserts import assert_clean, assert_fix, assert_problems, workspace_of
 
+from btq_lang.checks import check
 from btq_lang.workspace.config import Project
 
 
@@ -302,6 +303,17 @@ def test_models_with_one_interface_repeat_each_other() -> None:
     assert_problems(
         "Action A\nCondition A\n",
         "2:11 warning duplicate-definition «A» duplicate definition of the node model `A`",
+    )
+
+
+def test_what_differs_between_two_models_is_said() -> None:
+    first = "Action A\n    input x : int = 1\n    input y\n    input z\n"
+    second = "Condition A\n    input x : string = 2\n    output y\n"
+    workspace = workspace_of({"main.btq": first + second})
+    (found,) = check(workspace, "main.btq")
+    assert found.notes == (
+        "they differ in the category (Action, Condition), the type of `x`, the default of `x`, the direction of `y`, "
+        "the port `z`, which only one has",
     )
 
 
