@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from typing import TYPE_CHECKING
 
-from btq_lang.catalog.literals import check_literal, is_pointer
+from btq_lang.catalog.literals import OLD_ENTRY, check_literal, is_pointer
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.versions import OUTPUT_IN_BRACES
 from btq_lang.checks import lookups
@@ -34,8 +34,8 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
     for seen, pair, type_ in outputs(view):
         value = pair.value
-        if value is None or not _is_literal(value):
-            continue
+        if value is None or not _is_literal(value) or OLD_ENTRY.fullmatch(value.text):
+            continue  # `${key}` is one mistake, which old_entry reports
         problem = check_literal(type_, value.text, view.target)
         is_refused = problem is not None and problem.kind == "refused"
         is_custom = not is_refused and not view.ask(is_for_version_3) and view.ask(_is_custom)

@@ -145,3 +145,9 @@ def test_the_model_that_lacks_a_port_is_named() -> None:
     assert problems(pool(main, "p/b.xml: " + model("speed") + tree("Other"))) == [
         "unknown-port: `Go` has no port `spaed`; did you mean `speed`?"
     ]
+
+
+def test_an_old_entry_at_an_output_is_one_mistake() -> None:
+    output = '<TreeNodesModel><Action ID="Go"><output_port name="pose"/></Action></TreeNodesModel>'
+    old = "old-entry: the engine reads `${here}` as a text, not as an entry"
+    assert problems(pool("p/a.xml: " + tree("Main", '<Go pose="${here}"/>') + output)) == [old]
