@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from btq_lang.commands.options import CheckOptions, add_server_options
 from btq_lang.commands.verdict_formats import FORMATS as VERDICT_FORMATS
+from btq_lang.evidence.compare import FORMATS as COMPARISON_FORMATS
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.render import FORMATS
@@ -41,6 +42,7 @@ def build_parser() -> Parser:
     _add_import(commands)
     _add_trace(commands)
     _add_verify(commands)
+    _add_compare(commands)
     _add_graph(commands)
     _add_preview(commands)
     _add_diff(commands)
@@ -309,6 +311,25 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument("--verbose", action="store_true", help="in the table, explain more violations of each clause")
     parser.add_argument("--strict", action="store_true", help="exit 1 unless every requirement is satisfied")
     _add_color(parser)
+
+
+def _add_compare(commands: _SubParsersAction[Parser]) -> None:
+    parser = _command(
+        commands,
+        "compare",
+        "compare what robots did with two versions, by the verdicts in a store",
+        epilog="exit codes: 0 nothing got worse; 1 something slower, less reliable or newly violated;\n"
+        "2 usage, I/O, or nothing to compare\n\n"
+        "examples:\n  btq compare evidence v1.3 v1.4                two labels of a store\n"
+        "  btq compare evidence --by robot r7 r8         two robots\n"
+        "  btq compare evidence v1.3 v1.4 -o report.md   for a pull request\n",
+    )
+    parser.add_argument("store", metavar="STORE", help="the folder that btq verify --store writes")
+    parser.add_argument("before", metavar="A", help="the label that is compared with, or the robot")
+    parser.add_argument("after", metavar="B", help="the label, or the robot, that may have changed")
+    parser.add_argument("--by", choices=("label", "robot"), default="label", help="what A and B are; default: label")
+    parser.add_argument("--format", choices=COMPARISON_FORMATS, help="default: as the file of -o ends, else table")
+    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 
 def _add_graph(commands: _SubParsersAction[Parser]) -> None:

@@ -19,6 +19,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     distribution.py, timeline.py   a histogram of values and a timeline of a run, for the page
     coverage.py, ticks.py   which nodes ran, how long they took, and how long they blocked the tree
     store/         what was found in each log, kept and summarised
+    compare/       two versions in a store compared
     verdicts.py    the report, as data
     sentences.py   a clause's result, and what to look at, in a sentence
     judging.py, parallel.py   one log judged by itself, by one of several processes, and all of them added up

@@ -42,6 +42,7 @@ RUN_BY = {
     "commands.md text": "test_a_diff_says_what_the_page_shows",
     "evidence.md text": "evidence/test_page.py",
     "evidence-store.md python": "evidence/test_store_summary.py",
+    "evidence-store.md text": "evidence/test_compare.py",
     "console": "requirements/test_requirements_page.py",
     "README.md xml": "repository/test_home_page.py",
     "README.md console": "repository/test_home_page.py",

@@ -1,0 +1,31 @@
+"""`btq compare`: what got slower, less reliable or newly violated, from one label or robot of a store to another."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+
+from btq_lang.commands.output import form_of, form_problem, write_output
+from btq_lang.evidence.compare import FORMATS, write
+
+
+def run(options: Namespace) -> int:
+    """Compare, and print what was found; returns the exit code."""
+    sides = options.before, options.after
+    problem = form_problem(options, FORMATS)
+    if sides[0] == sides[1]:
+        problem = f"both sides are {sides[0]}"
+    if problem:
+        print(f"btq compare: {problem}", file=sys.stderr)
+        return 2
+    from btq_lang.evidence.compare.comparison import Unknown, compare
+    from btq_lang.evidence.store.engine import NoEngine, asked
+
+    try:
+        found = compare(asked(options.store), options.by, sides)
+    except (NoEngine, Unknown) as error:
+        print(f"btq compare: {error}", file=sys.stderr)
+        return 2
+    if code := write_output("compare", options.output, write(found, options.by, sides, form_of(options, FORMATS))):
+        return code
+    return int(any(each.is_worse for each in found))

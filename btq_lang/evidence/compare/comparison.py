@@ -1,0 +1,241 @@
+"""What changed between two sides of a store, by requirement and by node.
+
+One invariant: what is loaded are counts of each run, group of runs or robot; the quantiles are those of all values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+
+from btq_lang.catalog.units import parse_unit
+from btq_lang.evidence.compare import questions
+from btq_lang.evidence.compare.chance import LEVEL, Shuffles, fisher, holm, is_too_few, shuffles_for
+from btq_lang.evidence.store.engine import quoted
+from btq_lang.evidence.store.summary import summary
+from btq_lang.evidence.verdicts import VIOLATED
+from btq_lang.util.record import Record, replace
+
+if TYPE_CHECKING:
+    Ask: TypeAlias = Callable[[str], Sequence[Mapping[str, Any]]]
+    Key: TypeAlias = tuple[str, str, str]  # requirement, clause, node
+    Finding: TypeAlias = Literal["", "slower", "faster", "higher", "lower", "less reliable", "more reliable"]
+
+
+class Change(Record):
+    """A number that is compared.
+
+    Attributes:
+        requirement, clause: empty where it is about the node alone.
+        what: `median` and `p95` of a measure; `failures`: the share of runs with a failure or a violation.
+        unit: that the measure is shown in; values are in SI.
+        before, after: the number on each side.
+        counts: how many values, or runs, each side has.
+        failed: in how many of these runs it failed, or was violated; None for a measure.
+        p: the probability of such a difference by chance, after Holm.
+        too_few: so few runs or robots cannot show any change.
+        finding: what is certain enough to be called a change; else empty.
+    """
+
+    requirement: str
+    clause: str
+    node: str
+    what: Literal["median", "p95", "failures"]
+    unit: str
+    before: float
+    after: float
+    counts: tuple[int, int]
+    failed: tuple[int, int] | None
+    p: float
+    too_few: bool
+    finding: Finding
+
+
+class Newly(Record):
+    """A requirement that only the second side violates."""
+
+    id: str
+    title: str
+    before: str
+
+
+class Comparison(Record):
+    """What changed in a mission.
+
+    Attributes:
+        runs, robots: how many each side has.
+        over: what is shuffled: `robots`, where a side has several, else `runs`.
+        group: how many runs are shuffled together; 1 without groups.
+        newly: the requirements that only the second side violates.
+        changes: all that was compared.
+    """
+
+    mission: str
+    runs: tuple[int, int]
+    robots: tuple[int, int]
+    over: Literal["runs", "robots"]
+    group: int
+    newly: tuple[Newly, ...]
+    changes: tuple[Change, ...]
+
+    @property
+    def is_worse(self) -> bool:
+        """Whether something is slower, less reliable or newly violated."""
+        return bool(self.newly) or any(each.finding in WORSE for each in self.changes)
+
+
+class Unknown(Exception):
+    """A side has no runs; the message says which there are."""
+
+
+def compare(ask: Ask, by: str, sides: tuple[str, str]) -> tuple[Comparison, ...]:
+    """Compare two labels or robots, in every mission that both have run.
+
+    Raises:
+        Unknown: a side has no runs, or no mission in common with the other.
+    """
+    known = [str(row["name"]) for row in ask(questions.NAMES.format(by=by))]
+    for side in sides:
+        if side not in known:
+            raise Unknown(f"no run has the {by} {side}; there are {', '.join(known)}")
+    words = {"by": by, "sides": ", ".join(map(quoted, sides))}
+    runs: dict[str, dict[str, Mapping[str, Any]]] = {}
+    for row in ask(questions.RUNS.format(**words)):
+        runs.setdefault(row["mission"], {})[row["side"]] = row
+    missions = [_Mission(ask, words, sides, name, rows) for name, rows in runs.items() if len(rows) == len(sides)]
+    if not missions:
+        raise Unknown(f"no mission was run with both {sides[0]} and {sides[1]}")
+    number = sum(mission.comparisons for mission in missions)
+    found = [mission.changes(number) for mission in missions]
+    adjusted = iter(holm([each.p for changes in found for each in changes]))
+    judged = [tuple(_judged(each, next(adjusted)) for each in changes) for changes in found]
+    newly = _newly(ask, by, sides)
+    return tuple(
+        mission.result(newly.get(mission.name, ()), changes) for mission, changes in zip(missions, judged, strict=True)
+    )
+
+
+class _Mission:
+    """The numbers of a mission."""
+
+    def __init__(
+        self,
+        ask: Ask,
+        words: Mapping[str, str],
+        sides: tuple[str, str],
+        name: str,
+        runs: Mapping[str, Mapping[str, Any]],
+    ) -> None:
+        self.name: Final = name
+        self._sides: Final = sides
+        self._runs: Final = (runs[sides[0]]["runs"], runs[sides[1]]["runs"])
+        self._robots: Final = (runs[sides[0]]["robots"], runs[sides[1]]["robots"])
+        self._is_by_robot: Final = max(self._robots) > 1
+        self._size: Final = 1 if self._is_by_robot else -(-min(self._runs) // _MOST_UNITS)
+        unit = "robot" if self._is_by_robot else questions.BY_RUN.format(by=words["by"], size=self._size)
+        words = {**words, "mission": quoted(name), "unit": unit}
+
+        def asked(question: str) -> Sequence[Mapping[str, Any]]:
+            return ask(question.format(**words))
+
+        self._measures: Final = self._of_both(asked(questions.QUANTILES))
+        self._failures: Final = self._of_both(asked(questions.FAILURES))
+        self._units: Final = {_key(row): row["unit"] or "1" for row in asked(questions.UNITS)}
+        self._scores: Final[dict[Key, dict[tuple[str, Any], Mapping[str, Any]]]] = {}
+        for row in asked(questions.SCORES):
+            self._scores.setdefault(_key(row), {})[row["side"], row["unit"]] = row
+        self.comparisons: Final = 2 * len(self._measures) + len(self._failures)
+
+    def changes(self, comparisons: int) -> list[Change]:
+        """All that is compared, with p-values before Holm.
+
+        Args:
+            comparisons: how many there are in all missions.
+        """
+        ids = [sorted({at for rows in self._scores.values() for at in rows if at[0] == side}) for side in self._sides]
+        shuffles = Shuffles(len(ids[0]), len(ids[1]), shuffles_for(comparisons))
+        units = [*ids[0], *ids[1]]
+        found = []
+        for key, (before, after) in self._measures.items():
+            counts = before["number"], after["number"]
+            too_few = is_too_few(before["units"], after["units"], comparisons)
+            for what in ("median", "p95"):
+                p = shuffles.probability(_centred(self._scores[key], units, what))
+                unit = self._units.get(key, "s") if key[0] else "s"
+                found.append(Change(*key, what, unit, before[what], after[what], counts, None, p, too_few, ""))
+        for key, (before, after) in self._failures.items():
+            counts, failed = (before["number"], after["number"]), (before["failed"], after["failed"])
+            p = fisher((failed[0], counts[0]), (failed[1], counts[1]))
+            shares = failed[0] / counts[0], failed[1] / counts[1]
+            too_few = is_too_few(*counts, comparisons)
+            found.append(Change(*key, "failures", "%", *shares, counts, failed, p, too_few, ""))
+        return found
+
+    def result(self, newly: Sequence[Newly], changes: tuple[Change, ...]) -> Comparison:
+        """The comparison, with p-values after Holm."""
+        over: Literal["runs", "robots"] = "robots" if self._is_by_robot else "runs"
+        return Comparison(self.name, self._runs, self._robots, over, self._size, tuple(newly), changes)
+
+    def _of_both(self, rows: Sequence[Mapping[str, Any]]) -> dict[Key, tuple[Mapping[str, Any], Mapping[str, Any]]]:
+        """The rows of what both sides have."""
+        found: dict[Key, dict[str, Mapping[str, Any]]] = {}
+        for row in rows:
+            found.setdefault(_key(row), {})[row["side"]] = row
+        first, second = self._sides
+        return {key: (rows[first], rows[second]) for key, rows in found.items() if len(rows) == len(self._sides)}
+
+
+def _key(row: Mapping[str, Any]) -> Key:
+    return row["requirement"], row["clause"], row["node"]
+
+
+def _centred(
+    rows: Mapping[tuple[str, Any], Mapping[str, Any]], units: Sequence[tuple[str, Any]], what: str
+) -> list[int]:
+    """The scores of all units, less what each would have with the average of all values; as integers, exact."""
+    number, total = sum(row["number"] for row in rows.values()), sum(row[what] for row in rows.values())
+    found = [rows.get(unit) for unit in units]
+    return [row[what] * number - row["number"] * total if row is not None else 0 for row in found]
+
+
+def _judged(change: Change, p: float) -> Change:
+    finding: Finding = ""
+    if p <= LEVEL and change.before != change.after:
+        is_more = change.after > change.before
+        if change.what == "failures":
+            finding = "less reliable" if is_more else "more reliable"
+        elif is_time(change.unit):
+            finding = "slower" if is_more else "faster"
+        else:
+            finding = "higher" if is_more else "lower"
+    return replace(change, p=p, finding=finding)
+
+
+def is_time(symbol: str) -> bool:
+    """Whether a unit is one of time."""
+    unit, second = parse_unit(symbol), parse_unit("s")
+    return unit is not None and second is not None and unit.dimension == second.dimension
+
+
+def _newly(ask: Ask, by: str, sides: tuple[str, str]) -> dict[str, list[Newly]]:
+    """The requirements that only the second side violates, by mission."""
+    before, after = (summary(_only(ask, f"{by} = {quoted(side)}"), "").missions for side in sides)
+    verdicts = {(mission.name, each.id): each.verdict for mission in before for each in mission.requirements}
+    found: dict[str, list[Newly]] = {}
+    for mission in after:
+        for each in mission.requirements:
+            earlier = verdicts.get((mission.name, each.id), "not judged")
+            if each.verdict == VIOLATED and earlier != VIOLATED:
+                found.setdefault(mission.name, []).append(Newly(each.id, each.title, earlier))
+    return found
+
+
+def _only(ask: Ask, condition: str) -> Ask:
+    """Asks the same of some of the rows."""
+    tables = ("runs", "clauses", "verdicts")
+    parts = ", ".join(f"{table} AS (SELECT * FROM main.{table} WHERE {condition})" for table in tables)
+    return lambda question: ask(f"WITH {parts} {question}")
+
+
+WORSE: Final = ("slower", "less reliable")
+_MOST_UNITS: Final = 256  # of the smaller side: more show hardly more, and each shuffle takes as much longer

@@ -1,0 +1,37 @@
+"""What changed, for programs: a document that `comparison.schema.json` describes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Final
+
+from btq_lang.evidence.compare.comparison import Comparison
+from btq_lang.util.record import fields_of
+
+FORMAT: Final = "btq-comparison"
+VERSION: Final = 1
+
+
+def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
+    """Write the comparisons as JSON."""
+    document = {
+        "format": FORMAT,
+        "version": VERSION,
+        "by": by,
+        "sides": sides,
+        "missions": [
+            {
+                **_fields(each),
+                "newly": [_fields(newly) for newly in each.newly],
+                "changes": [_fields(change) for change in each.changes],
+            }
+            for each in found
+        ],
+    }
+    return json.dumps(document, indent=1, allow_nan=False) + "\n"
+
+
+def _fields(record: object) -> dict[str, object]:
+    """The fields of a record by name; the schema has them."""
+    return {name: getattr(record, name) for name in fields_of(record)}

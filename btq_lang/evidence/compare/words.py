@@ -1,0 +1,54 @@
+"""A change in words, for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.catalog.units import parse_unit
+from btq_lang.evidence.compare.comparison import Change, Comparison, is_time
+from btq_lang.evidence.wording import duration, quantity
+from btq_lang.util.text import counted
+
+
+def heading(comparison: Comparison, sides: tuple[str, str]) -> str:
+    """What is compared."""
+    (first, second), (one, other) = comparison.runs, sides
+    group = f"groups of {counted(comparison.group, 'run')}" if comparison.group > 1 else "runs"
+    robots = f"robots ({comparison.robots[0]} and {comparison.robots[1]})"
+    over = robots if comparison.over == "robots" else group
+    runs = f"{counted(first, 'run')} of {one}, {counted(second, 'run')} of {other}"
+    return f"{comparison.mission}: {runs}, durations compared by {over}"
+
+
+def subject(change: Change) -> str:
+    """The node, or the clause with its node."""
+    if not change.requirement:
+        return change.node
+    return f"{change.requirement}: {change.clause}" + (f" at {change.node}" if change.node else "")
+
+
+def difference(change: Change) -> str:
+    """Both numbers, and how likely they are by chance."""
+    if change.failed is not None:
+        verb = "violated" if change.requirement else "failed"
+        before, after = (f"{k} of {n}" for k, n in zip(change.failed, change.counts, strict=True))
+        return f"{verb} in {before} runs → {after}, {_chance(change.p)}"
+    return f"{change.what} {_shown(change.before, change)} → {_shown(change.after, change)}, {_chance(change.p)}"
+
+
+def remarks(comparison: Comparison) -> Iterator[str]:
+    """What was compared and not found to have changed, and what has too few runs."""
+    changes = comparison.changes
+    same = sum(not each.finding for each in changes)
+    yield f"{same} of {counted(len(changes), 'comparison')} without a change that chance does not explain"
+    few = dict.fromkeys(subject(each) for each in changes if each.too_few)
+    if few:
+        yield f"too few to show any change: {', '.join(few)}"
+
+
+def _chance(p: float) -> str:
+    return f"p = {p:.2g}" if p >= 0.0001 else "p < 0.0001"
+
+
+def _shown(si: float, change: Change) -> str:
+    return duration(si) if is_time(change.unit) else quantity(si, parse_unit(change.unit))

@@ -1,0 +1,236 @@
+"""`btq compare`: what changed between two labels or robots of a store."""
+
+from __future__ import annotations
+
+import csv
+import json
+import random
+from collections.abc import Sequence
+from math import comb
+from pathlib import Path
+
+import pytest
+from in_process import run_btq
+from json_schema import violations
+
+from btq_lang.evidence.compare.chance import Shuffles, fisher, holm, is_too_few, shuffles_for
+from btq_lang.evidence.compare.comparison import compare
+from btq_lang.evidence.store import engine
+from btq_lang.evidence.store.rows import file_of
+from btq_lang.evidence.store.tables import ROWS
+
+SCHEMA = json.loads(
+    (Path(__file__).parents[2] / "btq_lang/evidence/compare/comparison.schema.json").read_text(encoding="utf-8")
+)
+Run = tuple[float, float, bool]  # seconds of Move, seconds of Dock, whether Dock succeeded
+CLAUSE = ("quick", "Be quick", "Move takes at most 12 s", "Move::2", "", "activations", "s")
+
+TABLE = (
+    "main: 60 runs of v1, 50 runs of v2, durations compared by runs\n"
+    "\n"
+    "  newly violated  quick  Be quick                            was satisfied\n"
+    "  slower          Move::2                                    median 10.1 s → 11.6 s, p = 0.0008\n"
+    "  slower          Move::2                                    p95 10.8 s → 12.4 s, p = 0.032\n"
+    "  slower          quick: Move takes at most 12 s at Move::2  median 10.1 s → 11.6 s, p = 0.0008\n"
+    "  slower          quick: Move takes at most 12 s at Move::2  p95 10.8 s → 12.4 s, p = 0.032\n"
+    "  less reliable   Dock::3                                    failed in 5 of 60 runs → 28 of 50, p < 0.0001\n"
+    "  less reliable   quick: Move takes at most 12 s at Move::2  violated in 0 of 60 runs → 10 of 50, p = 0.0013\n"
+    "\n"
+    "3 of 9 comparisons without a change that chance does not explain\n"
+)
+MARKDOWN = (
+    "### main: 60 runs of v1, 50 runs of v2, durations compared by runs\n"
+    "\n"
+    "| Finding | Of | Change |\n"
+    "|---|---|---|\n"
+    "| **newly violated** | `quick` | was satisfied |\n"
+    "| **slower** | `Move::2` | median 10.1 s → 11.6 s, p = 0.0008 |\n"
+    "| **slower** | `Move::2` | p95 10.8 s → 12.4 s, p = 0.032 |\n"
+    "| **slower** | `quick: Move takes at most 12 s at Move::2` | median 10.1 s → 11.6 s, p = 0.0008 |\n"
+    "| **slower** | `quick: Move takes at most 12 s at Move::2` | p95 10.8 s → 12.4 s, p = 0.032 |\n"
+    "| **less reliable** | `Dock::3` | failed in 5 of 60 runs → 28 of 50, p &lt; 0.0001 |\n"
+    "| **less reliable** | `quick: Move takes at most 12 s at Move::2` |"
+    " violated in 0 of 60 runs → 10 of 50, p = 0.0013 |\n"
+    "\n"
+    "* 3 of 9 comparisons without a change that chance does not explain\n"
+)
+FEW = (
+    "main: 2 runs of a, 2 runs of b, durations compared by runs\n"
+    "\n"
+    "9 of 9 comparisons without a change that chance does not explain\n"
+    "too few to show any change: Dock::3, Move::2, quick: Move takes at most 12 s at Move::2\n"
+)
+
+
+def keep(store: Path, label: str, runs: Sequence[Run], robot: str = "") -> None:
+    """Keep runs of a mission of two nodes as one log."""
+    folder = store / f"{len([*store.glob('*')]):064x}"
+    folder.mkdir(parents=True)
+    tables: dict[str, list[tuple[object, ...]]] = {name: [] for name in ROWS}
+    of = ("main", robot)
+    tables["clauses"].append((*of, 0, *CLAUSE, *[None] * 7, True, 0, ""))
+    for number, (move, dock, succeeded) in enumerate(runs, start=1):
+        begin = number * 60_000_000
+        middle, end = begin + round(move * 1e6), begin + round((move + dock) * 1e6)
+        outcome = "succeeded" if succeeded else "failed"
+        tables["runs"].append((*of, number, begin, end, outcome, 2, 0, 0, None, "", 3, 3))
+        tables["activations"].append((*of, number, 2, "Move::2", "Move", True, begin, middle, "succeeded", "exact"))
+        tables["activations"].append((*of, number, 3, "Dock::3", "Dock", True, middle, end, outcome, "exact"))
+        verdict, at = ("violated", middle) if move > 12 else ("satisfied", None)
+        tables["verdicts"].append((0, number, "Move::2", begin, middle, verdict, True, at, move, 12.0, None))
+    for name, found in tables.items():
+        with open(file_of(str(folder), name), "w", encoding="utf-8", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows(found)
+    engine.write_parquet(str(folder), {"log": folder.name, "label": label, "source": "log"})
+
+
+def drawn(chance: random.Random, number: int, move: float = 10.0, fails: float = 0.05) -> list[Run]:
+    return [
+        (min(chance.gauss(move, 0.5), 11.9) if move < 11 else chance.gauss(move, 0.5), 5.0, chance.random() >= fails)
+        for _ in range(number)
+    ]
+
+
+@pytest.fixture
+def changed(tmp_path: Path) -> Path:
+    """A folder with a store of two labels: the later one is slower, and docks less often."""
+    chance = random.Random(1)
+    keep(tmp_path / "kept", "v1", drawn(chance, 60))
+    keep(tmp_path / "kept", "v2", drawn(chance, 50, 11.5, 0.5))
+    return tmp_path
+
+
+def test_what_got_worse(changed: Path) -> None:
+    assert run_btq("compare", "kept", "--by", "label", "v1", "v2", cwd=changed) == (1, TABLE, "")
+
+
+def test_back_to_the_version_that_was_better(changed: Path) -> None:
+    code, output, errors = run_btq("compare", "kept", "v2", "v1", cwd=changed)
+    assert (code, errors) == (0, "")
+    assert [line.split("  ")[1] for line in output.splitlines() if line.startswith("  ")] == [
+        "faster",
+        "faster",
+        "faster",
+        "faster",
+        "more reliable",
+        "more reliable",
+    ]
+
+
+def test_json_is_as_its_schema_says(changed: Path) -> None:
+    code, output, errors = run_btq("compare", "kept", "v1", "v2", "--format", "json", cwd=changed)
+    assert (code, errors) == (1, "")
+    found = json.loads(output)
+    assert list(violations(found, SCHEMA)) == []
+    (mission,) = found["missions"]
+    assert (found["sides"], mission["runs"], mission["over"], mission["group"]) == (["v1", "v2"], [60, 50], "runs", 1)
+    assert mission["newly"] == [{"id": "quick", "title": "Be quick", "before": "satisfied"}]
+    assert [(each["node"], each["what"], each["finding"]) for each in mission["changes"]] == [
+        ("Dock::3", "median", ""),
+        ("Dock::3", "p95", ""),
+        ("Move::2", "median", "slower"),
+        ("Move::2", "p95", "slower"),
+        ("Move::2", "median", "slower"),
+        ("Move::2", "p95", "slower"),
+        ("Dock::3", "failures", "less reliable"),
+        ("Move::2", "failures", ""),
+        ("Move::2", "failures", "less reliable"),
+    ]
+
+
+def test_markdown(changed: Path) -> None:
+    assert run_btq("compare", "kept", "v1", "v2", "-o", "x.md", cwd=changed) == (1, "", "")
+    assert (changed / "x.md").read_text(encoding="utf-8") == MARKDOWN
+
+
+def test_few_runs_say_so(tmp_path: Path) -> None:
+    keep(tmp_path / "kept", "a", [(10, 5, True)] * 2)
+    keep(tmp_path / "kept", "b", [(11, 5, False)] * 2)
+    assert run_btq("compare", "kept", "a", "b", cwd=tmp_path) == (0, FEW, "")
+
+
+def test_robots_are_shuffled_where_a_label_has_several(tmp_path: Path) -> None:
+    """Runs of one robot are alike: 200 runs of two slow robots and of two quick ones are four observations."""
+    chance = random.Random(2)
+    for label, robot, move in (("a", "r1", 9), ("a", "r2", 10), ("b", "r3", 10.5), ("b", "r4", 10.7)):
+        keep(tmp_path / "kept", label, drawn(chance, 50, move, 0.0), robot)
+    (found,) = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", "b"))
+    assert (found.over, found.robots, found.runs) == ("robots", (2, 2), (100, 100))
+    assert [each.finding for each in found.changes if each.finding] == []
+    (alone,) = compare(engine.asked(str(tmp_path / "kept")), "robot", ("r1", "r4"))
+    assert {each.node for each in alone.changes if each.finding == "slower"} == {"Move::2"}
+    assert alone.over == "runs"
+
+
+def test_many_runs_are_shuffled_in_groups(tmp_path: Path) -> None:
+    chance = random.Random(3)
+    keep(tmp_path / "kept", "a", drawn(chance, 600, 10.0))
+    keep(tmp_path / "kept", "b", drawn(chance, 900, 10.1))
+    (found,) = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", "b"))
+    assert found.group == 3
+    assert {(each.node, each.what) for each in found.changes if each.finding == "slower"} == {("Move::2", "median")}
+
+
+def test_a_version_compared_with_itself(tmp_path: Path) -> None:
+    """Of 12 random splits of the runs of one version, at most the promised share finds something."""
+    assert sum(finds_something(tmp_path / str(seed), seed) for seed in range(12)) == 0
+
+
+def finds_something(store: Path, seed: int) -> bool:
+    """Whether something is found in a split of 60 runs in two halves."""
+    runs = drawn(random.Random(seed), 60, fails=0.2)
+    keep(store, "a", runs[:30])
+    keep(store, "b", runs[30:])
+    (found,) = compare(engine.asked(str(store)), "label", ("a", "b"))
+    return any(each.finding for each in found.changes)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("kept", "v1", "v3"), "no run has the label v3; there are v1, v2"),
+        (("kept", "v1", "v1"), "both sides are v1"),
+        (("gone", "v1", "v2"), "gone: no verdicts are kept there; keep some with btq verify LOG --store gone"),
+        (("kept", "v1", "v2", "-o", "x.pdf"), None),
+    ],
+)
+def test_what_cannot_be_compared(arguments: tuple[str, ...], message: str | None, changed: Path) -> None:
+    message = message or "cannot write .pdf; choose one of table, json, markdown with --format, or another file name"
+    assert run_btq("compare", *arguments, cwd=changed) == (2, "", f"btq compare: {message}\n")
+
+
+@pytest.mark.parametrize("first", [(0, 5), (3, 10), (1, 40), (20, 20)])
+@pytest.mark.parametrize("second", [(4, 5), (3, 12), (9, 30)])
+def test_fisher_is_the_sum_of_all_tables_that_are_as_unlikely(first: tuple[int, int], second: tuple[int, int]) -> None:
+    (failed, n), (other, m) = first, second
+    both = failed + other
+    ways = [comb(n, each) * comb(m, both - each) for each in range(max(0, both - m), min(both, n) + 1)]
+    observed = comb(n, failed) * comb(m, other)
+    expected = sum(each for each in ways if each <= observed) / comb(n + m, both)
+    assert fisher(first, second) == pytest.approx(expected, rel=1e-9)
+
+
+def test_shuffles_agree_with_fisher_where_each_run_fails_or_not() -> None:
+    scores = [80 * failed - 24 for failed in [True] * 7 + [False] * 33 + [True] * 17 + [False] * 23]
+    assert sum(scores) == 0
+    assert Shuffles(40, 40, 10_000).probability(scores) == pytest.approx(fisher((7, 40), (17, 40)), rel=0.15)
+
+
+def test_holm() -> None:
+    assert holm([0.01, 0.04, 0.03, 0.5]) == pytest.approx([0.04, 0.09, 0.09, 0.5])
+    assert holm([]) == []
+
+
+def test_as_many_shuffles_as_comparisons_need() -> None:
+    assert (shuffles_for(12), shuffles_for(1000)) == (10_000, 20_000)
+    assert (is_too_few(3, 3, 1), is_too_few(4, 4, 1), is_too_few(4, 4, 12), is_too_few(6, 6, 12)) == (
+        False,
+        False,
+        True,
+        False,
+    )
+
+
+def test_the_table_of_the_page() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "evidence-store.md").read_text(encoding="utf-8")
+    assert f"$ btq compare evidence v1 v2\n{TABLE}```" in page
