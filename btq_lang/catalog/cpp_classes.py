@@ -72,6 +72,8 @@ TAGS: Final = {
     "RunOnceNode": "RunOnce",
     "LoopNode": "LoopString",
 }
+# Classes whose tag has the number that is their argument.
+NUMBERED_TAGS: Final = {"SwitchNode": "Switch{}"}
 # Of behaviortree_ros2, each with the port that it adds; versions differ in the default, and none needs a value.
 ROS_PORTS: Final = {
     "RosActionNode": ("action_name", "Action server name"),

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from btq_lang.catalog.cpp_classes import ENGINE, ROS_PORTS, TAGS
+from btq_lang.catalog.cpp_classes import ENGINE, NUMBERED_TAGS, ROS_PORTS, TAGS
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.cpp.model import CppPort, Place
 
@@ -21,7 +21,8 @@ def library_ports(bound: Bound, place: Place) -> dict[str, CppPort] | None:
     if name in ROS_PORTS:
         key, text = ROS_PORTS[name]
         return {key: CppPort(key, "input", "std::string", "", "", text, place)}
-    tag = f"Switch{bound.meanings.get('0')}" if name == "SwitchNode" else TAGS.get(name)
+    numbered = NUMBERED_TAGS.get(name)
+    tag = numbered.format(bound.meanings.get("0")) if numbered is not None else TAGS.get(name)
     if name not in ENGINE or (tag is not None and tag not in BUILTINS):
         return None
     ports = {}
