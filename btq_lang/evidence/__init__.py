@@ -31,6 +31,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
@@ -86,8 +87,13 @@ def verify(
             progress(number, judging.runs)
     else:
         for number, log in enumerate(wanted):
-            judging.add(judge(log, means, lambda run, files=number: progress(files, judging.runs + run)))  # type: ignore[misc]
+            of_log = partial(_progress, progress, number, judging.runs)
+            judging.add(judge(log, means, of_log))
     return judging.report()
+
+
+def _progress(progress: Callable[[int, int], None], files: int, runs: int, run: int) -> None:
+    progress(files, runs + run)
 
 
 def write(report: Report, form: str, *, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:

@@ -238,7 +238,7 @@ def test_writers_killed_at_any_moment(tmp_path: Path) -> None:
         bound = "15 ms" if turn % 2 else "14 ms"  # so that sets are replaced, too
         (tmp_path / "main.btq").write_text(MISSION.replace("15 ms", bound), encoding="utf-8")
         process = writer(tmp_path, logs)
-        time.sleep(chance.uniform(0.2, 1.0) * whole)
+        time.sleep(chance.uniform(0.2, 1.0) * whole)  # killed at any moment of its work, not when it is ready for it
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
         for folder in (tmp_path / "kept").glob("[0-9a-f]*"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import tarfile
 from collections import Counter
 from functools import cache
@@ -12,6 +11,7 @@ from pathlib import Path
 from subprocess import run
 
 import pytest
+from nav2_clone import clone
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, PACKAGED
@@ -59,10 +59,7 @@ FOUND = {
 
 @cache
 def shipped(branch: str) -> dict[str, File]:
-    folder = os.environ.get("BTQ_NAV2")
-    if not folder:
-        pytest.skip("no clone of navigation2: set BTQ_NAV2 to one that has the branches humble to lyrical")
-    command = ["git", "-C", folder, "archive", branch, "--", "nav2_bt_navigator/behavior_trees"]
+    command = ["git", "-C", str(clone()), "archive", branch, "--", "nav2_bt_navigator/behavior_trees"]
     found = {}
     with tarfile.open(fileobj=BytesIO(run(command, capture_output=True, check=True).stdout)) as archive:
         for member in archive:
