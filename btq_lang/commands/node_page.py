@@ -11,7 +11,7 @@ from typing import Final
 
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.cpp.model import CppNode, CppNodes, CppPort
-from btq_lang.trace.page_parts import PAGE_STYLE
+from btq_lang.render.page_style import PAGE_STYLE
 
 
 def as_html(found: CppNodes, sources: str) -> str:

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.graph.placing import place
 from btq_lang.graph.svg import STYLE, colours, part
+from btq_lang.render.page_style import PAGE_STYLE
 from btq_lang.trace.overview import At, NodeRow, Overview, RequirementRow, TreeRow
-from btq_lang.trace.page_parts import PAGE_STYLE, SCRIPT
+from btq_lang.trace.page_parts import SCRIPT, TRACE_STYLE
 from btq_lang.trace.verdicts import VERDICT_STYLE, verdicts
 from btq_lang.trace.wording import GAPS, remarks, shown_quality, summary
 from btq_lang.util.text import counted
@@ -39,7 +40,7 @@ def _lines(overview: Overview, missions: Sequence[MissionVerdicts]) -> Iterator[
     yield '<html lang="en">'
     yield '<head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
     yield f"<title>{escape(title)}</title>"
-    yield f"<style>\n{STYLE}{colours(False)}{PAGE_STYLE}{VERDICT_STYLE if missions else ''}</style>"
+    yield f"<style>\n{STYLE}{colours(False)}{PAGE_STYLE}{TRACE_STYLE}{VERDICT_STYLE if missions else ''}</style>"
     yield f'<style media="screen and (prefers-color-scheme: dark)">\n{colours(True)}</style></head>'
     yield "<body>"
     yield '<a class="skip" href="#requirements">To the requirements</a>'

@@ -1,28 +1,10 @@
-"""The style sheet and the script of the page."""
+"""The page's own style sheet, and its script."""
 
 from __future__ import annotations
 
 from typing import Final
 
-PAGE_STYLE: Final = """\
-:root { color-scheme: light dark; --ink: #14181c; --soft: #55606b; --ground: #ffffff; --raised: #f5f7f9;
-  --line: #d3dae1; --accent: #0b5cad; --chosen: #d9ebff; --enforced: #1b6b3a; --monitored: #0b5cad;
-  --reviewed: #8a4b00; --missing: #b3261e; }
-@media screen and (prefers-color-scheme: dark) { :root { --ink: #eef1f4; --soft: #a7b2bd; --ground: #16191d;
-  --raised: #1f242a; --line: #3a434d; --accent: #7cb8ff; --chosen: #1d3f63; --enforced: #79d39c;
-  --monitored: #7cb8ff; --reviewed: #efb266; --missing: #ff8f86; } }
-* { box-sizing: border-box; }
-html { scroll-padding-top: 1rem; }
-body { margin: 0; color: var(--ink); background: var(--ground); line-height: 1.45;
-  font: 15px/1.45 system-ui, "Segoe UI", Helvetica, Arial, sans-serif; }
-header, main { padding: 0 1.5rem; }
-h1 { font-size: 1.45rem; margin: 1.25rem 0 .25rem; overflow-wrap: anywhere; }
-h2 { font-size: 1.15rem; margin: 1.5rem 0 .5rem; }
-h3 { font-size: 1rem; margin: 1rem 0 .25rem; display: inline-block; }
-a { color: var(--accent); text-underline-offset: .15em; }
-.skip { position: absolute; left: -99rem; }
-.skip:focus { left: 1rem; top: .5rem; background: var(--ground); padding: .25rem .5rem; }
-nav ul { display: flex; flex-wrap: wrap; gap: .25rem 1rem; list-style: none; padding: 0; margin: .5rem 0; }
+TRACE_STYLE: Final = """\
 .filter { display: flex; flex-wrap: wrap; gap: .5rem 1rem; align-items: end; padding: .75rem; margin: .5rem 0;
   background: var(--raised); border: 1px solid var(--line); border-radius: 6px; }
 .filter[hidden] { display: none; }
@@ -34,19 +16,8 @@ nav ul { display: flex; flex-wrap: wrap; gap: .25rem 1rem; list-style: none; pad
 .trees { position: sticky; top: 0; max-height: 100vh; overflow-y: auto; }
 @media (max-width: 1100px) { .beside { grid-template-columns: minmax(0, 1fr); }
   .trees { position: static; max-height: none; } }
-table { border-collapse: collapse; width: 100%; }
-caption { text-align: left; color: var(--soft); font-size: .9rem; padding-bottom: .35rem; }
-th, td { text-align: left; vertical-align: top; padding: .5rem .6rem; border-bottom: 1px solid var(--line);
-  font-weight: normal; overflow-wrap: anywhere; }
-thead th { font-weight: 600; border-bottom: 2px solid var(--line); overflow-wrap: normal; }
-th p { margin: .15rem 0; }
 tr.row { cursor: pointer; }
 tr.row > th:first-child { width: 44%; border-left: 4px solid transparent; }
-td ul, th ul, .gaps { list-style: none; margin: 0; padding: 0; }
-td li + li { margin-top: .25rem; }
-.name { font-weight: 600; }
-code { font: .88em ui-monospace, "SF Mono", Menlo, Consolas, monospace; }
-small { color: var(--soft); }
 .at { white-space: nowrap; }
 .chip { display: inline-block; margin-top: .3rem; padding: 0 .5rem; border: 1px dashed var(--line);
   border-radius: .9rem; font-size: .85rem; }
@@ -55,23 +26,15 @@ small { color: var(--soft); }
 .way.enforced { color: var(--enforced); } .way.enforced::before { content: "\\25CF\\00A0"; }
 .way.monitored { color: var(--monitored); } .way.monitored::before { content: "\\25D0\\00A0"; }
 .way.reviewed { color: var(--reviewed); }
-.way.none, .missing { color: var(--missing); }
-.numbers td { text-align: right; font-variant-numeric: tabular-nums; }
-.numbers thead th:not(:first-child) { text-align: right; }
-@media (max-width: 700px) { .numbers th, .numbers td { padding: .3rem .2rem; font-size: .75rem; hyphens: auto; }
-  .numbers thead th { overflow-wrap: anywhere; } }
-.empty { color: var(--soft); }
-.legend { margin: .25rem 0; font-size: .85rem; }
+.way.none { color: var(--missing); }
 .key { padding: 0 .5rem; margin-right: .35rem; border: 1.5px dashed #a8650f; border-radius: 3px; }
 .key.enforced { border-style: solid; border-width: 2.5px; } .key.reviewed { border-style: dotted; }
 .key.quality { border-color: #2f7d4f; border-radius: 99px; }
 figure { margin: 0 0 1rem; content-visibility: auto; contain-intrinsic-size: auto 20rem; }
-.scroll { overflow: auto; border: 1px solid var(--line); border-radius: 6px; background: var(--ground); }
 .given { display: inline-block; }
 svg.tree { display: block; max-width: 100%; height: auto; }
 svg a { text-decoration: none; }
 .note, .box[data-notes] { cursor: pointer; }
-:focus-visible { outline: 3px solid var(--accent); outline-offset: 2px; }
 .near > th, .near > td, .chosen > th, .chosen > td, tr:target > th, tr:target > td { background: var(--chosen); }
 tr.chosen > th:first-child, tr:target > th:first-child { border-left-color: var(--accent); }
 .box.near .outline, .note.near .outline { stroke: var(--accent); stroke-width: 2.5; }
@@ -79,13 +42,9 @@ tr.chosen > th:first-child, tr:target > th:first-child { border-left-color: var(
 .box.chosen .outline, .box:target .outline { fill: var(--chosen); }
 .choosing .box:not(.chosen):not(.near), .choosing .note:not(.chosen):not(.near) { opacity: .45; }
 .live { position: absolute; left: -99rem; }
-@media print { @page { margin: 14mm; } body { font-size: 10.5pt; } .filter, nav, .skip { display: none; }
-  .beside { display: block; } .trees { position: static; max-height: none; overflow: visible; }
-  tr, figure { break-inside: avoid; } figure { content-visibility: visible; }
-  thead { display: table-header-group; } .scroll { overflow: visible; border: 0; }
-  svg.tree { max-width: 100%; height: auto; } a { color: inherit; text-decoration: none; }
-  .choosing .box, .choosing .note { opacity: 1 !important; } }
-@media (prefers-reduced-motion: no-preference) { html { scroll-behavior: smooth; } }
+@media print { .filter { display: none; } .beside { display: block; }
+  .trees { position: static; max-height: none; overflow: visible; } figure { content-visibility: visible; }
+  svg.tree { max-width: 100%; height: auto; } .choosing .box, .choosing .note { opacity: 1 !important; } }
 """
 
 # A click or Enter on a row, a note or a node selects its key (`r1`, `q2`); Escape or the same click deselects it.

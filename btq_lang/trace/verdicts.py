@@ -176,11 +176,6 @@ _CAME_TO: Final = {"S": "succeeded", "F": "failed", "H": "halted", "O": "interru
 VERDICT_STYLE: Final = """\
 .verdicts td:first-child { white-space: nowrap; }
 .verdicts td:last-child { width: 20rem; }
-.verdict { font-weight: 700; }
-.verdict::before { content: "\\25CB\\00A0"; }
-.verdict.violated { color: var(--missing); } .verdict.violated::before { content: "\\2716\\00A0"; }
-.verdict.satisfied { color: var(--enforced); } .verdict.satisfied::before { content: "\\2714\\00A0"; }
-.verdict.undecided, .verdict.unknown, .verdict.never-exercised { color: var(--reviewed); }
 .histogram { width: 100%; max-width: 20rem; display: block; }
 .histogram text { font-size: 11px; fill: var(--ink); }
 .histogram .bin { fill: var(--monitored); stroke: var(--ground); stroke-width: .5; }

@@ -17,11 +17,11 @@ from btq_lang.cli import main
 from btq_lang.commands.opening import open_workspace
 from btq_lang.graph.svg import _COLOURS
 from btq_lang.render.cells import laid_out
+from btq_lang.render.page_style import PAGE_STYLE
 from btq_lang.trace import FORMATS, write
 from btq_lang.trace.collect import collect
 from btq_lang.trace.meanings import Meanings
 from btq_lang.trace.overview import Clause, Overview
-from btq_lang.trace.page_parts import PAGE_STYLE
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
 
