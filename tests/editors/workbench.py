@@ -37,6 +37,7 @@ class Workbench:
         self.page, self.origin, self.folder, self.programs = page, origin, folder, programs
         self._machine_settings = machine_settings
         self._written: list[Path] = []
+        self._settings = 0  # how often they have been written
 
     # ---- what a person does ----
 
@@ -169,8 +170,20 @@ class Workbench:
         self.gone(".tab.active.dirty")
 
     def settings(self, **values: object) -> None:
-        """The machine's settings are these and no others."""
-        self._machine_settings.write_text(json.dumps(values))
+        """The machine's settings are these and no others, and the window has read them.
+
+        It says so in its title, which is one of them; a change that it misses is written again.
+        """
+        from playwright.sync_api import TimeoutError as Timeout
+
+        self._settings += 1
+        title = f"settings {self._settings}"
+        for _ in range(8):
+            self._machine_settings.write_text(json.dumps({**values, "window.title": title}))
+            with suppress(Timeout):
+                self.page.wait_for_function("title => document.title === title", arg=title, timeout=_WAIT / 8)
+                return
+        raise AssertionError(f"the settings are not read: {self.page.title()}")
 
     # ---- what a person sees ----
 
