@@ -237,9 +237,18 @@ def _add_trace(commands: _SubParsersAction[Parser]) -> None:
         epilog="exit codes: 0 written; 1 written, but of missions with errors; 2 usage or I/O\n\n"
         "examples:\n  btq trace                               the project in this folder\n"
         "  btq trace --format html -o trace.html   a page with the trees\n"
-        "  btq trace --format markdown             for a pull request\n",
+        "  btq trace --format markdown             for a pull request\n"
+        "  btq trace --evidence verdicts.json      with the verdicts that btq verify wrote\n",
     )
     _add_paths(parser)
+    parser.add_argument(
+        "--evidence",
+        action="append",
+        default=[],
+        metavar="PATH",
+        help="show verdicts: those in a file of btq verify --format json, or by logs; may be repeated; default: by the"
+        " `logs` in [evidence] of btq.toml",
+    )
     parser.add_argument("--bundle", action="store_true", help="what is enforced in builds with --bundle")
     parser.add_argument("--format", choices=TRACE_FORMATS, help="default: by the suffix of the -o file, else table")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")

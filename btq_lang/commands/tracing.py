@@ -16,18 +16,27 @@ def run(options: Namespace) -> int:
     if problem := usage_problem(options.paths) or form_problem(options, FORMATS):
         print(f"btq trace: {problem}", file=sys.stderr)
         return 2
+    from btq_lang.commands.trace_evidence import verdicts_for  # it imports the readers of logs
+
     groups, problems = Files().groups(options.paths, options.stdin_filename)
     tell(problems)
     if empty := no_mission_below(options.paths, groups):
         print(f"btq trace: {empty}", file=sys.stderr)
     if problems or empty:
         return 2
-    table = trace_tables([(group.workspace, group.given) for group in groups], options.bundle)
+    wrong: list[str] = []
+    verdicts_of = verdicts_for(options.evidence, groups, wrong)
+    for each in wrong:
+        print(f"btq trace: {each}", file=sys.stderr)
+    parts = [(group.workspace, group.given) for group in groups]
+    table = trace_tables(parts, options.bundle, verdicts_of=verdicts_of)
     to_terminal = options.output is None and sys.stdout.isatty()
     colour = is_coloured(options, to_terminal)
     text = table.write(form_of(options, FORMATS), colour=colour, width=terminal_width() if to_terminal else 120)
     if code := write_output("trace", options.output, text):
         return code
+    if wrong:
+        return 2
     if table.errors:
         what = "an error" if table.errors == 1 else f"{table.errors} errors"
         print(f"btq trace: the missions have {what}, so the overview may be incomplete; run btq check", file=sys.stderr)

@@ -89,7 +89,7 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
         return (), (), {}
     home = find_project(".")
     project = home.project
-    requested = options.logs or _logs_of(project)
+    requested = options.logs or logs_of(project)
     if not requested:
         untold = "no log given; name one, or set `logs` in [evidence] of btq.toml"
         problems += map(str, home.problems) if home.problems else [untold]
@@ -109,7 +109,7 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
     return logs, _missions(options.mission, logs, problems), samples
 
 
-def _logs_of(project: Project) -> Sequence[str]:
+def logs_of(project: Project) -> Sequence[str]:
     """The paths that the project's patterns match; a pattern that matches none is kept, to be reported."""
     found: list[str] = []
     for pattern in project.evidence.logs if project.evidence is not None else ():

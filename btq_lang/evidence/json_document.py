@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.wording import timestamp
 from btq_lang.util.record import fields_of
+from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Source
@@ -54,6 +55,7 @@ def _source(source: Source, mission: MissionVerdicts) -> Json:
 def _mission(mission: MissionVerdicts) -> Json:
     return {
         "name": mission.name,
+        "file": shown(mission.file),
         "runs": mission.runs,
         "outcomes": dict(mission.outcomes),
         "retries": _fields(mission.retries),

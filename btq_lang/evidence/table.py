@@ -75,7 +75,7 @@ def _rows(mission: MissionVerdicts, paint: Paint, verbose: bool, room: int) -> I
         cells = [broken(text, width) for text, width in zip(texts, fitting, strict=True) if width]
         if hint:
             cells[-1] = [*cells[-1], *broken(hint, fitting[-1])] if is_narrowed else [f"{cells[-1][0]}  {hint}"]
-        word = paint(_STYLES[verdict], verdict + " " * (len(NEVER) - len(verdict)))
+        word = paint(VERDICT_STYLES[verdict], verdict + " " * (len(NEVER) - len(verdict)))
         shown = [width for width in fitting if width]
         for number, line in enumerate(zip_longest(*cells, fillvalue="")):
             parts = [text + " " * (width - cells_of(text)) for text, width in zip(line, shown, strict=True)]
@@ -147,4 +147,4 @@ _FURTHER: Final = 4  # violations explained in addition to the worst
 _NAMED: Final = 3  # nodes where failures began
 _LONG_TICK: Final = 0.01  # s, the period in which Nav2 ticks its trees
 _ORDER: Final = (VIOLATED, SATISFIED, UNDECIDED, UNKNOWN, NEVER)
-_STYLES: Final = {VIOLATED: "error", SATISFIED: "hint", UNDECIDED: "warning", UNKNOWN: "info", NEVER: "warning"}
+VERDICT_STYLES: Final = {VIOLATED: "error", SATISFIED: "hint", UNDECIDED: "warning", UNKNOWN: "info", NEVER: "warning"}

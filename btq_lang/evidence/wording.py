@@ -75,5 +75,12 @@ def timestamp(time: int) -> str:
     return found.isoformat(timespec="microseconds").replace("+00:00", "Z") if found is not None else f"{time} us"
 
 
+def time_of(text: str) -> int:
+    """The time that `timestamp` wrote."""
+    if text.endswith(" us"):
+        return int(text.removesuffix(" us"))
+    return (datetime.fromisoformat(text.replace("Z", "+00:00")) - _EPOCH) // timedelta(microseconds=1)
+
+
 _MILLISECOND, _SECOND, _MINUTE, _HOUR = map(_unit, ("ms", "s", "min", "h"))
 _EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)

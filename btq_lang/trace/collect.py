@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.qualities import Edition, get, qualities
 from btq_lang.diagnostics.model import Place
+from btq_lang.evidence.sentences import result
+from btq_lang.evidence.verdicts import WORST_FIRST
 from btq_lang.graph.figure import Box, Note
 from btq_lang.graph.missions import by_tree, clauses_in_words, concerns, figure
 from btq_lang.requirements.model import Applied, Mission, Requirement, Span, Target, Total
@@ -22,6 +24,7 @@ from btq_lang.trace.meanings import Meaning, Meanings
 from btq_lang.trace.overview import (
     At,
     Clause,
+    Evidence,
     NodeRow,
     Overview,
     QualityRow,
@@ -38,10 +41,12 @@ from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.verdicts import RequirementVerdict
     from btq_lang.trace.overview import Carries
     from btq_lang.trace.ways import Ways
 
     BoxDetails: TypeAlias = Callable[[ResolvedNode], tuple[tuple[str, ...], str]]
+    VerdictsOf: TypeAlias = Callable[[str], Sequence[RequirementVerdict]]
 
 
 def collect(
@@ -49,6 +54,7 @@ def collect(
     ways: Ways = declared_ways,
     shown: Callable[[str], str] = str,
     details_of: BoxDetails | None = None,
+    verdicts_of: VerdictsOf | None = None,
 ) -> Overview:
     """The overview of missions.
 
@@ -58,8 +64,9 @@ def collect(
         ways: determines how clauses are covered.
         shown: gives a path as people read it.
         details_of: gives further lines for the box of a node, and its class in the drawing.
+        verdicts_of: gives the verdicts on the mission with a path; None: there is no evidence.
     """
-    collector = _Collector(ways, shown, details_of)
+    collector = _Collector(ways, shown, details_of, verdicts_of)
     files: list[str] = []
     for workspace, given in parts:
         included = {path for each in given for path in workspace.closure(each) if path != each}
@@ -72,9 +79,16 @@ def collect(
 class _Collector:
     """The rows so far, by what they represent."""
 
-    def __init__(self, ways: Ways, shown: Callable[[str], str], details_of: BoxDetails | None) -> None:
+    def __init__(
+        self,
+        ways: Ways,
+        shown: Callable[[str], str],
+        details_of: BoxDetails | None,
+        verdicts_of: VerdictsOf | None,
+    ) -> None:
         self._ways = ways
         self._details_of = details_of
+        self._verdicts_of = verdicts_of
         self._shown = shown
         self._edition: Edition | None = None
         self._nodes: dict[int, _Node] = {}  # by `id` of the syntax, which all missions share
@@ -94,6 +108,7 @@ class _Collector:
         self._declared(workspace, path, meanings, place)
         self._concerns(found, meanings, place)
         self._definitions(found, meanings, place)
+        self._evidence(path, found)
         own = self._uses(workspace, path, found, place)
         for source in found.nodes.all:
             node = self._nodes[id(source.node)]
@@ -104,7 +119,8 @@ class _Collector:
     def overview(self, files: tuple[str, ...]) -> Overview:
         """All rows, linked with each other."""
         edition = self._edition or "2023"
-        rows = tuple(each.row(self._key(each.meaning, each.quality)) for each in self._requirements.values())
+        is_single = len(files) == 1
+        rows = tuple(each.row(self._key(each.meaning, each.quality), is_single) for each in self._requirements.values())
         measured: dict[str, list[str]] = {}
         for each, row in zip(self._requirements.values(), rows, strict=True):
             for id_ in (each.meaning.id or each.quality or "", *each.meaning.above):
@@ -115,7 +131,14 @@ class _Collector:
         nodes = tuple(each.row() for each in self._nodes.values())
         trees = tuple(sorted(self._trees(), key=lambda tree: tree.at.path not in files))  # included trees last
         return Overview(
-            edition, files, rows, quality_rows, nodes, trees, _totals(edition, rows, quality_rows, self._requirements)
+            edition,
+            files,
+            rows,
+            quality_rows,
+            nodes,
+            trees,
+            _totals(edition, rows, quality_rows, self._requirements),
+            self._verdicts_of is not None,
         )
 
     def _declared(self, workspace: Workspace, path: str, meanings: Meanings, place: Callable[[Place], At]) -> None:
@@ -145,6 +168,14 @@ class _Collector:
                 self._requirements[key] = _Requirement(number, requirement, meaning, place(requirement.place))
             if name is not None:
                 self._quality(name, meanings, place(requirement.place))
+
+    def _evidence(self, path: str, found: Requirements) -> None:
+        for each in self._verdicts_of(path) if self._verdicts_of is not None else ():
+            if (requirement := found.all.get(each.id)) is not None:
+                evidence = self._requirements[_place_of(requirement)].evidence
+                evidence += [
+                    Evidence(self._shown(path), one.text, one.path, one.verdict, result(one)) for one in each.clauses
+                ]
 
     def _quality(self, name: str, meanings: Meanings, at: At) -> _Quality:
         meaning = meanings.of(name)
@@ -252,9 +283,11 @@ class _Requirement:
         self.at = at
         self.uses: dict[Use, None] = {}
         self.loose: list[str] | None = None
+        self.evidence: list[Evidence] = []
 
-    def row(self, quality_key: str | None) -> RequirementRow:
+    def row(self, quality_key: str | None, is_of_one_mission: bool) -> RequirementRow:
         each = self.requirement
+        evidence = sorted(self.evidence, key=lambda one: WORST_FIRST.index(one.verdict))
         return RequirementRow(
             self.key,
             each.name,
@@ -266,6 +299,7 @@ class _Requirement:
             tuple(self.uses),
             tuple(self.loose or ()),
             each.demands_enforcement and not each.is_verified_by_people,
+            tuple(replace(one, mission="") if is_of_one_mission else one for one in evidence),
         )
 
 

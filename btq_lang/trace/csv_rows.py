@@ -3,7 +3,7 @@
 The columns, which later versions add to but do not change:
 
     kind            requirement | concern | quality without requirement | requirement without node |
-                    clause without node | hard requirement not enforced |
+                    clause without node | hard requirement not enforced | evidence |
                     node without quality | tree without quality
     requirement, title, quality, characteristic
     holds_for       the subject, or the node that has the concern, or the node or tree of a gap
@@ -12,6 +12,7 @@ The columns, which later versions add to but do not change:
     attached_by     subject | satisfies | apply | link
     source, line    of what attached it, or of the node or tree
     defined, defined_line   where the requirement or the quality is defined or first named
+    verdict, result     of a clause by logs, at the node whose path in the engine is in holds_for
 
 A text that a spreadsheet would take for a formula (`-> Work`, `=1+1`) gets an apostrophe prefix, as OWASP advises ("CSV
 Injection"); programs that need the exact texts read the JSON.
@@ -52,6 +53,9 @@ def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
                 yield {"kind": "requirement", **held, **_clause(clause), **_source(use.at)}
         for loose in each.loose:
             yield {"kind": "clause without node", **row, "clause": loose}
+        for one in each.evidence:
+            seen = {"holds_for": one.path, "clause": one.clause, "verdict": one.verdict, "result": one.result}
+            yield {"kind": "evidence", **row, **seen, **({"source": one.mission} if one.mission else {})}
     for each in overview.unenforced:
         row = _requirement(each, characteristics.get(each.quality_key or "", ""))
         yield {"kind": "hard requirement not enforced", **row}
@@ -95,5 +99,5 @@ def _source(at: At) -> dict[str, str | int]:
 
 COLUMNS: Final = (
     *("kind", "requirement", "title", "quality", "characteristic", "holds_for", "tree", "clause", "how", "why"),
-    *("attached_by", "source", "line", "defined", "defined_line"),
+    *("attached_by", "source", "line", "defined", "defined_line", "verdict", "result"),
 )

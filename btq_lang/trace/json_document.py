@@ -6,6 +6,9 @@ The document, format 1; a later btq adds keys but changes none without a new num
      "requirements": [{"key": KEY, "id": NAME, "title": TEXT, "quality": NAME | null, "quality_key": KEY | null,
                        "how": TEXT, "clauses": [TEXT], "at": PLACE,
                        "clauses_without_nodes": [TEXT],
+                       "evidence": [{"mission": PATH, "clause": TEXT, "path": PATH IN THE ENGINE,
+                                     "verdict": "violated" | "unknown" | "undecided" | "satisfied" | "never exercised",
+                                     "result": TEXT}] | null,
                        "holds_for": [{"subject": TEXT, "nodes": [KEY], "arguments": TEXT, "at": PLACE,
                                       "attached_by": "subject" | "satisfies" | "apply" | "link",
                                       "clauses": [{"text": TEXT, "why": TEXT,
@@ -25,7 +28,8 @@ The document, format 1; a later btq adds keys but changes none without a new num
     PLACE = {"path": PATH, "line": N, "column": N}, counted from 1, columns in Unicode code points
 
 A `skill` is an action or a condition that is not built in; it `carries` a quality or a requirement itself, through a
-node above it, or not at all.  Keys are valid in this document only.  The text is ASCII.
+node above it, or not at all.  Keys are valid in this document only.  `mission` is empty in the overview of
+one mission; `evidence` is null where neither logs nor verdicts are given.  The text is ASCII.
 """
 
 from __future__ import annotations
@@ -48,7 +52,7 @@ def render(overview: Overview) -> str:
         "version": __version__,
         "quality_model": f"iso25010-{overview.edition}",
         "files": list(overview.files),
-        "requirements": [_requirement(each) for each in overview.requirements],
+        "requirements": [_requirement(each, overview.has_evidence) for each in overview.requirements],
         "qualities": [_quality(each) for each in overview.qualities],
         "nodes": [
             {
@@ -91,7 +95,7 @@ def render(overview: Overview) -> str:
     return json.dumps(document, indent=1) + "\n"
 
 
-def _requirement(each: RequirementRow) -> Json:
+def _requirement(each: RequirementRow, has_evidence: bool) -> Json:
     return {
         "key": each.key,
         "id": each.name,
@@ -102,6 +106,7 @@ def _requirement(each: RequirementRow) -> Json:
         "clauses": list(each.clauses),
         "at": _fields(each.at),
         "clauses_without_nodes": list(each.loose),
+        "evidence": [_fields(one) for one in each.evidence] if has_evidence else None,
         "holds_for": [
             {
                 "subject": use.subject,

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from btq_lang.render.gfm import code, escaped, table
 from btq_lang.trace.overview import Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, remarks, shown_quality, summary
+from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
 
 
 def render(overview: Overview) -> str:
@@ -18,10 +18,11 @@ def _lines(overview: Overview) -> Iterator[str]:
     yield "## Requirements and qualities"
     yield ""
     yield escaped(summary(overview))
+    has_evidence = overview.has_evidence
     if overview.requirements:
         yield ""
-        heading = ("Requirement", "Quality", "Holds for", "How", "Defined")
-        yield from table(heading, (_requirement(each) for each in overview.requirements))
+        heading = ["Requirement", "Quality", "Holds for", "How", *(["Evidence"] if has_evidence else ()), "Defined"]
+        yield from table(heading, (_requirement(each, has_evidence) for each in overview.requirements))
     nodes = {node.key: node for node in overview.nodes}
     concerns = [quality for quality in overview.qualities if quality.concerns]
     if concerns:
@@ -37,7 +38,7 @@ def _lines(overview: Overview) -> Iterator[str]:
     yield from table(("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed"), totals, 1)
 
 
-def _requirement(each: RequirementRow) -> tuple[str, ...]:
+def _requirement(each: RequirementRow, has_evidence: bool) -> tuple[str, ...]:
     cell = [f"**{escaped(each.name)}**", *([escaped(each.title)] if each.title else [])]
     cell += [code(clause) for clause in each.clauses]
     subjects = []
@@ -45,11 +46,13 @@ def _requirement(each: RequirementRow) -> tuple[str, ...]:
         how = remarks(each, use)
         subjects.append(_node(use.subject + use.arguments, use.at) + (f", {how}" if how else ""))
     how = "<br>".join((each.way, *each.whys))
+    seen = "<br>".join(f"**{verdict}** {escaped(text)}" for verdict, text in evidence_lines(each)) or "none"
     return (
         "<br>".join(cell),
         escaped(each.quality or ""),
         "<br>".join(subjects) or "nothing",
         how,
+        *((seen,) if has_evidence else ()),
         escaped(str(each.at)),
     )
 

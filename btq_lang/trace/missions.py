@@ -19,7 +19,7 @@ from btq_lang.workspace.loader import shown
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.trace.collect import BoxDetails
+    from btq_lang.trace.collect import BoxDetails, VerdictsOf
 
 
 class TraceTable(Record):
@@ -67,14 +67,17 @@ def trace_table(workspace: Workspace, *paths: str, bundle: bool = False) -> Trac
 
 
 def trace_tables(
-    parts: Sequence[tuple[Workspace, Sequence[str]]], bundled: bool = False, details_of: BoxDetails | None = None
+    parts: Sequence[tuple[Workspace, Sequence[str]]],
+    bundled: bool = False,
+    details_of: BoxDetails | None = None,
+    verdicts_of: VerdictsOf | None = None,
 ) -> TraceTable:
     """The table of missions of several workspaces.
 
     Args:
         parts: workspaces, each with the requested paths in it.
         bundled: they are built with all their includes.
-        details_of: as in `collect`.
+        details_of, verdicts_of: as in `collect`.
     """
     errors = {path: number for workspace, given in parts for path, number in _errors(workspace, given)}
     broken = frozenset(path for path, number in errors.items() if number)
@@ -85,7 +88,7 @@ def trace_tables(
         is_built = is_mission(workspace, path)
         return built_ways(workspace, path, found, bundled) if is_built else declared_ways(workspace, path, found)
 
-    return TraceTable(collect(parts, ways, shown, details_of), sum(errors.values()))
+    return TraceTable(collect(parts, ways, shown, details_of, verdicts_of), sum(errors.values()))
 
 
 def built_ways(

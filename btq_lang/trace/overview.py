@@ -12,6 +12,8 @@ from btq_lang.graph.figure import Figure
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.verdicts import Verdict
+
     # How a clause is covered: by the tree that `btq build` makes, by tools that read logs, or by people.
     Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
     # Whether a node carries a quality or a requirement: itself, through a node above it, or not at all.
@@ -64,6 +66,22 @@ class Use(Record):
     clauses: tuple[Clause, ...]
 
 
+class Evidence(Record):
+    """What logs show of a clause at a node.
+
+    Attributes:
+        mission: by whose logs; empty if the overview is of one mission.
+        clause, path: as in `ClauseVerdict`.
+        result: the counts, in words.
+    """
+
+    mission: str
+    clause: str
+    path: str
+    verdict: Verdict
+    result: str
+
+
 class RequirementRow(Record):
     """A requirement.
 
@@ -74,6 +92,7 @@ class RequirementRow(Record):
         uses: what it holds for; empty if it is attached to nothing.
         loose: the clauses without a node, if other clauses have one.
         is_hard: the engine must enforce it.
+        evidence: what logs show of its clauses, the worst verdict first.
     """
 
     key: str
@@ -86,6 +105,7 @@ class RequirementRow(Record):
     uses: tuple[Use, ...]
     loose: tuple[str, ...]
     is_hard: bool
+    evidence: tuple[Evidence, ...]
 
     @property
     def way(self) -> str:
@@ -179,6 +199,7 @@ class Overview(Record):
         edition: of the quality model in which the totals are counted.
         files: the missions.
         totals: of each characteristic of the edition, including unused ones.
+        has_evidence: whether logs, or verdicts on them, were given.
     """
 
     edition: str
@@ -188,6 +209,7 @@ class Overview(Record):
     nodes: tuple[NodeRow, ...]
     trees: tuple[TreeRow, ...]
     totals: tuple[Total, ...]
+    has_evidence: bool = False
 
     @property
     def unmeasured(self) -> tuple[QualityRow, ...]:

@@ -18,7 +18,7 @@ from btq_lang.render.page_style import PAGE_STYLE
 from btq_lang.trace.overview import At, NodeRow, Overview, RequirementRow, TreeRow
 from btq_lang.trace.page_parts import SCRIPT, TRACE_STYLE
 from btq_lang.trace.verdicts import VERDICT_STYLE, verdicts
-from btq_lang.trace.wording import GAPS, remarks, shown_quality, summary
+from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
@@ -35,12 +35,14 @@ def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
 
 
 def _lines(overview: Overview, missions: Sequence[MissionVerdicts]) -> Iterator[str]:
+    has_verdicts = bool(missions) or overview.has_evidence
     title = f"{'Verdicts' if missions else 'Requirements and qualities'}: {_title(overview)}"
     yield "<!DOCTYPE html>"
     yield '<html lang="en">'
     yield '<head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
     yield f"<title>{escape(title)}</title>"
-    yield f"<style>\n{STYLE}{colours(False)}{PAGE_STYLE}{TRACE_STYLE}{VERDICT_STYLE if missions else ''}</style>"
+    style = f"{PAGE_STYLE}{TRACE_STYLE}{VERDICT_STYLE if has_verdicts else ''}"
+    yield f"<style>\n{STYLE}{colours(False)}{style}</style>"
     yield f'<style media="screen and (prefers-color-scheme: dark)">\n{colours(True)}</style></head>'
     yield "<body>"
     yield '<a class="skip" href="#requirements">To the requirements</a>'
@@ -100,13 +102,14 @@ def _requirements(overview: Overview) -> Iterator[str]:
         yield _EMPTY
         return
     yield "<table><caption>Requirements, their nodes, and how they are enforced</caption>"
-    yield _head("Requirement", "Holds for", "How")
+    yield _head("Requirement", "Holds for", "How", *(("Evidence",) if overview.has_evidence else ()))
     characteristics = {quality.key: quality.characteristic for quality in overview.qualities}
     for each in overview.requirements:
         of = characteristics.get(each.quality_key or "") or "-"
         yield f'<tr class="row" id="{each.key}" data-note="{each.key}" data-way="{each.way}" data-of="{escape(of)}">'
         yield f'<th scope="row">{_demand(each)}</th>'
-        yield f"<td>{_subjects(each)}</td><td>{_ways(each)}</td></tr>"
+        evidence = f"<td>{_evidence(each)}</td>" if overview.has_evidence else ""
+        yield f"<td>{_subjects(each)}</td><td>{_ways(each)}</td>{evidence}</tr>"
     yield "</tbody></table></section>"
 
 
@@ -151,13 +154,24 @@ def _ways(each: RequirementRow) -> str:
         found.update(((clause.way, clause.why), None) for clause in use.clauses)
     lines = []
     for way, why in found:
-        code = _CODE.sub(r"<code>\1</code>", escape(why))
-        text = f" <small>{code}</small>" if why else ""
+        text = f" <small>{_coded(why)}</small>" if why else ""
         lines.append(f'<li><span class="way {way}">{way}</span>{text}</li>')
     for clause in each.loose:
         text = f"<small><code>{escape(clause)}</code> applies to no node</small>"
         lines.append(f'<li><span class="way none">not attached</span> {text}</li>')
     return f"<ul>{''.join(lines)}</ul>"
+
+
+def _evidence(each: RequirementRow) -> str:
+    lines = [
+        f'<li><span class="verdict {verdict.replace(" ", "-")}">{verdict}</span> <small>{_coded(text)}</small></li>'
+        for verdict, text in evidence_lines(each)
+    ]
+    return f"<ul>{''.join(lines)}</ul>" if lines else _NONE
+
+
+def _coded(text: str) -> str:
+    return _CODE.sub(r"<code>\1</code>", escape(text))
 
 
 def _concerns(overview: Overview) -> Iterator[str]:

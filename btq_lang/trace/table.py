@@ -9,11 +9,12 @@ import os.path
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+from btq_lang.evidence.table import VERDICT_STYLES
 from btq_lang.render.cells import cut, printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.render.columns import broken, cells_of, narrowed
 from btq_lang.trace.overview import At, Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, remarks, shown_quality, summary
+from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
 
 
 def render(overview: Overview, colour: bool = False, width: int = 120) -> str:
@@ -27,7 +28,11 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
         yield from (f"in {cut(printable(folder), 0, width - 4)}", "")
     if overview.requirements:
         rows = [_requirement(each, folder) for each in overview.requirements]
-        yield from _table(("Requirement", "Holds for", "How"), rows, paint, width)
+        heading = ["Requirement", "Holds for", "How"]
+        if overview.has_evidence:
+            heading.append("Evidence")
+            rows = [(*row, _evidence(each)) for row, each in zip(rows, overview.requirements, strict=True)]
+        yield from _table(heading, rows, paint, width)
         yield ""
     nodes = {node.key: node for node in overview.nodes}
     concerns = [
@@ -51,7 +56,7 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
             yield paint("warning", GAPS[gap])
             yield from (f"  {cut(printable(line), 0, width - 3)}" for line in lines)
             yield ""
-    heading = (f"ISO/IEC 25010:{overview.edition}", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed")
+    heading = [f"ISO/IEC 25010:{overview.edition}", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed"]
     totals = [((each.name,), *((str(number or "-"),) for number in each.numbers)) for each in overview.totals]
     yield from _table(heading, totals, paint, width, numbers_from=1)
     yield ""
@@ -85,6 +90,11 @@ def _requirement(each: RequirementRow, folder: str) -> tuple[Sequence[str], ...]
     lines += [f"for {each.quality}"] if each.quality else []
     lines[1:] = [f"  {line}" for line in lines[1:]]
     return lines, subjects or ("nothing",), (*each.way.split(", "), *each.whys)
+
+
+def _evidence(each: RequirementRow) -> Sequence[str]:
+    lines = [line for verdict, text in evidence_lines(each) for line in (verdict, f"  {text}")]
+    return lines or ("none",)
 
 
 def _table(
@@ -129,4 +139,7 @@ def _shortened(text: str, room: int) -> str:
 
 _LEAST: Final = 60
 _BETWEEN: Final = 2  # blanks between columns
-_WAYS: Final = {"enforced": "hint", "monitored": "info", "reviewed": "warning", "not attached": "error"}
+_WAYS: Final = {
+    **{"enforced": "hint", "monitored": "info", "reviewed": "warning", "not attached": "error"},
+    **VERDICT_STYLES,
+}

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.trace.overview import Overview, QualityRow, RequirementRow, Use
 from btq_lang.util.text import counted
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.verdicts import Verdict
 
 
 def summary(overview: Overview) -> str:
@@ -30,6 +34,19 @@ def shown_quality(quality: QualityRow) -> str:
     """A quality's name, with the model's name if that differs."""
     known = quality.id
     return quality.name if known is None or known.endswith(quality.name) else f"{quality.name} ({known})"
+
+
+def evidence_lines(requirement: RequirementRow) -> Iterator[tuple[Verdict, str]]:
+    """What logs show of each clause: its verdict, and the counts, with its mission, text and node where several differ
+    in them.
+    """
+    of_all = requirement.evidence
+    for each in of_all:
+        parts = [each.mission] if each.mission else []
+        parts += [each.clause] if any(one.clause != each.clause for one in of_all) else []
+        if any((one.mission, one.clause) == (each.mission, each.clause) and one.path != each.path for one in of_all):
+            parts += [f"at {each.path}"] if each.path else []
+        yield each.verdict, f"{' '.join(parts)}: {each.result}" if parts else each.result
 
 
 def remarks(requirement: RequirementRow, use: Use) -> str:

@@ -265,6 +265,8 @@ def test_csv() -> None:
         "line": "30",
         "defined": "0.btq",
         "defined_line": "4",
+        "verdict": "",
+        "result": "",
     }
 
 
@@ -689,7 +691,7 @@ BehaviorTree Main
             "csv",
             (
                 "requirement,r5,Heat safely,safety,safety,Heat,Main,Heat takes at most 40 s,enforced,,subject,",
-                "clause without node,r5,Heat safely,safety,safety,,,never force >= 50 N,,,,,,m.btq,2\n",
+                "clause without node,r5,Heat safely,safety,safety,,,never force >= 50 N,,,,,,m.btq,2,,\n",
                 "hard requirement not enforced,r5,",
             ),
         ),

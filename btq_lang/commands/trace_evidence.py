@@ -1,0 +1,101 @@
+"""The verdicts beside the requirements of `btq trace`: those of a file, or judged by logs."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from btq_lang.btcpp.export import xml_name
+from btq_lang.btcpp.side_file import side_path
+from btq_lang.commands.progress import Progress
+from btq_lang.commands.verify import logs_of
+from btq_lang.evidence.identity import Candidate
+from btq_lang.evidence.readers.side import side_file_at, side_files_beside
+from btq_lang.evidence.signal_sources import signal_sources
+from btq_lang.evidence.verifying import judged, logs_below
+from btq_lang.evidence.written_verdicts import NotVerdicts, read_verdicts
+from btq_lang.util.text import counted
+from btq_lang.workspace.loader import absolute, find_project, read, shown
+
+if TYPE_CHECKING:
+    from btq_lang.commands.files import Group
+    from btq_lang.evidence.verdicts import RequirementVerdict
+    from btq_lang.trace.collect import VerdictsOf
+
+
+def verdicts_for(given: Sequence[str], groups: Sequence[Group], problems: list[str]) -> VerdictsOf | None:
+    """A function from the path of a mission to the verdicts on it; None: there is no evidence.
+
+    Args:
+        given: files that `btq verify --format json` wrote, and logs; none: the logs of the project, if there are any.
+        problems: errors are appended.
+    """
+    documents = [path for path in given if path.endswith(".json")]
+    logs = [path for path in given if path not in documents]
+    if not given:
+        logs = [path for path in logs_of(find_project(".").project) if os.path.exists(path)]
+        if not logs:
+            return None
+    found: dict[str, list[RequirementVerdict]] = {}
+    for path in documents:
+        _read(path, found, problems)
+    if logs:
+        for file, verdicts in _judged(logs, groups, problems):
+            found.setdefault(file, []).extend(verdicts)
+    if problems and not found:
+        return None
+    return lambda mission: found.get(mission) or found.get(_name(mission), [])
+
+
+def _read(path: str, found: dict[str, list[RequirementVerdict]], problems: list[str]) -> None:
+    """Add the verdicts of a file, by the path of the mission and, for a file written elsewhere, by its name."""
+    text, problem = read(absolute(path))
+    if text is None or problem is not None:
+        problems.append(str(problem))
+        return
+    try:
+        for mission in read_verdicts(text):
+            for key in (absolute(mission.file), mission.name) if mission.file else (mission.name,):
+                found.setdefault(key, []).extend(mission.requirements)
+    except NotVerdicts as error:
+        problems.append(f"{shown(absolute(path))}: {error}")
+
+
+def _judged(
+    given: Sequence[str], groups: Sequence[Group], problems: list[str]
+) -> Iterator[tuple[str, Sequence[RequirementVerdict]]]:
+    project = groups[0].project if groups else find_project(".").project
+    logs, wrong = logs_below(given, project)
+    missions = list(_missions(logs, groups))
+    sources, of_files = signal_sources(project, shown(project.root), missions, wrong)
+    problems += wrong
+    if wrong:
+        return
+    with Progress(len(logs), "read") as progress:
+        verification = judged(
+            logs,
+            missions,
+            ("", {}),
+            sources,
+            of_files,
+            (),
+            progress=lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"),
+        )
+    problems += verification.report.problems
+    for mission in verification.report.missions:
+        yield mission.file, mission.requirements
+
+
+def _missions(logs: Sequence[str], groups: Sequence[Group]) -> Iterator[Candidate]:
+    sides = {side.mission: side for side in side_files_beside(logs)}
+    for group in groups:
+        for path in group.given:
+            if path not in group.workspace.included_files:
+                side = sides.get(path) or side_file_at(side_path(xml_name(path)))
+                is_own = side is not None and side.mission == path
+                yield Candidate(group.workspace, path, _name(path), side.nodes if side and is_own else None)
+
+
+def _name(path: str) -> str:
+    return os.path.splitext(os.path.basename(path))[0]

@@ -1,0 +1,170 @@
+"""The column of evidence: verdicts of a file of `btq verify`, or by logs, beside the requirements."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from evidence_logs import MAIN, MAIN_XML, btlog, rows
+
+from btq_lang.cli import main
+from btq_lang.evidence.verdicts import ClauseVerdict, RequirementVerdict
+from btq_lang.evidence.written_verdicts import NotVerdicts, read_verdicts
+from btq_lang.trace.collect import collect
+from btq_lang.trace.wording import evidence_lines
+from btq_lang.workspace.workspace import Workspace
+
+MISSION = """\
+QualityReq quick : performance-efficiency "In time"
+    Move takes at most 30 ms
+    Pick takes at most 30 ms
+QualityReq alike : reliability
+    every Pick succeeds
+QualityReq looked_at : safety
+    mission succeeds
+    verified by review
+"""
+RUNS = "0 1R 2R 20 2S 3R 60 3F 1F 1I 100 1R 2R 140 2S 3R 150 3S 1S"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A mission, and a log of two runs."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "main.btq").write_text(MISSION + MAIN, encoding="utf-8")
+    (tmp_path / "run.btlog").write_bytes(btlog(MAIN_XML, rows(RUNS)))
+    return tmp_path
+
+
+def trace(capsys: pytest.CaptureFixture[str], *arguments: str, code: int = 0) -> str:
+    capsys.readouterr()
+    assert main(["trace", "main.btq", *arguments]) == code
+    return capsys.readouterr().out
+
+
+def as_json(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, Any]:
+    found = json.loads(trace(capsys, *arguments, "--format", "json"))
+    return {each["id"]: each["evidence"] for each in found["requirements"]}
+
+
+QUICK = {
+    "mission": "",
+    "clause": "Move takes at most 30 ms",
+    "path": "Move::2",
+    "verdict": "violated",
+    "result": "1 of 2 activations, worst 40 ms in run 2",
+}
+PICK = QUICK | {
+    "clause": "Pick takes at most 30 ms",
+    "path": "Pick::3",
+    "result": "1 of 2 activations, worst 40 ms in run 1",
+}
+ALIKE = QUICK | {"clause": "every Pick succeeds", "path": "Pick::3", "result": "1 of 2 activations"}
+
+
+def test_verdicts_by_logs(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert as_json(capsys, "--evidence", "run.btlog") == {"quick": [QUICK, PICK], "alike": [ALIKE], "looked_at": []}
+
+
+def test_a_file_of_verdicts_shows_the_same_as_the_logs(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify", "run.btlog", "-o", "verdicts.json"]) == 1
+    for form in ("table", "csv", "json", "markdown", "html"):
+        by_logs = trace(capsys, "--evidence", "run.btlog", "--format", form)
+        assert trace(capsys, "--evidence", "verdicts.json", "--format", form) == by_logs
+
+
+def test_the_logs_of_the_project_are_the_default(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    without = trace(capsys)
+    (folder / "btq.toml").write_text('[evidence]\nlogs = ["gone/*.btlog"]\n', encoding="utf-8")
+    assert trace(capsys) == without
+    assert as_json(capsys) == {"quick": None, "alike": None, "looked_at": None}
+    (folder / "btq.toml").write_text('[evidence]\nlogs = ["*.btlog"]\n', encoding="utf-8")
+    assert as_json(capsys)["alike"] == [ALIKE]
+
+
+def test_the_table(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = trace(capsys, "--evidence", "run.btlog").splitlines()
+    at = lines[0].index("Evidence")
+    assert [line[at:].rstrip() for line in lines[: lines.index("")]] == [
+        "Evidence",
+        "-" * len(lines[1][at:]),
+        "violated",
+        *("  Move takes at most 30 ms: 1 of 2 activations, worst 40", "  ms in run 2"),
+        "violated",
+        *("  Pick takes at most 30 ms: 1 of 2 activations, worst 40", "  ms in run 1"),
+        *("violated", "  1 of 2 activations", ""),
+        *("none", "", "", ""),
+    ]
+
+
+def test_csv_and_markdown(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    written = csv.DictReader(io.StringIO(trace(capsys, "--evidence", "run.btlog", "--format", "csv")))
+    seen = [row for row in written if row["kind"] == "evidence"]
+    assert [(row["requirement"], row["holds_for"], row["clause"], row["verdict"], row["result"]) for row in seen] == [
+        ("quick", "Move::2", QUICK["clause"], "violated", QUICK["result"]),
+        ("quick", "Pick::3", PICK["clause"], "violated", PICK["result"]),
+        ("alike", "Pick::3", ALIKE["clause"], "violated", ALIKE["result"]),
+    ]
+    markdown = trace(capsys, "--evidence", "run.btlog", "--format", "markdown")
+    assert "| Requirement | Quality | Holds for | How | Evidence | Defined |" in markdown
+    assert "| monitored | **violated** 1 of 2 activations | main.btq:4 |" in markdown
+
+
+def test_the_page(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    page = trace(capsys, "--evidence", "run.btlog", "--format", "html")
+    cells = re.findall(r"<td>(?:<ul>)?(<li><span class=\"verdict.*?|<span class=.*?)(?:</ul>)?</td></tr>", page)
+    assert cells[1] == '<li><span class="verdict violated">violated</span> <small>1 of 2 activations</small></li>'
+    assert cells[2] == '<span class="missing">none</span>'
+    assert ".verdict.violated {" in page
+
+
+def test_missions_that_share_a_requirement_are_named() -> None:
+    texts = {
+        "demands.btq": "QualityReq safe : safety\n    mission succeeds\n",
+        "a.btq": f'include "demands.btq"\n{MAIN}',
+        "b.btq": f'include "demands.btq"\n{MAIN}',
+    }
+
+    def verdicts(path: str) -> tuple[RequirementVerdict, ...]:
+        clause = "mission succeeds", f"{path[0]}/Sequence", "", "never exercised", 0, 0, 0, 0, "activations"
+        more = None, None, "one look", None, None, (), "it did not start in any run", None
+        return (RequirementVerdict("safe", "", "never exercised", (ClauseVerdict(*clause, *more),)),)
+
+    overview = collect([(Workspace.of(texts), ("a.btq", "b.btq"))], verdicts_of=verdicts)
+    (row,) = overview.requirements
+    assert [(each.mission, each.path) for each in row.evidence] == [("a.btq", "a/Sequence"), ("b.btq", "b/Sequence")]
+    assert [*evidence_lines(row)] == [
+        ("never exercised", "a.btq: it did not start in any run"),
+        ("never exercised", "b.btq: it did not start in any run"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("{}", "expected what btq verify --format json writes"),
+        ("[" * 100_000, "expected what btq verify --format json writes"),
+        ('{"format": "btq-verdicts", "version": 2}', "expected btq-verdicts 1, found btq-verdicts 2"),
+        ('{"format": "btq-verdicts", "version": 1, "missions": [1]}', "expected what btq verify --format json writes"),
+    ],
+)
+def test_other_texts_are_no_verdicts(text: str, why: str) -> None:
+    with pytest.raises(NotVerdicts, match=re.escape(why)):
+        read_verdicts(text)
+
+
+def test_evidence_that_cannot_be_read(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    without = trace(capsys)
+    (folder / "other.json").write_text("{}", encoding="utf-8")
+    assert main(["trace", "main.btq", "--evidence", "other.json", "--evidence", "gone.btlog"]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == without
+    assert printed.err.splitlines() == [
+        "btq trace: other.json: expected what btq verify --format json writes",
+        "btq trace: gone.btlog: cannot be read: No such file or directory",
+    ]
