@@ -1,7 +1,8 @@
 """The questions that a summary asks of a store: all SQL of it, as one table.
 
 One invariant: it is the part of SQL that every engine has, in DuckDB's words: aggregates, CASE, joins, and windows that
-number rows.  So one text runs on DuckDB and, translated word by word, on other engines.
+number rows in one direction, with no NULLS LAST.  So one text runs on DuckDB and, translated word by word, on
+other engines.
 
 `{by}` are the columns that part the summary: `mission`, and those that the user names.
 """
@@ -57,7 +58,7 @@ QUERIES: Final = {
         FROM (
             SELECT *, ROW_NUMBER() OVER (
                 PARTITION BY {by}, requirement, clause, node
-                ORDER BY ABS(measured_si - bound_si) DESC NULLS LAST, start_us, log, path
+                ORDER BY COALESCE(-ABS(measured_si - bound_si), 1), start_us, log, path
             ) AS place
             FROM verdicts
             WHERE verdict = 'violated' AND counted
@@ -77,11 +78,11 @@ QUERIES: Final = {
                 windows.last_number AS last_number, windows.last_of AS last_of, windows.last_seconds AS last_seconds,
                 DENSE_RANK() OVER (
                     PARTITION BY {by_verdicts}, verdicts.requirement, verdicts.clause, verdicts.node
-                    ORDER BY runs.start_us DESC, runs.log, runs.run
+                    ORDER BY runs.start_us DESC, runs.log DESC, runs.run DESC
                 ) AS runs_back,
                 ROW_NUMBER() OVER (
                     PARTITION BY {by_verdicts}, verdicts.requirement, verdicts.clause, verdicts.node
-                    ORDER BY runs.start_us DESC, verdicts.end_us DESC, runs.log, runs.run
+                    ORDER BY runs.start_us DESC, verdicts.end_us DESC, runs.log DESC, runs.run DESC
                 ) AS judgements_back,
                 MAX(runs.end_us) OVER (PARTITION BY {by_verdicts}) AS last_us
             FROM verdicts
