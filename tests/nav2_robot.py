@@ -7,7 +7,7 @@ from pathlib import Path
 
 from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.commands.files import Files
-from btq_lang.commands.nav2_factory import findings_of, parameter_file
+from btq_lang.commands.nav2_factory import Sources, findings_of, parameter_file
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.util.text import LineIndex
 from btq_lang.workspace.config import Project
@@ -53,11 +53,10 @@ def findings_in(folder: Path, text: str, distribution: str | None = None) -> lis
     project = Project(str(folder), node_files=(PACKAGED[nodes],) if nodes else ())
     path = str(folder / "nav2_params.yaml")
     files = Files()
-    file, problem = parameter_file(
-        Factory("robot", nav2="nav2_params.yaml"), project, None, {path: text}.get, lambda _: None
-    )
+    sources = Sources({path: text}.get, lambda _: None, lambda each: files.workspace_of(each, Found(project, None)))
+    file, problem = parameter_file(Factory("robot", nav2="nav2_params.yaml"), project, None, sources)
     assert file is not None, problem
-    return list(findings_of(file, lambda factory: files.workspace_of(factory, Found(project, None))))
+    return list(findings_of(file, sources.workspace_of))
 
 
 def shown(folder: Path, text: str, distribution: str | None = None) -> list[str]:

@@ -13,7 +13,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
-    resets.py, unread.py   traps of Nav2's nodes
+    goals.py, resets.py, unread.py   nodes of Nav2: trees for goals, and traps
     measures.py, clauses.py, conditions.py, bounds.py, limits.py, odds.py   requirements by themselves
     requirements.py, attached.py, qualities.py, repeated.py, prose.py, unused.py   names of requirements and qualities
     demanded.py, demands.py, budgets.py, signals.py, renewals.py, unenforced.py   requirements at their nodes
@@ -35,6 +35,7 @@ from btq_lang.checks import (
     counts,
     demands,
     empty,
+    goals,
     includes,
     kinds,
     literals,
@@ -179,6 +180,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         preconditions.while_skip_is_success,
         preconditions.skipped_condition,
         unreachable.unreachable_child,
+        goals.tree_of_goal,
         resets.memory_lost,
         resets.last_success_lost,
         unread.default_instead,

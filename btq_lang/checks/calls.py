@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nav2 import TREE_OF_GOAL
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.workspace.queries import Store, hub
@@ -15,7 +16,7 @@ from btq_lang.workspace.symbols import Use
 if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
-# The trees that a tree runs, and those that it probably means to run, if `SubTree` is missing.
+# The trees that a tree runs, and those that it probably means to run, if `SubTree` is missing, or has run for a goal.
 Runs: TypeAlias = "tuple[tuple[str, ...], tuple[str, ...]]"
 
 
@@ -221,7 +222,7 @@ def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
     uses = found[1].summary.uses
     called = dict.fromkeys([use.name for use in uses if use.kind is Kind.TREE])
     declared = {seen.id.text for seen in view.seen_in(*found).subtrees if seen.id is not None}  # by a model, perhaps
-    meant = [name for name in map(_meant, uses) if name and name not in declared]
+    meant = [name for use in uses for name in (_meant(use), _for_goal(use)) if name and name not in declared]
     trees = {name for name in (*meant, *declared) if name not in called and view.defines(Kind.TREE, name)}
     called.update(dict.fromkeys(sorted(declared & trees)))
     return tuple(called), tuple([name for name in meant if name in trees])
@@ -233,3 +234,9 @@ def _meant(use: Use) -> str:
     if node is not None and node.label is not None and use.name.casefold() == "subtree":
         return node.label.text
     return use.name if use.kind is Kind.MODEL else ""
+
+
+def _for_goal(use: Use) -> str:
+    """The tree that another program runs for a node."""
+    pairs = use.node.attributes if use.node is not None else ()
+    return next((pair.value.text for pair in pairs if pair.key.text == TREE_OF_GOAL and pair.value is not None), "")

@@ -21,6 +21,7 @@ from btq_lang.workspace.port_types import is_text, meetings
 
 if TYPE_CHECKING:
     from btq_lang.catalog.nav2.navigator import OutsideEntry
+    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.workspace.custom_nodes import LikelyPort
     from btq_lang.workspace.file import Definition, Origin
     from btq_lang.workspace.symbols import Symbol
@@ -156,6 +157,12 @@ def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 def distribution(workspace: Workspace, viewpoint: str) -> str | None:
     """The distribution whose nodes of Nav2 are declared for a file."""
     return _distribution(workspace, viewpoint)
+
+
+@of_viewpoint
+def goals(workspace: Workspace, viewpoint: str) -> tuple[tuple[str, Diagnostic], ...]:
+    """What is wrong with trees that nodes name for goals, by this name."""
+    return workspace.factory.goals if workspace.factory is not None else ()
 
 
 @of_viewpoint

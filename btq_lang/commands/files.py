@@ -5,6 +5,7 @@ from __future__ import annotations
 import os.path
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.opening import file_of
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from btq_lang.commands.cpp_files import CppFiles, Read
     from btq_lang.commands.nav2_factory import ParameterFile
     from btq_lang.commands.xml_below import XmlBelow
+    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.factories import Factory
 
@@ -235,21 +237,28 @@ class Files:
 
         factories: list[Factory] = []
         problems: list[LoadProblem] = []
-        for factory in (*home.project.factories, *self._requested_factories(home)):
-            found = resolved(factory, home.project.root, self.xml)
-            if not factory.nav2:
+        goals: tuple[tuple[str, Diagnostic], ...] = ()
+        named = (*home.project.factories, *self._requested_factories(home))
+        every = [resolved(factory, home.project.root, self.xml) for factory in named]
+        others = tuple(each for each in every if not each.nav2)
+        for found in every:
+            if not found.nav2:
                 factories.append(found)
                 continue
-            from btq_lang.commands.nav2_factory import parameter_file  # few projects are for Nav2
+            from btq_lang.commands.nav2_factory import Sources, parameter_file  # few projects are for Nav2
 
-            file, problem = parameter_file(found, home.project, home.path, self.overlay.get, self.xml.source_of)
+            senders = others if len(others) == len(every) - 1 else ()  # of several robots, it is not known to which
+            of_factory = partial(self.workspace_of, home=home)
+            sources = Sources(self.overlay.get, self.xml.source_of, of_factory, senders)
+            file, problem = parameter_file(found, home.project, home.path, sources)
             if problem is not None and file is None and home.path is not None:
-                problem = LoadProblem(home.path, f"`{factory.nav2}` {problem.message}")  # where editors show it
+                problem = LoadProblem(home.path, f"`{found.nav2}` {problem.message}")  # where editors show it
             problems += [problem] if problem is not None else []
             if file is not None:
                 self.parameter_files.append(file)
                 factories += file.distinct
-        return tuple(factories), problems
+                goals = file.goals if senders else ()
+        return tuple(replace(each, goals=each.goals or goals) for each in factories), problems
 
     def _requested_factories(self, home: Found) -> Iterator[Factory]:
         """A factory for each requested parameter file that the project does not name."""

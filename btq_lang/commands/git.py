@@ -9,6 +9,7 @@ import os
 import posixpath
 import subprocess
 from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.btcpp.marks import is_built_of, named_beside
@@ -104,17 +105,19 @@ class Revisions:
             for each in project.factories:
                 whole = resolved(each, project.root, there, there.matching)
                 found += self._of_nav2(commit, whole, project, there) if each.nav2 else (whole,)
-            self._of_factories[key] = tuple(
-                self._read(commit, (*each.files, *each.node_files), project, {}, each) for each in found
-            )
+            self._of_factories[key] = tuple(self._of_factory(commit, project, each) for each in found)
         return self._of_factories.get(key, ())
 
     def _of_nav2(self, commit: str, factory: Factory, project: Project, there: _Registered) -> Iterator[Factory]:
         """The factories that a parameter file of Nav2 describes, with the files that are in its folders today."""
-        from btq_lang.commands.nav2_factory import parameter_file  # few projects are for Nav2
+        from btq_lang.commands.nav2_factory import Sources, parameter_file  # few projects are for Nav2
 
-        file, _ = parameter_file(factory, project, None, lambda path: self.text(commit, path), there.source_of)
+        sources = Sources(partial(self.text, commit), there.source_of, partial(self._of_factory, commit, project))
+        file, _ = parameter_file(factory, project, None, sources)
         yield from file.distinct if file is not None else ()
+
+    def _of_factory(self, commit: str, project: Project, factory: Factory) -> Workspace:
+        return self._read(commit, (*factory.files, *factory.node_files), project, {}, factory)
 
     def paths(self, commit: str) -> tuple[str, ...]:
         """All files of a commit, sorted."""

@@ -79,7 +79,7 @@ def nav2_findings(
         file = replace(file, project=configured(file.project))
         moved = None
         if target is not None and target in PACKAGED:
-            moved = in_distribution(file, target.removeprefix("nav2-"), files.overlay.get, files.xml.source_of)
+            moved = in_distribution(file, target.removeprefix("nav2-"))
         for path, diagnostic in findings_of(file, workspace_of, moved):
             if path == file.path or path in checked:
                 findings.append(Finding(path, texts[path], diagnostic))

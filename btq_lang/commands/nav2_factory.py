@@ -12,9 +12,10 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import FILES, distribution_among
-from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.nav2.findings import Loaded, distribution_unknown, findings
-from btq_lang.nav2.loaded import Load, loads
+from btq_lang.diagnostics.model import Diagnostic, Place
+from btq_lang.nav2.findings import Loaded, distribution_unknown, findings, wrong_goals
+from btq_lang.nav2.goals import goals_in
+from btq_lang.nav2.loaded import Load, Loads
 from btq_lang.nav2.parameters import Parameters, read_parameters
 from btq_lang.nav2.yaml_reader import YamlMissing, YamlProblem
 from btq_lang.util.record import Record, replace
@@ -32,6 +33,22 @@ if TYPE_CHECKING:
     _Finding: TypeAlias = tuple[str | None, Diagnostic]  # None: in the parameter file
 
 
+class Sources(Record):
+    """Where parameter files and what they name are read.
+
+    Attributes:
+        known: returns the text of an open file.
+        source_of: returns the mission that XML was built of, which counts in its place.
+        workspace_of: returns the workspace of a factory.
+        senders: the other programs of the project, which may send goals.
+    """
+
+    known: Callable[[str], str | None]
+    source_of: Callable[[str], str | None]
+    workspace_of: Callable[[Factory], Workspace]
+    senders: tuple[Factory, ...] = ()
+
+
 class ParameterFile(Record):
     """A parameter file and what it loads.
 
@@ -40,8 +57,10 @@ class ParameterFile(Record):
         project_file: of that project.
         parameters: of bt_navigator; None: the file is not YAML, which is the `problem`.
         factory: that names it; its files are those that goals name.
+        sources: where it and what it names are read.
         distribution: named in the project, or else the only one that the parameters can be for.
         factories: one for each tree that is created, with what is read for it.
+        goals: what is wrong with trees that nodes name for goals, by this name.
     """
 
     path: str
@@ -49,9 +68,11 @@ class ParameterFile(Record):
     project: Project
     project_file: str | None
     factory: Factory
+    sources: Sources
     parameters: Parameters | None
     distribution: str | None
     factories: tuple[tuple[Load, Factory], ...] = ()
+    goals: tuple[tuple[str, Diagnostic], ...] = ()
     problem: Diagnostic | None = None
 
     @property
@@ -69,30 +90,26 @@ class ParameterFile(Record):
         """The files that its findings depend on, besides the project file."""
         loads = [load for load, _ in self.factories]
         places = [each for load in loads for each in (*load.refused, *(skipped.place for skipped in load.skipped))]
+        places += [goal for load in loads for goal in load.goals]
         named = [each.path for each in places if each.path is not None]
         return frozenset((self.path, *named, *(path for load in loads for path in load.files)))
 
 
 def parameter_file(
-    factory: Factory,
-    project: Project,
-    project_file: str | None,
-    known: Callable[[str], str | None],
-    source_of: Callable[[str], str | None],
+    factory: Factory, project: Project, project_file: str | None, sources: Sources
 ) -> tuple[ParameterFile | None, LoadProblem | None]:
     """The parameter file of a factory, or why it could not be read.
 
     Args:
         factory: with its files resolved; they are those that goals name.
-        known: returns the text of an open file.
-        source_of: returns the mission that XML was built of, which counts in its place.
     """
     path = absolute(os.path.join(project.root, factory.nav2))
-    text, problem = (known(path), None) if known(path) is not None else read(path)
+    known = sources.known(path)
+    text, problem = (known, None) if known is not None else read(path)
     if text is None:
         return None, problem
     distribution = distribution_among((*factory.node_files, *project.node_files))
-    empty = ParameterFile(path, text, project, project_file, factory, None, distribution)
+    empty = ParameterFile(path, text, project, project_file, factory, sources, None, distribution)
     try:
         parameters = read_parameters(text)
     except YamlMissing:
@@ -101,23 +118,53 @@ def parameter_file(
         at = min(error.offset, len(text))
         return replace(empty, problem=Diagnostic("yaml-syntax", Span(at, at), error.message)), problem
     whole = replace(empty, parameters=parameters)
-    return in_distribution(whole, distribution or parameters.distribution, known, source_of), problem
+    return in_distribution(whole, distribution or parameters.distribution), problem
 
 
-def in_distribution(
-    file: ParameterFile,
-    distribution: str | None,
-    known: Callable[[str], str | None],
-    source_of: Callable[[str], str | None],
-) -> ParameterFile:
-    """A parameter file with what a distribution loads by it; for the others see `parameter_file`."""
-    parameters = file.parameters
+def in_distribution(file: ParameterFile, distribution: str | None) -> ParameterFile:
+    """A parameter file with what a distribution loads by it."""
+    parameters, sources = file.parameters, file.sources
     if parameters is None:
         return file
-    root, of_goals = file.project.root, file.factory.files
-    found = loads(parameters, distribution, root, of_goals, lambda each: known(each) or read(each)[0])
-    of_load = partial(_factory_of, file.factory, parameters, distribution, file.path, source_of)
-    return replace(file, distribution=distribution, factories=tuple((load, of_load(load)) for load in found))
+    loads = Loads(parameters, distribution, file.project.root, lambda each: sources.known(each) or read(each)[0])
+    of_load = partial(_factory_of, file.factory, parameters, distribution, file.path, sources.source_of)
+    found = [*loads.by_default(), *map(loads.of_file, file.factory.files)]
+    if distribution is not None:
+        senders = [*sources.senders, *map(of_load, found)]
+        found += _for_goals(parameters, loads, senders, of_load, sources.workspace_of)
+    whole = replace(file, distribution=distribution, factories=tuple((load, of_load(load)) for load in found))
+    if distribution is None or not any(load.goals for load in found):
+        return whole
+    goals = tuple(dict.fromkeys(wrong_goals(parameters, distribution, _loaded(whole, sources.workspace_of))))
+    factories = tuple((load, replace(factory, goals=goals)) for load, factory in whole.factories)
+    return replace(whole, goals=goals, factories=factories)
+
+
+def _for_goals(
+    parameters: Parameters,
+    loads: Loads,
+    senders: list[Factory],
+    of_load: Callable[[Load], Factory],
+    workspace_of: Callable[[Factory], Workspace],
+) -> Iterator[Load]:
+    """The trees that goals name, also those that only the tree of another goal names."""
+    found: dict[tuple[str, bool], Load] = {}
+    places: dict[tuple[str, bool], dict[Place, None]] = {}
+    for each in parameters.goals:
+        places.setdefault((each.text, True), {})[Place(each.span)] = None
+    walked: set[frozenset[str]] = set()
+    while True:
+        for factory in senders:
+            if frozenset(factory.files) not in walked:
+                walked.add(frozenset(factory.files))
+                for name, place in goals_in(workspace_of(factory)):
+                    places.setdefault((name, False), {})[place] = None
+        new = {goal: loads.of_goal(*goal) for goal in places if goal not in found}
+        if not new:
+            break
+        found.update(new)
+        senders = [*map(of_load, new.values())]
+    return (replace(load, goals=tuple(places[goal])) for goal, load in found.items())
 
 
 def findings_of(
@@ -125,14 +172,17 @@ def findings_of(
 ) -> Iterator[tuple[str, Diagnostic]]:
     """All that is wrong with a parameter file and with what it loads, with the file that it is in.
 
+    What is wrong with trees that nodes name for goals is found by the checks of these nodes, but for that of `moved`.
+
     Args:
         workspace_of: returns the workspace of a factory.
         moved: the file in the distribution that its robot moves to.
     """
     found = [*_found(file, workspace_of)]
+    new: list[_Finding] = []
     if moved is not None and file.distribution is not None:
-        found += _new_in_target(found, moved, workspace_of)
-    for path, diagnostic in found:
+        new = [*_new_in_target(found, moved, workspace_of)]
+    for path, diagnostic in (*((None, each) for path, each in found if path is None), *new):
         yield from ((path or file.path, each) for each in configured(file.project, path or file.path, (diagnostic,)))
 
 
@@ -160,8 +210,11 @@ def _found(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) ->
     if file.parameters is not None and file.distribution is None:
         yield None, distribution_unknown(file.parameters)
     elif file.parameters is not None and file.distribution is not None:
-        loaded = [Loaded(load, workspace_of(factory)) for load, factory in file.factories]
-        yield from findings(file.parameters, file.distribution, loaded)
+        yield from findings(file.parameters, file.distribution, _loaded(file, workspace_of))
+
+
+def _loaded(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) -> list[Loaded]:
+    return [Loaded(load, workspace_of(factory)) for load, factory in file.factories]
 
 
 def _factory_of(

@@ -3,6 +3,7 @@
     yaml_reader.py   YAML as values with their places; PyYAML, only here
     parameters.py    what a file says of bt_navigator, and of which distribution it is
     loaded.py        the trees that bt_navigator creates, and the files that it reads for them
+    goals.py         the trees that goals name, in nodes
     libraries.py     libraries of nodes: missing, unknown or loaded twice
     findings.py      all that is wrong with a file and with what it loads
 

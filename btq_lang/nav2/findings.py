@@ -6,7 +6,7 @@ One invariant: without a distribution nothing is said that depends on it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.listed_trees import listed_trees
 from btq_lang.catalog.name_kinds import Kind
@@ -16,10 +16,10 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.nav2.libraries import NAMES, Libraries
-from btq_lang.nav2.loaded import Load, Skipped
+from btq_lang.nav2.loaded import Load, Skipped, file_with
 from btq_lang.nav2.parameters import Parameters
-from btq_lang.syntax.tree import Tree, Word
-from btq_lang.util.record import Record
+from btq_lang.syntax.tree import Tree
+from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span
 
@@ -55,14 +55,31 @@ def findings(
     """
     found = tuple(found)
     libraries = Libraries(parameters, distribution)
-    of_file = [*_parameters(parameters, distribution), *libraries.findings()]
+    all_found: list[tuple[str | None, Diagnostic]] = []
+    all_found += ((None, each) for each in (*_parameters(parameters, distribution), *libraries.findings()))
     for each in found:
-        of_file += _places(each)
-        of_file += _without_main(each, parameters) if distribution != "lyrical" else ()
-        of_file += _unloaded(each, parameters, libraries)
-    of_file += _folders(found, parameters)
-    yield from ((None, each) for each in dict.fromkeys(of_file))
-    yield from dict.fromkeys(finding for each in found for finding in _of_goals(each, libraries))
+        all_found += ((None, one) for one in _unloaded(each, parameters, libraries))
+    for load, one in _of_loads(parameters, distribution, found):
+        all_found += [(goal.path, replace(one, span=goal.span)) for goal in load.goals] or [(None, one)]
+    yield from dict.fromkeys(all_found)
+
+
+def wrong_goals(parameters: Parameters, distribution: str, found: Iterable[Loaded]) -> Iterator[tuple[str, Diagnostic]]:
+    """What is wrong with the trees that goals name, by this name, wherever it is; without other files, which the trees
+    that name them need not have loaded."""
+    for load, one in _of_loads(parameters, distribution, found):
+        named = load.main or (load.tree.named if load.tree is not None else None)
+        if load.goals and named is not None:
+            yield named.text, replace(one, related=())
+
+
+def _of_loads(parameters: Parameters, distribution: str, found: Iterable[Loaded]) -> Iterator[tuple[Load, Diagnostic]]:
+    """What is wrong with the trees that bt_navigator creates and with the files that it registers for them."""
+    seen: set[str | None] = set()
+    for each in found:
+        of_load = [*_places(each), *_folders(each.load, parameters, seen)]
+        of_load += _without_main(each, parameters) if distribution != "lyrical" else ()
+        yield from ((each.load, one) for one in of_load)
 
 
 def _parameters(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]:
@@ -98,24 +115,31 @@ def _parameters(parameters: Parameters, distribution: str) -> Iterator[Diagnosti
 
 
 def _places(found: Loaded) -> Iterator[Diagnostic]:
-    """What parameters name, and is not there."""
+    """What parameters or goals name, and is not there."""
     load = found.load
-    for place in (load.tree, *load.folders):
+    for place in (load.tree, *(load.folders if not load.goals else ())):
         if place is None or not place.problem or place.named is None:
             continue
         is_folder = place is not load.tree
         what = "folder" if is_folder else "tree"
         message = f"cannot find the {what} `{place.named.text}`: {place.problem}"
-        note = "a launch file may put another value here"
-        if place.severity is Severity.ERROR:
+        notes = ("a launch file may put another value here",) if not load.goals else ()
+        if place.severity is Severity.ERROR and not load.goals:
             refused = "bt_navigator refuses to start"
-            note = "without this folder bt_navigator loads no tree at all" if is_folder else refused
-        yield Diagnostic("missing-nav2-tree", place.named.span, message, notes=(note,), severity=place.severity)
+            notes = ("without this folder bt_navigator loads no tree at all",) if is_folder else (refused,)
+        yield Diagnostic("missing-nav2-tree", place.named.span, message, notes=notes, severity=place.severity)
     if load.main is not None and load.is_whole and not _defines(found.workspace, load.main.text):
-        likely = did_you_mean(near(load.main.text, _tree_names(found.workspace), 1))
-        message = f"no file in the search directories has a tree `{load.main.text}`{likely}"
+        if any(load.main.text in each.ids for each in load.skipped):
+            return  # which is reported
+        more = did_you_mean(near(load.main.text, _tree_names(found.workspace), 1))
+        related: tuple[Related, ...] = ()
+        outside = file_with(load.main.text, found.workspace.project.root)
+        if outside is not None:
+            more = f"; `{_name(outside)}` has one, but is in none of them"
+            related = (Related(outside, "this file"),)
+        message = f"no file in the search directories has a tree `{load.main.text}`{more}"
         notes = ("a file is named by a path that ends in `.xml`",)
-        yield Diagnostic("missing-nav2-tree", load.main.span, message, notes=notes)
+        yield Diagnostic("missing-nav2-tree", load.main.span, message, related, notes)
 
 
 def _without_main(found: Loaded, parameters: Parameters) -> Iterator[Diagnostic]:
@@ -140,22 +164,20 @@ def _without_main(found: Loaded, parameters: Parameters) -> Iterator[Diagnostic]
         yield Diagnostic("refused-tree-file", _span(place, load, parameters), message, related, notes)
 
 
-def _folders(found: Iterable[Loaded], parameters: Parameters) -> Iterator[Diagnostic]:
-    """The files that bt_navigator skips or refuses, each once."""
-    seen: set[str | None] = set()
-    for load in (each.load for each in found):
-        for place in load.refused:
-            if place.path not in seen:
-                name = _name(place)
-                which = "nothing says which of its trees is the main one"
-                message = f"`{name}` keeps bt_navigator from loading any tree: {which}"
-                notes = ("write `main_tree_to_execute`, or one tree into each file",)
-                span = _span(place, load, parameters)
-                yield Diagnostic("refused-tree-file", span, message, (Related(place, "second tree"),), notes)
-        for skipped in load.skipped:
-            if skipped.place.path not in seen:
-                yield _skipped(skipped, load, parameters)
-        seen.update(each.path for each in (*load.refused, *(skipped.place for skipped in load.skipped)))
+def _folders(load: Load, parameters: Parameters, seen: set[str | None]) -> Iterator[Diagnostic]:
+    """The files that bt_navigator skips or refuses, except those that were seen before, to which these are added."""
+    for place in load.refused:
+        if place.path not in seen:
+            name = _name(place)
+            which = "nothing says which of its trees is the main one"
+            message = f"`{name}` keeps bt_navigator from loading any tree: {which}"
+            notes = ("write `main_tree_to_execute`, or one tree into each file",)
+            span = _span(place, load, parameters)
+            yield Diagnostic("refused-tree-file", span, message, (Related(place, "second tree"),), notes)
+    for skipped in load.skipped:
+        if skipped.place.path not in seen:
+            yield _skipped(skipped, load, parameters)
+    seen.update(each.path for each in (*load.refused, *(skipped.place for skipped in load.skipped)))
 
 
 def _skipped(skipped: Skipped, load: Load, parameters: Parameters) -> Diagnostic:
@@ -229,38 +251,9 @@ def _strangers(workspace: Workspace) -> dict[str, Place]:
     return found
 
 
-def _of_goals(found: Loaded, libraries: Libraries) -> Iterator[tuple[str, Diagnostic]]:
-    """The trees that nodes name for the goals that they send, and that are not there; before Lyrical they are files."""
-    workspace = found.workspace
-    if not found.load.folders or not found.load.is_whole:
-        return
-    for path in workspace.registered:
-        file = workspace.files[path]
-        for tree in file.of_type(Tree) if _PORT in file.text else ():
-            for name in _named_in(tree, libraries):
-                if _defines(workspace, name.text):
-                    continue
-                span = file.on_disk(name.span.shifted(file.start_of(tree)))
-                likely = did_you_mean(near(name.text, _tree_names(workspace), 1))
-                message = f"no file that bt_navigator reads has a tree `{name.text}`{likely}"
-                yield path, Diagnostic("missing-nav2-tree", span, message)
-
-
-def _named_in(tree: Tree, libraries: Libraries) -> Iterator[Word]:
-    """The IDs that nodes of Nav2 name in a tree."""
-    for node in tree.walk():
-        for pair in node.attributes if node.kind is not None and node.kind.text in libraries.nodes else ():
-            value = pair.value if pair.key.text == _PORT else None
-            if value is not None and value.text and "{" not in value.text and not value.text.endswith(".xml"):
-                yield value
-
-
 def _defines(workspace: Workspace, tree: str) -> bool:
     return any(workspace.files[path].defines(Kind.TREE, tree) for path in workspace.registered)
 
 
 def _tree_names(workspace: Workspace) -> list[str]:
     return [name for path in workspace.registered for name in workspace.files[path].names_of(Kind.TREE)]
-
-
-_PORT: Final = "behavior_tree"

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os.path
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from functools import cache, partial
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -23,7 +23,7 @@ from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import SUFFIXES
-from btq_lang.workspace.loader import absolute, collect, matching, package_folder
+from btq_lang.workspace.loader import absolute, collect, matching, package_folder, read
 
 if TYPE_CHECKING:
     ReadFile: TypeAlias = Callable[[str], str | None]
@@ -34,7 +34,7 @@ class Located(Record):
     """A file or folder that parameters name.
 
     Attributes:
-        named: as it is written, and where; None: it counts because nothing is written.
+        named: as it is written, and where; None: it counts because nothing is written in the parameters.
         path: where it is; None if it is not here.
         problem: why it is not here, for a message; empty if nothing is wrong with that.
         severity: how sure it is that it is not on the robot either.
@@ -53,19 +53,21 @@ class Skipped(Record):
         place: of its first tree, or of the one that another file has too.
         id: of that tree, and where it is in the other file; None: no tree has an ID.
         loses: whether that makes a difference: it has a tree that no other file has, or either file may be skipped.
+        ids: of all its trees.
     """
 
     place: Place
     id: str | None
     other: Place | None
     loses: bool
+    ids: tuple[str, ...] = ()
 
 
 class Load(Record):
     """A tree that bt_navigator creates, and what it reads for it.
 
     Attributes:
-        label: the navigator, or the file of a tree that goals name.
+        label: the navigator, or the tree that goals name.
         tree: the file with the tree; None if an ID names it.
         main: that ID.
         files: that it registers, in order.
@@ -73,6 +75,7 @@ class Load(Record):
         refused: files that keep it from loading anything: nothing says which of their trees is the main one; the
             place is that of the second tree.
         folders: that it searches.
+        goals: the places that name it for goals.
     """
 
     label: str
@@ -82,6 +85,7 @@ class Load(Record):
     skipped: tuple[Skipped, ...] = ()
     refused: tuple[Place, ...] = ()
     folders: tuple[Located, ...] = ()
+    goals: tuple[Place, ...] = ()
 
     @property
     def is_whole(self) -> bool:
@@ -90,31 +94,56 @@ class Load(Record):
         return all(each.path is not None for each in places)
 
 
-def loads(
-    parameters: Parameters, distribution: str | None, root: str, of_goals: Iterable[str], read: ReadFile
-) -> tuple[Load, ...]:
-    """The trees that bt_navigator creates: by default, and for goals that name one.
+class Loads:
+    """What bt_navigator loads in a distribution.
 
     Args:
         root: a folder in the workspace with the packages.
-        of_goals: the files that goals name.
         read: returns the text of a file.
     """
-    find = cache(partial(package_folder, start=root))  # each time, it looks through the workspace
-    folders = tuple(_folders(parameters, find)) if distribution == "lyrical" else None
-    found = []
-    for navigator, (parameter, default, _) in NAVIGATORS.items():
-        if navigator not in parameters.navigators:
-            continue
-        named = parameters.text(parameter)
-        if folders is not None and named is not None and is_id(named.text):
-            found.append(_searched(navigator, None, named, folders, read))
-            continue
-        tree = _located(named, find) if named is not None else _of_nav2(f"behavior_trees/{default}", find)
-        found.append(_searched(navigator, tree, None, folders, read))
-    for path in of_goals:
-        found.append(_searched(os.path.basename(path), Located(None, path), None, folders, read))
-    return tuple(found)
+
+    def __init__(self, parameters: Parameters, distribution: str | None, root: str, read: ReadFile) -> None:
+        self._parameters = parameters
+        self._find = cache(partial(package_folder, start=root))  # each time, it looks through the workspace
+        self._folders = tuple(_folders(parameters, self._find)) if distribution == "lyrical" else None
+        self._read = read
+
+    def by_default(self) -> Iterator[Load]:
+        """The trees that it creates when it starts."""
+        for navigator, (parameter, default, _) in NAVIGATORS.items():
+            if navigator not in self._parameters.navigators:
+                continue
+            named = self._parameters.text(parameter)
+            if self._folders is not None and named is not None and is_id(named.text):
+                yield self._searched(navigator, None, named)
+            elif named is not None:
+                yield self._searched(navigator, _located(named, self._find))
+            else:
+                yield self._searched(navigator, _of_nav2(f"behavior_trees/{default}", self._find))
+
+    def of_file(self, path: str) -> Load:
+        """The tree of a file, for goals that name it."""
+        return self._searched(os.path.basename(path), Located(None, path))
+
+    def of_goal(self, name: str, is_replaced: bool) -> Load:
+        """The tree that goals name: by the path of a file, or in Lyrical by its ID.
+
+        Args:
+            is_replaced: whether a launch file replaces `$(…)` in the name.
+        """
+        named = Text(name, Span(0, 0))
+        if self._folders is not None and (is_id(name) or not (is_replaced or name.endswith(".xml"))):
+            return self._searched(name, None, named)
+        if "$(" in name and not is_replaced:
+            why = "`$(…)` is replaced in parameters only"
+            return self._searched(name, Located(named, None, why, Severity.ERROR))
+        if is_id(name):
+            why = "before Lyrical, a goal names the file of its tree, not the ID"
+            return self._searched(name, Located(named, None, why, Severity.WARNING))
+        return self._searched(os.path.basename(name), _located(named, self._find))
+
+    def _searched(self, label: str, tree: Located | None, named: Text | None = None) -> Load:
+        return _searched(label, tree, named, self._folders, self._read)
 
 
 def _located(named: Text, find: FindPackage, is_folder: bool = False) -> Located:
@@ -138,7 +167,11 @@ def _located(named: Text, find: FindPackage, is_folder: bool = False) -> Located
     if not os.path.isabs(text):
         return Located(named, None, "a relative path counts from the folder in which bt_navigator runs")
     path = absolute(text)
-    if os.path.isdir(path) if is_folder else os.path.isfile(path):
+    is_there = os.path.isdir if is_folder else os.path.isfile
+    if not is_there(path) and (match := _INSTALLED.fullmatch(path)) and (folder := find(match[1])) is not None:
+        packages.append(folder)  # where a build has installed it, perhaps on another machine
+        path = folder + match[2]
+    if is_there(path):
         return Located(named, path)
     for package in packages:
         lacks = f"the package in {package} has no such {_KINDS[is_folder]}"
@@ -167,6 +200,15 @@ def _of_nav2(inside: str, find: FindPackage) -> Located:
     package = find(OWN_PACKAGE)
     path = f"{package}/{inside}"
     return Located(None, path if package is not None and os.path.exists(path) else None)
+
+
+def file_with(tree: str, root: str) -> Place | None:
+    """Where a file below a folder has a tree with this ID."""
+    for path in collect((root,), Project(), (".xml",))[0]:
+        for match in _TREE.finditer(read(path)[0] or ""):
+            if re.search(rf"""\sID\s*=\s*["']{re.escape(tree)}["']""", match[0]):
+                return Place(Span(*match.span()), path)
+    return None
 
 
 def _is_installed(package: str) -> bool:
@@ -209,7 +251,7 @@ def _searched(
         elif clash is not None:
             at = next((each for each in places if f'"{clash}"' in text[each.span.start : each.span.end]), places[0])
             is_certain = owners[clash].path == first  # else the other file may be the one that is skipped
-            skipped.append(Skipped(at, clash, owners[clash], not is_certain or not owners.keys() >= {*ids}))
+            skipped.append(Skipped(at, clash, owners[clash], not is_certain or not owners.keys() >= {*ids}, ids))
         else:
             owners.update(zip(ids, [*places, *[places[-1]] * len(ids)], strict=False))
     files = tuple(dict.fromkeys(each.path for each in owners.values() if each.path is not None))
@@ -217,5 +259,6 @@ def _searched(
 
 
 _SHARE: Final = re.compile(r"""\$\(find-pkg-share\s+["']?([\w-]+)["']?\s*\)""")
+_INSTALLED: Final = re.compile(r".*/share/([\w-]+)(/.+)")
 _TREE: Final = re.compile(r"<BehaviorTree\b[^>]*>")
 _KINDS: Final = ("file", "folder")

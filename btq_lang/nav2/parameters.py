@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.nav2 import DISTRIBUTIONS
 from btq_lang.catalog.nav2.libraries import LIBRARIES
-from btq_lang.catalog.nav2.navigator import NAVIGATORS, OWN_PACKAGE, PARAMETERS, RENAMED, outside_entries
+from btq_lang.catalog.nav2.navigator import NAVIGATORS, OWN_PACKAGE, PARAMETERS, RENAMED, SENDERS, outside_entries
 from btq_lang.nav2.yaml_reader import Value, read_yaml
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
@@ -35,11 +35,13 @@ class Parameters(Record):
     Attributes:
         values: by name, `a.b` for one below another; each with its key.
         place: of the name of the node; None if the file has no such node.
+        goals: the trees that other servers name for the goals that they send to it.
         has_client_nodes: whether it sets parameters of the nodes that only Humble configures by themselves.
     """
 
     values: dict[str, tuple[Value, Value]]
     place: Span | None
+    goals: tuple[Text, ...] = ()
     has_client_nodes: bool = False
 
     def text(self, name: str) -> Text | None:
@@ -133,13 +135,18 @@ def read_parameters(text: str) -> Parameters:
     """
     nodes = [*_nodes(read_yaml(text))]
     values: dict[str, tuple[Value, Value]] = {}
+    goals: dict[Text, None] = {}
     place = None
     for key, node in sorted(nodes, key=lambda each: _last(each[0]) == _NODE):  # what names the node counts most
         if _last(key) in (_NODE, "*", "**"):
             place = key.span if _last(key) == _NODE else place
             for name, value in _flat(node):
                 values[".".join(each.text or "" for each in name)] = name[-1], value
-    return Parameters(values, place, any(_last(key).startswith(f"{_NODE}_navigate_") for key, _ in nodes))
+        named = node.get(SENDERS[_last(key)]) if _last(key) in SENDERS else None
+        if named is not None and named.text:
+            goals[Text(named.text, named.span)] = None
+    is_of_humble = any(_last(key).startswith(f"{_NODE}_navigate_") for key, _ in nodes)
+    return Parameters(values, place, tuple(goals), is_of_humble)
 
 
 def _nodes(top: Value) -> Iterator[tuple[Value, Value]]:

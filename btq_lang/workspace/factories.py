@@ -45,6 +45,7 @@ class Factory(Record):
         lost: the patterns that match no file, so that it is not known what the program registers.
         has_gaps: whether bt_navigator registers files that are not here; what is wrong is said of its parameter file.
         entries: of the root blackboard, which the program sets or reads, if it is known to be bt_navigator.
+        goals: what is wrong with trees that nodes name for goals, by this name.
     """
 
     name: str
@@ -58,6 +59,7 @@ class Factory(Record):
     lost: tuple[str, ...] = ()
     has_gaps: bool = False
     entries: tuple[OutsideEntry, ...] = ()
+    goals: tuple[tuple[str, Diagnostic], ...] = ()
 
 
 def read_factories(tables: object) -> tuple[tuple[Factory, ...], list[Complaint]]:

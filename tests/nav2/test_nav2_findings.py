@@ -202,18 +202,6 @@ def test_a_folder_that_is_not_there(robot: Path) -> None:
     ]
 
 
-def test_the_tree_of_a_goal(robot: Path) -> None:
-    goals = ("Navigat", "Navigate", "{tree}", "/a/b.xml")
-    nodes = "".join(f'<NavigateToPose goal="{{goal}}" behavior_tree="{each}"/>' for each in goals)
-    (robot / "trees/trip.xml").write_text(
-        f'<root BTCPP_format="4"><BehaviorTree ID="Trip"><Sequence>{nodes}</Sequence></BehaviorTree></root>\n'
-    )
-    text = f"{HEAD}{POSE}/trees/navigate.xml\n    bt_search_directories: [{HERE}/trees]\n{DOCKING}"
-    message = "no file that bt_navigator reads has a tree `Navigat`; did you mean `Navigate`?"
-    assert shown(robot, text, "lyrical") == [f"trip.xml:1:103 error missing-nav2-tree {message}"]
-    assert shown(robot, text.replace("bt_search_directories", "bt_other"), "kilted") == []  # a file, perhaps
-
-
 def test_a_list_from_humble_is_one_finding(robot: Path) -> None:
     names = [
         f"nav2_{each}_bt_node"

@@ -143,4 +143,6 @@ NAVIGATORS: Final[Mapping[str, tuple[str, str, str]]] = {
         "NavigateThroughPosesNavigator",
     ),
 }
+# The servers that send goals to it, and the parameter of each that names the tree for them.
+SENDERS: Final = {"docking_server": "navigator_bt_xml"}
 OWN_PACKAGE: Final = "nav2_bt_navigator"  # with its trees in the folder `behavior_trees`
