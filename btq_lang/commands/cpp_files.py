@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.nav2 import PACKAGES
 from btq_lang.commands.factory_files import cpp_in_folder
 from btq_lang.commands.node_writers import models_in_btq
 from btq_lang.cpp.findings import findings
@@ -22,9 +23,10 @@ from btq_lang.syntax.tree import models_in
 from btq_lang.util.record import Record, replace
 from btq_lang.util.source_map import Places
 from btq_lang.util.text import LineIndex, Placed, Span, counted
-from btq_lang.workspace.file import File, Origin
+from btq_lang.workspace.file import CPP_SUFFIXES, File, Origin
 from btq_lang.workspace.loader import Found, LoadProblem, excluder, matching, read
 from btq_lang.workspace.queries import Store
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Diagnostic
@@ -114,6 +116,20 @@ class CppFiles:
             if known is None or known.origin is None or not _is_as_before(known.origin, text, of_path[path], found):
                 self._files[path] = cpp_file(path, text, of_path[path], found, known)
         return nodes, {path: self._files[path] for path in texts}
+
+
+def with_code_of_nav2(workspace: Workspace, cpp: CppFiles) -> Workspace:
+    """A workspace with the C++ of Nav2's own nodes too, if a checkout is among the packages around its project."""
+    root = workspace.project.root
+    patterns = [f"package://{package}/**/*{suffix}" for package in PACKAGES for suffix in CPP_SUFFIXES]
+    paths = [path for pattern in patterns for path in cpp_in_folder(pattern, root, matching)]
+    texts = {path: text for path in paths if (text := read(path)[0]) is not None}
+    try:
+        _, files = cpp.files(texts, root)
+    except GrammarMissing:
+        return workspace
+    project = replace(workspace.project, node_files=(*workspace.project.node_files, *files))
+    return Workspace({**workspace.files, **files}, project, workspace.factory)
 
 
 def cpp_file(

@@ -23,10 +23,19 @@ def register(server: Server) -> None:
         position: types.Position,
         feature: Callable[[Workspace, str, int], tuple[features.Target, ...]],
     ) -> list[types.LocationLink] | list[types.Location]:
-        answer = server.ask(document, position, feature, reads=True)
+        def found(workspace: Workspace, path: str, offset: int) -> tuple[Workspace, tuple[features.Target, ...]]:
+            from btq_lang.catalog.nav2 import FILES  # as all of the catalog, after the start
+
+            targets = feature(workspace, path, offset)
+            if any(each.path in FILES.values() for each in targets):  # the code says more than the table
+                workspace = session.with_code_of_nav2(workspace)
+                targets = feature(workspace, path, offset)
+            return workspace, targets
+
+        answer = server.ask(document, position, found, reads=True)
         if answer is None:
             return []
-        workspace, path, targets = answer
+        _, path, (workspace, targets) = answer
         if not server.takes_links:
             return [convert.location(workspace, target.path, target.name) for target in targets]
         return [

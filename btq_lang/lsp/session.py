@@ -184,6 +184,12 @@ class Session:
             placed = (each.diagnostic for each in found if each.path == file.path)
             self.parameters[file.path] = workspace, Findings.placed(placed)
 
+    def with_code_of_nav2(self, workspace: Workspace) -> Workspace:
+        """A workspace with the C++ of Nav2's nodes, if it is on this machine."""
+        from btq_lang.commands.cpp_files import with_code_of_nav2  # few editors ask for it
+
+        return with_code_of_nav2(workspace, self._files.cpp) if self._files is not None else workspace
+
     @property
     def has_read(self) -> bool:
         """Whether the folders were read with the current settings."""

@@ -23,6 +23,8 @@ _FOLDER: Final = os.path.dirname(os.path.abspath(__file__)).replace(os.sep, "/")
 # The path of the file of each distribution, and the same by the name that a project uses.
 FILES: Final[Mapping[str, str]] = {each: f"{_FOLDER}/{each}.btq" for each in DISTRIBUTIONS}
 PACKAGED: Final[Mapping[str, str]] = {f"nav2-{each}": path for each, path in FILES.items()}
+# The packages of Nav2 in which its nodes are.
+PACKAGES: Final = ("nav2_behavior_tree", "opennav_docking_bt")
 # The port of nodes that send goals to bt_navigator: the tree that it runs for one, until Kilted the path of a file.
 TREE_OF_GOAL: Final = "behavior_tree"
 
