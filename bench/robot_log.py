@@ -153,13 +153,13 @@ class Robot:
 def tiny() -> Robot:
     """Two leaves, one after the other, in 26 ms."""
     mission = Candidate(Workspace.of({"a.btq": TINY}), "a.btq", "a", None)
-    return Robot(mission, _xml(mission), [[(1000 * ms, uid, status) for ms, uid, status in ROWS]])
+    return Robot(mission, logged_xml(mission), [[(1000 * ms, uid, status) for ms, uid, status in ROWS]])
 
 
 def fetching() -> Robot:
     """A robot that fetches things: loops, retries, and driving that stops when the way is not clear."""
     mission = Candidate(Workspace.of({"a.btq": FETCH}), "a.btq", "a", None)
-    return Robot(mission, _xml(mission), [_run(mission, random.Random(seed)) for seed in range(RUNS)])
+    return Robot(mission, logged_xml(mission), [_run(mission, random.Random(seed)) for seed in range(RUNS)])
 
 
 def battery(until: int) -> dict[str, Series]:
@@ -174,7 +174,8 @@ def battery(until: int) -> dict[str, Series]:
     return {"battery": series}
 
 
-def _xml(mission: Candidate) -> str:
+def logged_xml(mission: Candidate) -> str:
+    """The tree of a mission as the engine logs it."""
     return as_logged(xml_of(export(mission.workspace, mission.path).document))
 
 

@@ -46,6 +46,10 @@ class Run:
         low, high = limit.value.si, limit.upper.si
         return self.chance.choice([low, high, self.chance.randint(int(low * 4), int(high * 4)) / 4])
 
+    def ended(self, leaf: ResolvedNode) -> str:
+        """How an activation of the leaf ends."""
+        return self.chance.choice([SUCCESS, FAILURE])
+
     def mission(self) -> None:
         """One run, from the first tick to the end.
 
@@ -158,7 +162,7 @@ class Leaf(Sim):
         if self.run.now < self.started + self.length:
             self.run.alarms.append(self.started + self.length)
             return RUNNING
-        return SUCCESS if self.source.tag == "Sleep" else chance.choice([SUCCESS, FAILURE])
+        return SUCCESS if self.source.tag == "Sleep" else self.run.ended(self.source)
 
     def begin(self) -> None:
         self.length: float | None = None

@@ -43,6 +43,7 @@ def build_parser() -> Parser:
     _add_trace(commands)
     _add_verify(commands)
     _add_compare(commands)
+    _add_report(commands)
     _add_graph(commands)
     _add_preview(commands)
     _add_diff(commands)
@@ -338,6 +339,27 @@ def _add_compare(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument("after", metavar="B", help="the label, or the robot, that may have changed")
     parser.add_argument("--by", choices=("label", "robot"), default="label", help="what A and B are; default: label")
     parser.add_argument("--format", choices=COMPARISON_FORMATS, help="default: as the file of -o ends, else table")
+    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+
+
+def _add_report(commands: _SubParsersAction[Parser]) -> None:
+    parser = _command(
+        commands,
+        "report",
+        "show what a store has as one page: what got worse, requirements by version and robot, trends",
+        epilog="exit codes: 0 nothing got worse between the last two labels, as btq compare says; 1 something did;\n"
+        "2 usage, I/O, or nothing to show\n\n"
+        "examples:\n  btq report evidence -o report.html                by version and robot\n"
+        "  btq report evidence --by label -o report.html     without the robots\n",
+    )
+    parser.add_argument("store", metavar="STORE", help="the folder that btq verify --store writes")
+    parser.add_argument(
+        "--by",
+        action="append",
+        default=[],
+        choices=("label", "robot"),
+        help="what has columns or rows of its own; may be repeated; default: both",
+    )
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 

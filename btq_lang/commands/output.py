@@ -36,6 +36,14 @@ def form_problem(options: Namespace, forms: Sequence[str]) -> str | None:
     return f"cannot write {ending}; choose one of {', '.join(forms)} with --format, or another file name"
 
 
+def page_problem(path: str | None) -> str | None:
+    """The error in the name of a file that is to be a page."""
+    ending = os.path.splitext(path or "")[1].lower()
+    if path in (None, "-") or _ENDINGS.get(ending) == "html":
+        return None
+    return f"{path} is not the name of a page; choose one that ends in .html"
+
+
 def mission_problem(option: str, path: str | None, form: str | None) -> str | None:
     """The error of an output file whose name is a mission's."""
     ending = os.path.splitext(path or "")[1].lower()

@@ -1,7 +1,8 @@
-"""Fixtures for logs."""
+"""Fixtures for logs and stores."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -13,3 +14,12 @@ def verify(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pyte
     """`btq verify` in an empty folder."""
     monkeypatch.chdir(tmp_path)
     return Verify(tmp_path, capsys)
+
+
+@pytest.fixture
+def polars() -> str:
+    """The URL of the second engine; where all that tests need is installed (`BTQ_CI`), nothing is skipped."""
+    if not os.environ.get("BTQ_CI"):
+        for module in ("ibis", "polars"):  # half a gigabyte with what they need, so not everybody has them
+            pytest.importorskip(module, reason=f"{module} is not installed: pip install -e '.[test]'")
+    return "polars://"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
 import sys
@@ -219,15 +218,6 @@ def test_the_question_of_the_page(kept: Path, monkeypatch: pytest.MonkeyPatch) -
         ("v2", "Move::2", 0.012),
         ("v1", "Pick::3", 0.005),
     ]
-
-
-@pytest.fixture
-def polars() -> str:
-    """The URL of the second engine; where all that tests need is installed (`BTQ_CI`), nothing is skipped."""
-    if not os.environ.get("BTQ_CI"):
-        for module in ("ibis", "polars"):  # half a gigabyte with what they need, so not everybody has them
-            pytest.importorskip(module, reason=f"{module} is not installed: pip install -e '.[test]'")
-    return "polars://"
 
 
 @pytest.mark.parametrize("parts", [(), ("label",), ("label", "robot")])

@@ -12,6 +12,7 @@ from btq_lang.catalog.units import parse_unit
 from btq_lang.evidence.compare import questions
 from btq_lang.evidence.compare.chance import LEVEL, Shuffles, fisher, holm, is_too_few, shuffles_for
 from btq_lang.evidence.store.engine import quoted
+from btq_lang.evidence.store.queries import only
 from btq_lang.evidence.store.summary import summary
 from btq_lang.evidence.verdicts import VIOLATED
 from btq_lang.util.record import Record, replace
@@ -219,7 +220,7 @@ def is_time(symbol: str) -> bool:
 
 def _newly(ask: Ask, by: str, sides: tuple[str, str]) -> dict[str, list[Newly]]:
     """The requirements that only the second side violates, by mission."""
-    before, after = (summary(_only(ask, f"{by} = {quoted(side)}"), "").missions for side in sides)
+    before, after = (summary(only(ask, f"{by} = {quoted(side)}"), "").missions for side in sides)
     verdicts = {(mission.name, each.id): each.verdict for mission in before for each in mission.requirements}
     found: dict[str, list[Newly]] = {}
     for mission in after:
@@ -228,13 +229,6 @@ def _newly(ask: Ask, by: str, sides: tuple[str, str]) -> dict[str, list[Newly]]:
             if each.verdict == VIOLATED and earlier != VIOLATED:
                 found.setdefault(mission.name, []).append(Newly(each.id, each.title, earlier))
     return found
-
-
-def _only(ask: Ask, condition: str) -> Ask:
-    """Asks the same of some of the rows."""
-    tables = ("runs", "clauses", "verdicts")
-    parts = ", ".join(f"{table} AS (SELECT * FROM main.{table} WHERE {condition})" for table in tables)
-    return lambda question: ask(f"WITH {parts} {question}")
 
 
 WORSE: Final = ("slower", "less reliable")

@@ -9,11 +9,23 @@ other engines.
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Final, TypeVar
+
+if TYPE_CHECKING:
+    Rows = TypeVar("Rows")
+
+
+def only(ask: Callable[[str], Rows], condition: str) -> Callable[[str], Rows]:
+    """Asks the same of some of the rows."""
+    parts = ", ".join(f"{table} AS (SELECT * FROM main.{table} WHERE {condition})" for table in _OF_RUNS)
+    return lambda question: ask(f"WITH {parts} {question}")
+
 
 QUERIES: Final = {
     "runs": """
-        SELECT {by}, COUNT(DISTINCT log) AS logs, COUNT(*) AS runs,
+        SELECT {by}, COUNT(DISTINCT log) AS logs, COUNT(*) AS runs, COUNT(DISTINCT robot) AS robots,
+            COUNT(DISTINCT tree) AS trees, MAX(nodes) AS nodes,
             MIN(start_us) AS start_us, MAX(end_us) AS end_us,
             SUM(CASE WHEN outcome = 'succeeded' THEN 1 ELSE 0 END) AS succeeded,
             SUM(CASE WHEN outcome = 'failed' THEN 1 ELSE 0 END) AS failed,
@@ -64,7 +76,7 @@ QUERIES: Final = {
             WHERE verdict = 'violated' AND counted
         ) AS ranked
         JOIN runs ON ranked.log = runs.log AND ranked.run = runs.run
-        WHERE place <= 10
+        WHERE place <= {violations}
         ORDER BY place
     """,
     # The judgements of clauses over the last runs, activations or hours, each with how many came later.
@@ -102,3 +114,48 @@ QUERIES: Final = {
         ORDER BY {by}, requirement, clause, node, run_start_us, log, run, end_us
     """,
 }
+
+# What an overview shows beside the verdicts.
+OVERVIEW: Final = {
+    # The labels in the order of time.
+    "labels": """
+        SELECT label, MIN(start_us) AS first_us, MAX(start_us) AS last_us
+        FROM runs
+        GROUP BY label
+        ORDER BY first_us, label
+    """,
+    # What happened in each step of the time.
+    "runs": """
+        SELECT mission, CAST(FLOOR((start_us - {origin}) / {step}.0) AS BIGINT) AS place, COUNT(*) AS runs,
+            SUM(CASE WHEN outcome = 'failed' THEN 1 ELSE 0 END) AS failed,
+            SUM(retries) AS retries, SUM(recoveries) AS recoveries
+        FROM runs
+        GROUP BY mission, place
+    """,
+    "verdicts": """
+        SELECT mission, requirement, CAST(FLOOR((start_us - {origin}) / {step}.0) AS BIGINT) AS place,
+            COUNT(*) AS judged, SUM(CASE WHEN verdict = 'violated' THEN 1 ELSE 0 END) AS violated
+        FROM verdicts
+        WHERE counted AND verdict <> 'unknown'
+        GROUP BY mission, requirement, place
+    """,
+    # Where failures began.
+    "failures": """
+        SELECT mission, label, failure AS path, COUNT(*) AS runs
+        FROM runs
+        WHERE outcome = 'failed'
+        GROUP BY mission, label, failure
+    """,
+    # In how many runs each node was active, and how many were at all.
+    "nodes": """
+        SELECT mission, label, path, COUNT(*) AS runs
+        FROM (SELECT DISTINCT mission, label, path, log, run FROM activations) AS active
+        GROUP BY mission, label, path
+    """,
+    "exercised": """
+        SELECT {by}, COUNT(DISTINCT uid) AS nodes
+        FROM activations
+        GROUP BY {by}
+    """,
+}
+_OF_RUNS: Final = ("runs", "clauses", "verdicts")

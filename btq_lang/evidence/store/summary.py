@@ -6,7 +6,7 @@ cover; and verdicts come from counts as for logs (`tally.py`, `clause.verdict_of
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     Ask: TypeAlias = Callable[[str], Sequence[Row]]  # the rows of a question, by the names of their columns
 
 PARTS: Final = ("label", "robot")  # what a summary may be parted by
+_VIOLATIONS: Final = 10  # named of each clause
 
 
 def summary(ask: Ask, store: str, parts: Sequence[str] = ()) -> Report:
@@ -53,14 +54,25 @@ def summary(ask: Ask, store: str, parts: Sequence[str] = ()) -> Report:
         store: its name, as people read it.
         parts: of PARTS, those that have verdicts of their own.
     """
+    return Report(tuple(mission for _, mission in parted(ask, store, parts)), (), ())
+
+
+def parted(
+    ask: Ask, store: str, parts: Sequence[str], violations: int = _VIOLATIONS
+) -> Iterator[tuple[Row, MissionVerdicts]]:
+    """What happened in the runs of each mission and part, as counts, and their verdicts.
+
+    Args:
+        violations: how many of each clause are named.
+    """
     by = ("mission", *parts)
     columns = {"by": ", ".join(by), "by_verdicts": ", ".join(f"verdicts.{each}" for each in by)}
+    columns["violations"] = str(violations)
     found = {name: ask(text.format(**columns)) for name, text in QUERIES.items()}
     at_clause = (*by, "requirement", "clause", "node")
     counts = {_key(row, at_clause): row for row in found["verdicts"]}
     broken, recent = (_grouped(found[name], at_clause) for name in ("violations", "recent"))
     clauses = _grouped(found["clauses"], by)
-    missions = []
     for part in found["runs"]:
         judged: dict[str, list[ClauseVerdict]] = {}
         titles = {}
@@ -73,8 +85,7 @@ def summary(ask: Ask, store: str, parts: Sequence[str] = ()) -> Report:
             RequirementVerdict(name, titles[name], worst_of(each.verdict for each in verdicts), tuple(verdicts))
             for name, verdicts in judged.items()
         ]
-        missions.append(_mission(part, parts, store, requirements))
-    return Report(tuple(missions), (), ())
+        yield part, _mission(part, parts, store, requirements)
 
 
 def _mission(

@@ -1,0 +1,176 @@
+"""What the page shows, as data.
+
+One invariant: what is loaded are counts and the worst violation of each clause.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from btq_lang.evidence.compare.comparison import Comparison, Unknown, compare
+from btq_lang.evidence.report.trends import Steps, Trends, by_mission, steps_of, trends
+from btq_lang.evidence.store.engine import quoted
+from btq_lang.evidence.store.queries import OVERVIEW, only
+from btq_lang.evidence.store.summary import parted
+from btq_lang.evidence.verdicts import VIOLATED, MissionVerdicts
+from btq_lang.util.record import Record
+
+if TYPE_CHECKING:
+    Row: TypeAlias = Mapping[str, Any]
+    Ask: TypeAlias = Callable[[str], Sequence[Row]]
+
+
+class Part(Record):
+    """Runs of a mission: those with a label, or those of a robot.
+
+    Attributes:
+        name: the label or the robot; empty if the runs have none.
+        failed: how many runs failed.
+        exercised: how many nodes of the tree were active, and how many it has; None if these runs had several trees.
+    """
+
+    name: str
+    robots: int
+    failed: int
+    exercised: tuple[int, int] | None
+    verdicts: MissionVerdicts
+
+    @property
+    def runs(self) -> int:
+        return self.verdicts.runs
+
+    @property
+    def violated(self) -> int:
+        """How many requirements are."""
+        return sum(each.verdict == VIOLATED for each in self.verdicts.requirements)
+
+
+class Node(Record):
+    """A node; runs: of each part of the mission, how many of its runs are counted."""
+
+    path: str
+    runs: tuple[int, ...]
+
+
+class MissionOverview(Record):
+    """A mission.
+
+    Attributes:
+        parts: its labels in the order of time, or all runs as one.
+        robots: that ran the last of them, those with the most violated requirements first; empty if not asked for.
+        failures: where failures began, with the most of the last part first.
+        nodes: in how many runs each was active, the fewest of the last part first.
+    """
+
+    name: str
+    parts: tuple[Part, ...]
+    robots: tuple[Part, ...]
+    failures: tuple[Node, ...]
+    nodes: tuple[Node, ...]
+    trends: Trends
+
+
+class Overview(Record):
+    """A store.
+
+    Attributes:
+        labels: in the order of time, with when the first run of each began.
+        by: what the runs are parted by.
+        sides: the last two labels; None if there is one.
+        comparisons: what changed between them, for each mission that was run with both.
+    """
+
+    store: str
+    by: tuple[str, ...]
+    labels: tuple[tuple[str, int], ...]
+    steps: Steps
+    missions: tuple[MissionOverview, ...]
+    sides: tuple[str, str] | None
+    comparisons: tuple[Comparison, ...]
+
+    @property
+    def is_worse(self) -> bool:
+        """Whether something got worse between the last two labels."""
+        return any(each.is_worse for each in self.comparisons)
+
+
+def overview(ask: Ask, store: str, by: Sequence[str]) -> Overview:
+    """The overview of a store.
+
+    Args:
+        ask: gives an engine a question.
+        store: its name, as people read it.
+        by: `label`, `robot` or both.
+    """
+    rows = ask(OVERVIEW["labels"])
+    names = [row["label"] for row in rows]
+    sides = (names[-2], names[-1]) if len(names) > 1 else None
+    try:
+        comparisons = compare(ask, "label", sides) if sides is not None else ()
+    except Unknown:  # each mission was run with one of them
+        comparisons = ()
+    steps = steps_of(min(row["first_us"] for row in rows), max(row["last_us"] for row in rows))
+    of_time = trends(ask, steps)
+    failures, active = (by_mission(ask(OVERVIEW[name])) for name in ("failures", "nodes"))
+    missions = []
+    for name, parts in _parts(ask, store, names if "label" in by else None).items():
+        labels = [each.name for each in parts] if "label" in by else None
+        began, ran = (_nodes(found.get(name, ()), labels) for found in (failures, active))
+        missions.append(
+            MissionOverview(
+                name=name,
+                parts=tuple(parts),
+                robots=tuple(_robots(ask, store, name, labels)) if "robot" in by else (),
+                failures=tuple(sorted(began, key=lambda each: ([-number for number in each.runs[::-1]], each.path))),
+                nodes=tuple(sorted(ran, key=lambda each: (each.runs[-1], each.path))),
+                trends=of_time[name],
+            )
+        )
+    labels_at = tuple((row["label"], row["first_us"]) for row in rows)
+    return Overview(store, tuple(by), labels_at, steps, tuple(missions), sides, comparisons)
+
+
+def _parts(ask: Ask, store: str, labels: Sequence[str] | None) -> dict[str, list[Part]]:
+    """The parts of each mission.
+
+    Args:
+        labels: in their order; None: all runs are one part.
+    """
+    by = ("label",) if labels is not None else ()
+    exercised = {
+        (row["mission"], row.get("label", "")): int(row["nodes"])
+        for row in ask(OVERVIEW["exercised"].format(by=", ".join(("mission", *by))))
+    }
+    found: dict[str, list[Part]] = {}
+    for row, verdicts in parted(ask, store, by, 1):
+        label = row.get("label", "")
+        part = _part(row, verdicts, label, exercised.get((row["mission"], label), 0))
+        found.setdefault(row["mission"], []).append(part)
+    for parts in found.values():
+        parts.sort(key=lambda each: labels.index(each.name) if labels is not None else 0)
+    return found
+
+
+def _robots(ask: Ask, store: str, mission: str, labels: Sequence[str] | None) -> Sequence[Part]:
+    """The robots that ran a mission, with its last label, those with the most violated requirements first, then those
+    with the most failures.
+    """
+    runs = f"mission = {quoted(mission)}" + (f" AND label = {quoted(labels[-1])}" if labels is not None else "")
+    found = [_part(row, verdicts, row["robot"]) for row, verdicts in parted(only(ask, runs), store, ("robot",), 1)]
+    return sorted(found, key=lambda each: (-each.violated, -each.failed / each.runs, each.name))
+
+
+def _part(row: Row, verdicts: MissionVerdicts, name: str, exercised: int = 0) -> Part:
+    nodes = (exercised, int(row["nodes"])) if row["trees"] == 1 else None
+    return Part(name, int(row["robots"]), int(row["failed"]), nodes, verdicts)
+
+
+def _nodes(rows: Iterable[Row], labels: Sequence[str] | None) -> list[Node]:
+    """The runs of each node, by label or all together."""
+    places = {label: place for place, label in enumerate(labels or ())}
+    found: dict[str, list[int]] = {}
+    for row in rows:
+        runs = found.setdefault(row["path"] or "", [0] * max(len(places), 1))
+        runs[places.get(row["label"], 0)] += int(row["runs"])
+    return [Node(path, tuple(runs)) for path, runs in found.items()]

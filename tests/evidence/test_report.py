@@ -1,0 +1,324 @@
+"""`btq report`: the page about a store."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+from html.parser import HTMLParser
+from pathlib import Path
+
+import fleet
+import pytest
+from chromium import CHROMIUM, FLAGS
+from evidence_logs import MAIN, MAIN_XML, START, btlog, rows
+from in_process import run_btq
+
+from btq_lang.evidence.report.trends import steps_of
+from btq_lang.evidence.store import engine
+from btq_lang.evidence.store.fleet import asked_by
+from btq_lang.evidence.store.queries import OVERVIEW
+
+MISSION = 'QualityReq quick : safety "Be <quick>"\n    Move takes at most 15 ms\n' + MAIN
+SLOW, QUICK = "1R 2R 20 2S 3R 25 3S 1S 26 2I 3I 1I", "1R 2R 12 2S 3R 25 3S 1S 26 2I 3I 1I"
+FAILED = "1R 2R 12 2S 3R 25 3F 1F 26 2I 3I 1I"
+HERE = Path(__file__).parent
+DOTTED = "a dotted line is where the first run of a label begins"
+DAY = 86_400_000_000  # µs
+
+
+class Page(HTMLParser):
+    """What a page says.
+
+    Attributes:
+        tables: the texts of the cells of each table, by its caption; the first row has the heads.
+        texts: of headings, tiles, paragraphs and summaries outside of tables.
+        labels: what drawings are called.
+        attributes: of all elements: their tag, name and value.
+    """
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tables: dict[str, list[list[str]]] = {}
+        self.texts: list[str] = []
+        self.labels: list[str] = []
+        self.attributes: list[tuple[str, str, str]] = []
+        self._caption: str | None = None  # None after a table
+        self._is_drawing = False
+        self.feed(text.partition("<body>")[2])
+
+    @property
+    def text(self) -> str:
+        """The texts, a line each, then the tables, a line each row."""
+        tables = [[caption, *map(" · ".join, rows)] for caption, rows in self.tables.items()]
+        return "\n\n".join(map("\n".join, [self.texts, *tables])) + "\n"
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.attributes += [(tag, name, value or "") for name, value in attrs]
+        self.labels += [value or "" for name, value in attrs if name == "aria-label"]
+        if tag == "table":
+            self._caption = ""
+        elif self._caption is None:
+            self.texts += [""] if tag in ("h1", "h2", "h3", "p", "li", "summary") else []
+        elif tag == "tr":
+            self.tables.setdefault(self._caption, []).append([])
+        elif tag in ("td", "th"):
+            self.tables[self._caption][-1].append("")
+        elif tag in ("p", "small", "li") and (row := self.tables[self._caption][-1])[-1]:
+            row[-1] = f"{row[-1].rstrip()} | "
+        self._is_drawing = self._is_drawing or tag == "svg"
+
+    def handle_endtag(self, tag: str) -> None:
+        self._caption = None if tag == "table" else self._caption
+        self._is_drawing = self._is_drawing and tag != "svg"
+
+    def handle_data(self, data: str) -> None:
+        if self._is_drawing or not data.strip():
+            return
+        if self._caption is None:
+            self.texts[-1] += data
+        elif self._caption in self.tables:
+            self.tables[self._caption][-1][-1] += data
+        else:
+            self._caption += data
+
+
+@pytest.fixture(scope="module")
+def robots(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the page about three robots, each with two versions on two days, and its store."""
+    folder = tmp_path_factory.mktemp("fleet")
+    fleet.write_logs(folder, 3, ["v1.3", "v1.4"], 2, 25)
+    for version in ("v1.3", "v1.4"):
+        asked = ("--mission", "fetch.btq", "--store", "evidence", "--label", version, "--robot-by", "folder")
+        assert run_btq("verify", f"logs/{version}", *asked, cwd=folder)[0] in (0, 1)
+    assert run_btq("report", "evidence", "-o", "report.html", cwd=folder) == (1, "", "")
+    return folder
+
+
+def page_of(folder: Path) -> str:
+    return (folder / "report.html").read_text(encoding="utf-8")
+
+
+def test_what_the_page_of_a_fleet_says(robots: Path) -> None:
+    """The text beside this file has been counted by hand where a person can, and by SQL below."""
+    assert Page(page_of(robots)).text == (HERE / "report_of_three_robots.txt").read_text(encoding="utf-8")
+
+
+def test_the_page_counts_as_sql_by_hand_does(robots: Path) -> None:
+    def asked(question: str) -> list[tuple[str, ...]]:
+        import duckdb
+
+        files = re.sub(r"FROM (\w+)", rf"FROM read_parquet('{robots}/evidence/*/\1.parquet')", question)
+        return [tuple(map(str, row)) for row in duckdb.sql(files).fetchall()]
+
+    tables = Page(page_of(robots)).tables
+    ((runs, failed, retries),) = asked(
+        "SELECT COUNT(*), COUNT(*) FILTER (outcome = 'failed'), round(SUM(retries) / COUNT(*), 2) FROM runs"
+        " WHERE label = 'v1.4'"
+    )
+    found = {row[0]: row[2] for row in tables[f"What happened in runs; {DOTTED}"]}
+    assert (found["Runs"], found["Failed"].split()[0], found["Retries per run"]) == (runs, failed, retries)
+    began = asked("SELECT failure, COUNT(*) FROM runs WHERE label = 'v1.4' AND failure IS NOT NULL GROUP BY ALL")
+    caption = "Nodes where failures began, with their share of the failed runs"
+    assert {(row[0], row[2].split()[0]) for row in tables[caption][1:]} == {*began}
+    violated = asked(
+        "SELECT robot, COUNT(*) FILTER (verdict = 'violated'), COUNT(*) FROM verdicts"
+        " WHERE label = 'v1.4' AND requirement = 'quick' GROUP BY ALL"
+    )
+    rows_ = tables["Robots, those with the most violated requirements first"][1:]
+    assert {(row[0], *re.findall(r"quick \| (\d+) of (\d+)", row[1])[0]) for row in rows_} == {*violated}
+
+
+def test_the_page_needs_nothing_but_itself(robots: Path) -> None:
+    text = page_of(robots)
+    assert not re.search(r"https?:|<script|<link|<img|@import|url\(", text)
+    page = Page(text)
+    ids = [value for _, name, value in page.attributes if name == "id"]
+    assert len(ids) == len({*ids})
+    links = {value for _, name, value in page.attributes if name == "href"}
+    assert links == {f"#r1-{number}" for number in range(1, 6)}
+    assert links <= {f"#{each}" for each in ids}
+
+
+def test_the_page_can_be_read_aloud(robots: Path) -> None:
+    """Every table has a caption and heads for its columns and rows, every drawing a text."""
+    text = page_of(robots)
+    assert text.count("<table") == text.count("<caption>") == text.count("<thead>")
+    assert text.count("<tr") - text.count("<thead>") == text.count('<th scope="row"')
+    assert len(re.findall(r"<th(?! scope=)", text)) == text.count("<thead")
+    assert Page(text).labels == [
+        "by day: 0 % from 2026-11-20, 21.9 % from 2026-11-23, at most 21.9 %",
+        "by day: 0 % from 2026-11-20, 1.33 % from 2026-11-23, at most 1.33 %",
+        "by day: 4 % from 2026-11-20, 22.7 % from 2026-11-23, at most 34.7 %",
+        "by day: 2.59 % from 2026-11-20, 2.45 % from 2026-11-23, at most 2.87 %",
+        "by day: 75 from 2026-11-20, 75 from 2026-11-23, at most 75",
+        "by day: 4 % from 2026-11-20, 22.7 % from 2026-11-23, at most 34.7 %",
+        "by day: 7.24 from 2026-11-20, 8.83 from 2026-11-23, at most 8.83",
+    ]
+    assert text.count('<svg class="trend"') == len(Page(text).labels)
+
+
+def test_the_same_store_gives_the_same_page(robots: Path) -> None:
+    assert run_btq("report", "evidence", cwd=robots) == (1, page_of(robots), "")
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: only a browser can tell")
+@pytest.mark.parametrize("width", [1400, 390])
+def test_the_page_is_no_wider_than_the_window(width: int, robots: Path, tmp_path: Path) -> None:
+    measure = "<script>document.body.dataset.wide = document.documentElement.scrollWidth - innerWidth;</script>"
+    frame = tmp_path / "frame.html"  # a window without frames is at least 500 pixels wide
+    (tmp_path / "page.html").write_text(page_of(robots).replace("</body>", f"{measure}</body>"), encoding="utf-8")
+    frame.write_text(
+        f'<body><iframe src="page.html" width="{width}" height="900"></iframe><script>onload = () => document.body'
+        ".dataset.wide = frames[0].document.body.dataset.wide;</script></body>",
+        encoding="utf-8",
+    )
+    assert CHROMIUM is not None
+    command = [CHROMIUM, *FLAGS, "--allow-file-access-from-files", f"--user-data-dir={tmp_path / 'profile'}"]
+    command += ["--window-size=1500,1000", "--dump-dom", frame.as_uri()]
+    environment = {**os.environ, "HOME": str(tmp_path)}
+    dom = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120, env=environment).stdout
+    assert re.findall(r'data-wide="(-?\d+)"', dom) == ["0"]
+
+
+# ---- stores made by hand ----
+
+
+def keep(folder: Path, number: int, log: str, *options: str, mission: str = "main.btq") -> None:
+    """Judge a log of one run, made on a day of its own, and keep its verdicts."""
+    path = folder / f"{number}.btlog"
+    path.write_bytes(btlog(MAIN_XML, rows(log), START + number * DAY))
+    asked = ("--mission", mission, "--store", "kept", *options)
+    assert run_btq("verify", path.name, *asked, cwd=folder)[0] == (log == SLOW)
+
+
+@pytest.fixture
+def kept(tmp_path: Path) -> Path:
+    """A folder with a mission, and a store with a run of it that kept its bound."""
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    keep(tmp_path, 0, QUICK, "--label", "v<1>", "--robot", "red")
+    return tmp_path
+
+
+def reported(folder: Path, *options: str) -> tuple[int, Page]:
+    code, text, errors = run_btq("report", "kept", *options, cwd=folder)
+    assert errors == ""
+    return code, Page(text)
+
+
+def test_one_label_has_nothing_to_compare_with(kept: Path) -> None:
+    code, page = reported(kept)
+    assert code == 0
+    assert page.texts[:4] == [
+        "What robots did: kept",
+        "1 run, 2026-11-20 21:22 UTC, 1 label: v<1>",
+        "What got worse",
+        "All runs have the same label, so there is nothing to compare.",
+    ]
+    assert page.tables[f"Verdicts, and the share of violations; {DOTTED}"] == [
+        ["Requirement", "v<1>", "Violations by minute"],
+        [
+            "quick Be <quick> | Move takes at most 15 ms",
+            "satisfied | held so far in 1 activation, worst 12 ms",
+            "always 0 %",
+        ],
+    ]
+
+
+def test_what_is_newly_violated_is_on_top(kept: Path) -> None:
+    keep(kept, 1, SLOW, "--label", "v<2>", "--robot", "red")
+    code, page = reported(kept, "--by", "label")
+    assert code == 1
+    assert page.tables["What got worse in main"] == [
+        ["Finding", "Of", "Change"],
+        ["newly violated", "quick Be <quick>", "was satisfied"],
+    ]
+    assert page.texts[2:8] == [
+        "What got worse from v<1> to v<2>",
+        "1 newly violated",
+        "0 less reliable",
+        "0 slower",
+        "1 violated now of 1 requirement",
+        "main: 1 run of v<1>, 1 run of v<2>, durations compared by runs",
+    ]
+    assert "Robots with v<2>" not in page.texts
+
+
+def test_all_runs_by_robot(kept: Path) -> None:
+    keep(kept, 1, FAILED, "--label", "v<2>", "--robot", "blue")
+    code, page = reported(kept, "--by", "robot")
+    assert code == 0
+    assert page.tables["Robots, those with the most violated requirements first"] == [
+        ["Robot", "Violated", "Runs", "Failed", "Retries per run", "Recoveries per run"],
+        ["blue", "nothing", "1", "1 of 1, 100 %", "0", "0"],
+        ["red", "nothing", "1", "0 of 1, 0 %", "0", "0"],
+    ]
+    assert page.tables["Nodes where failures began, with their share of the failed runs"] == [
+        ["Node", "All runs"],
+        ["Pick::3", "1 of 1, 100 %"],
+    ]
+    assert page.tables["What was exercised"][1] == ["Nodes", "3 of 3"]
+
+
+def test_labels_of_different_missions(kept: Path) -> None:
+    (kept / "other.btq").write_text(MISSION, encoding="utf-8")
+    keep(kept, 1, SLOW, mission="other.btq")
+    code, page = reported(kept)
+    assert code == 0
+    assert page.texts[1:4] == [
+        "2 runs, 2026-11-20 21:22–2026-11-21 21:22 UTC, 2 labels: v<1>, (none)",
+        "What got worse from v<1> to (none)",
+        "No mission was run with both v<1> and (none).",
+    ]
+    assert [text for text in page.texts if text.startswith("Mission")] == ["Mission main", "Mission other"]
+
+
+def test_earlier_labels_have_no_column(kept: Path) -> None:
+    for number in range(1, 6):
+        keep(kept, number, QUICK, "--label", f"w{number}")
+    _, page = reported(kept)
+    assert page.texts[1].endswith("6 labels: 2 others, w2, w3, w4, w5")
+    assert page.tables["What was exercised"] == [
+        ["What", "w2", "w3", "w4", "w5"],
+        ["Nodes", *["3 of 3"] * 4],
+        ["Requirements", *["1 of 1"] * 4],
+    ]
+    assert "2 earlier labels not shown here; btq verify --store DIR --by label shows all." in page.texts
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("gone",), "gone: no verdicts are kept there; keep some with btq verify LOG --store gone"),
+        (("kept", "-o", "x.md"), "x.md is not the name of a page; choose one that ends in .html"),
+    ],
+)
+def test_what_cannot_be_reported(arguments: tuple[str, ...], message: str, kept: Path) -> None:
+    assert run_btq("report", *arguments, cwd=kept) == (2, "", f"btq report: {message}\n")
+    assert not (kept / "x.md").exists()
+
+
+@pytest.mark.parametrize(
+    ("length", "name", "number"),
+    [
+        (0, "minute", 1),
+        (39 * 60, "minute", 40),
+        (41 * 60, "hour", 2),
+        (6 * 86_400, "day", 7),
+        (41 * 86_400, "week", 7),
+        (400 * 86_400, "2 weeks", 30),
+    ],
+)
+def test_steps_are_as_short_as_their_number_allows(length: int, name: str, number: int) -> None:
+    steps = steps_of(START, START + length * 1_000_000)
+    assert (steps.name, steps.number) == (name, number)
+    assert steps.begin(0) <= START < steps.begin(1)
+    assert steps.begin(number - 1) <= START + length * 1_000_000 < steps.begin(number)
+
+
+def test_a_second_engine_says_the_same(robots: Path, polars: str) -> None:
+    store = str(robots / "evidence")
+    words = {"by": "mission, label", "origin": START, "step": DAY}
+    for name, question in OVERVIEW.items():
+        one, other = (ask(question.format(**words)) for ask in (engine.asked(store), asked_by(polars, store)))
+        assert sorted(map(repr, one)) == sorted(map(repr, other)), name
