@@ -297,11 +297,14 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         help="write the violations as messages of a bag (.mcap), for the timeline of Foxglove and for rqt_console",
     )
     kept = parser.add_argument_group("keeping verdicts")
-    kept.add_argument(
+    store = kept.add_mutually_exclusive_group()
+    store.add_argument(
         "--store",
         metavar="DIR",
-        help="keep what is found in each log in a folder, as Parquet files; without logs: print what is kept there",
+        help="keep what is found in each log in a folder, as Parquet files; without logs: print what is kept there;"
+        " default: `store` in [evidence] of btq.toml",
     )
+    store.add_argument("--no-store", action="store_true", help="keep nothing, also where btq.toml names a store")
     kept.add_argument(
         "--by",
         action="append",
@@ -334,9 +337,12 @@ def _add_compare(commands: _SubParsersAction[Parser]) -> None:
         "  btq compare evidence --by robot r7 r8         two robots\n"
         "  btq compare evidence v1.3 v1.4 -o report.md   for a pull request\n",
     )
-    parser.add_argument("store", metavar="STORE", help="the folder that btq verify --store writes")
+    # Two names alone are `store` and `before`: if `store` were the optional one, `STORE --by robot A B` would fail.
+    parser.usage = "btq compare [-h] [STORE] A B [--by {label,robot}] [--format FORMAT] [-o FILE]"
+    store = "the folder that btq verify --store writes; default: `store` in [evidence] of btq.toml"
+    parser.add_argument("store", metavar="STORE", help=store)
     parser.add_argument("before", metavar="A", help="the label that is compared with, or the robot")
-    parser.add_argument("after", metavar="B", help="the label, or the robot, that may have changed")
+    parser.add_argument("after", metavar="B", nargs="?", help="the label, or the robot, that may have changed")
     parser.add_argument("--by", choices=("label", "robot"), default="label", help="what A and B are; default: label")
     parser.add_argument("--format", choices=COMPARISON_FORMATS, help="default: as the file of -o ends, else table")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")

@@ -6,26 +6,34 @@ import sys
 from argparse import Namespace
 
 from btq_lang.commands.output import form_of, form_problem, write_output
+from btq_lang.commands.stored import NO_STORE, store_of_project
 from btq_lang.evidence.compare import FORMATS, write
 
 
 def run(options: Namespace) -> int:
     """Compare, and print what was found; returns the exit code."""
-    sides = options.before, options.after
+    store, sides = _named(options)
     problem = form_problem(options, FORMATS)
     if sides[0] == sides[1]:
         problem = f"both sides are {sides[0]}"
-    if problem:
-        print(f"btq compare: {problem}", file=sys.stderr)
+    if problem or store is None:
+        print(f"btq compare: {problem or NO_STORE}", file=sys.stderr)
         return 2
     from btq_lang.evidence.compare.comparison import Unknown, compare
     from btq_lang.evidence.store.engine import NoEngine, asked
 
     try:
-        found = compare(asked(options.store), options.by, sides)
+        found = compare(asked(store), options.by, sides)
     except (NoEngine, Unknown) as error:
         print(f"btq compare: {error}", file=sys.stderr)
         return 2
     if code := write_output("compare", options.output, write(found, options.by, sides, form_of(options, FORMATS))):
         return code
     return int(any(each.is_worse for each in found))
+
+
+def _named(options: Namespace) -> tuple[str | None, tuple[str, str]]:
+    """The store and the two sides; argparse has two names alone as `store` and `before`."""
+    if options.after is None:
+        return store_of_project(), (options.store, options.before)
+    return options.store, (options.before, options.after)

@@ -2,27 +2,53 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from argparse import Namespace
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.commands.output import form_of, form_problem
 from btq_lang.commands.verdict_formats import FORMATS
 from btq_lang.commands.verdict_report import print_report
-from btq_lang.workspace.loader import shown
+from btq_lang.workspace.loader import find_project, shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.store.sets import Keeping
 
 
-def store_problem(options: Namespace) -> str | None:
-    """What is wrong with a command line about a store."""
-    given = vars(options)
-    named = [each for each in (*_OF_LOGS, *_OF_KEEPING, *_OF_SUMMARY) if given[each.strip("-").replace("-", "_")]]
+def store_of_project() -> str | None:
+    """The folder that this folder's project names as its store, or what an engine knows, such as `s3://fleet/evidence`."""
+    project = find_project(".").project
+    store = project.evidence.store if project.evidence is not None else None
+    return store if store is None or "://" in store else shown(os.path.join(project.root, store))
+
+
+def reads_store(options: Namespace) -> bool:
+    """Whether the verdicts of a store are printed, and no log is read.
+
+    Where the command line names no store, that of the project is filled in.
+    """
+    is_named = options.store is not None or any(_given(options, _OF_SUMMARY))
+    if options.store is None and not options.no_store:
+        options.store = store_of_project()
+    if options.logs or options.store is None:
+        return False
+    evidence = find_project(".").project.evidence
+    return is_named or evidence is None or not evidence.logs
+
+
+def store_problem(options: Namespace, is_summary: bool) -> str | None:
+    """What is wrong with a command line about a store.
+
+    Args:
+        is_summary: as `reads_store` says.
+    """
+    named = _given(options, (*_OF_LOGS, *_OF_KEEPING, *_OF_SUMMARY))
     if options.store is None:
         wrong = [each for each in named if each not in _OF_LOGS]
         return f"{wrong[0]} goes with --store DIR" if wrong else None
-    if options.logs:
+    if not is_summary:
         wrong = [each for each in named if each in _OF_SUMMARY]
         return f"{wrong[0]} goes with --store DIR and no log" if wrong else None
     if wrong := [each for each in named if each not in _OF_SUMMARY]:
@@ -70,6 +96,12 @@ def summarise(options: Namespace) -> int:
     return print_report(options, report, ())
 
 
+def _given(options: Namespace, names: Sequence[str]) -> list[str]:
+    """Those of some options that the command line has."""
+    return [each for each in names if getattr(options, each.strip("-").replace("-", "_"))]
+
+
+NO_STORE: Final = "no store given; name one, or set `store` in [evidence] of btq.toml"
 _OF_LOGS: Final = ("--mission", "--signals", "--events")
 _OF_SUMMARY: Final = ("--by", "--engine")
 _OF_KEEPING: Final = ("--label", "--label-by", "--robot", "--robot-by")

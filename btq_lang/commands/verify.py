@@ -16,7 +16,7 @@ from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import Files, usage_problem
 from btq_lang.commands.output import form_of, form_problem
 from btq_lang.commands.progress import Progress
-from btq_lang.commands.stored import opened, store_problem, summarise
+from btq_lang.commands.stored import opened, reads_store, store_problem, summarise
 from btq_lang.commands.verdict_events import events_problem, overwrites, write_events
 from btq_lang.commands.verdict_formats import FORMATS
 from btq_lang.commands.verdict_report import print_report
@@ -38,10 +38,11 @@ if TYPE_CHECKING:
 def run(options: Namespace) -> int:
     """Read the logs, or a store, and print the verdicts."""
     named = [*options.logs, *options.mission]
-    if problem := usage_problem(named) or store_problem(options) or events_problem(options):
+    is_summary = reads_store(options)
+    if problem := usage_problem(named) or store_problem(options, is_summary) or events_problem(options):
         print(f"btq verify: {problem}", file=sys.stderr)
         return 2
-    if options.store is not None and not options.logs:
+    if is_summary:
         return summarise(options)
     problems: list[str] = []
     logs, missions, samples = _given(options, problems)

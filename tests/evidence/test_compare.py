@@ -104,6 +104,17 @@ def test_what_got_worse(changed: Path) -> None:
     assert run_btq("compare", "kept", "--by", "label", "v1", "v2", cwd=changed) == (1, TABLE, "")
 
 
+@pytest.mark.parametrize("line", [("v1", "v2"), ("--by", "label", "v1", "v2"), ("v1", "--by", "label", "v2")])
+def test_the_store_of_the_project(line: tuple[str, ...], changed: Path) -> None:
+    (changed / "btq.toml").write_text('[evidence]\nstore = "kept"\n', encoding="utf-8")
+    assert run_btq("compare", *line, cwd=changed) == (1, TABLE, "")
+
+
+def test_without_a_store(changed: Path) -> None:
+    message = "btq compare: no store given; name one, or set `store` in [evidence] of btq.toml\n"
+    assert run_btq("compare", "v1", "v2", cwd=changed) == (2, "", message)
+
+
 def test_back_to_the_version_that_was_better(changed: Path) -> None:
     code, output, errors = run_btq("compare", "kept", "v2", "v1", cwd=changed)
     assert (code, errors) == (0, "")

@@ -185,6 +185,37 @@ def test_what_a_summary_cannot_be_asked(options: tuple[str, ...], message: str, 
     assert run_btq("verify", *options, cwd=kept) == (2, "", f"btq verify: {message}\n")
 
 
+def test_the_store_of_the_project(kept: Path) -> None:
+    (kept / "btq.toml").write_text('[evidence]\nstore = "kept"\n', encoding="utf-8")
+    (kept / "below").mkdir()
+    shutil.copy(kept / "0.btlog", kept / "below" / "new.btlog")
+    with (kept / "below" / "new.btlog").open("ab") as file:
+        file.write(bytes(8))
+    whole = run_btq("verify", "--store", "kept", cwd=kept)
+    assert run_btq("verify", cwd=kept) == whole
+    assert run_btq("verify", "--by", "label", cwd=kept) == run_btq(
+        "verify", "--store", "kept", "--by", "label", cwd=kept
+    )
+    assert run_btq("verify", cwd=kept / "below")[1].startswith(f"3 runs in {kept / 'kept'}, ")
+    assert run_btq("verify", "new.btlog", "--no-store", cwd=kept / "below")[0] == 1
+    assert run_btq("verify", cwd=kept) == whole
+    assert run_btq("verify", "new.btlog", "--label", "v3", cwd=kept / "below")[0] == 1
+    assert run_btq("verify", cwd=kept)[1].startswith("4 runs in kept, ")
+    assert "label v3" in run_btq("verify", "--by", "label", cwd=kept)[1]
+
+
+def test_logs_of_the_project_are_kept_in_its_store(kept: Path) -> None:
+    (kept / "btq.toml").write_text('[evidence]\nlogs = ["[01].btlog"]\nstore = "own"\n', encoding="utf-8")
+    assert "runs: 2 succeeded" in run_btq("verify", "--label", "v9", cwd=kept)[1]
+    found = run_btq("verify", "--by", "label", cwd=kept)[1]
+    assert found.startswith("2 runs in own, 2026-11-20 21:22–21:23 UTC, mission main, label v9 (2 logs)\n")
+    assert run_btq("verify", "--no-store", "--label", "x", cwd=kept) == (
+        2,
+        "",
+        "btq verify: --label goes with --store DIR\n",
+    )
+
+
 def test_a_damaged_file_is_named(kept: Path) -> None:
     path = next((kept / "kept").glob("*/verdicts.parquet"))
     whole = path.read_bytes()
