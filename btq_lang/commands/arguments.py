@@ -358,7 +358,8 @@ def _add_report(commands: _SubParsersAction[Parser]) -> None:
         "examples:\n  btq report evidence -o report.html                by version and robot\n"
         "  btq report evidence --by label -o report.html     without the robots\n",
     )
-    parser.add_argument("store", metavar="STORE", help="the folder that btq verify --store writes")
+    store = "the folder that btq verify --store writes; default: `store` in [evidence] of btq.toml"
+    parser.add_argument("store", nargs="?", metavar="STORE", help=store)
     parser.add_argument(
         "--by",
         action="append",

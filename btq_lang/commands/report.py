@@ -6,19 +6,22 @@ import sys
 from argparse import Namespace
 
 from btq_lang.commands.output import page_problem, write_output
+from btq_lang.commands.stored import NO_STORE, store_of_project
 
 
 def run(options: Namespace) -> int:
     """Write the page; returns the exit code."""
-    if problem := page_problem(options.output):
-        print(f"btq report: {problem}", file=sys.stderr)
+    store = options.store or store_of_project()
+    problem = page_problem(options.output)
+    if problem or store is None:
+        print(f"btq report: {problem or NO_STORE}", file=sys.stderr)
         return 2
     from btq_lang.evidence.report.overview import overview
     from btq_lang.evidence.report.page import render
     from btq_lang.evidence.store.engine import NoEngine, asked
 
     try:
-        found = overview(asked(options.store), options.store, options.by or ("label", "robot"))
+        found = overview(asked(store), store, options.by or ("label", "robot"))
     except NoEngine as error:
         print(f"btq report: {error}", file=sys.stderr)
         return 2

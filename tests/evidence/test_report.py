@@ -286,9 +286,16 @@ def test_earlier_labels_have_no_column(kept: Path) -> None:
     assert "2 earlier labels not shown here; btq verify --store DIR --by label shows all." in page.texts
 
 
+def test_the_store_of_the_project(kept: Path) -> None:
+    (kept / "btq.toml").write_text('[evidence]\nstore = "kept"\n', encoding="utf-8")
+    code, output, errors = run_btq("report", cwd=kept)
+    assert (code, errors, Page(output).texts[0]) == (0, "", "What robots did: kept")
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        ((), "no store given; name one, or set `store` in [evidence] of btq.toml"),
         (("gone",), "gone: no verdicts are kept there; keep some with btq verify LOG --store gone"),
         (("kept", "-o", "x.md"), "x.md is not the name of a page; choose one that ends in .html"),
     ],
