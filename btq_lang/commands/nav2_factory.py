@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.diagnostics.model import Diagnostic, Place
-from btq_lang.nav2.findings import Loaded, distribution_unknown, findings, wrong_goals
+from btq_lang.nav2.findings import Loaded, findings, wrong_goals
 from btq_lang.nav2.goals import goals_in
 from btq_lang.nav2.loaded import Load, Loads
+from btq_lang.nav2.names import distribution_unknown, file_findings
 from btq_lang.nav2.parameters import Parameters, read_parameters
 from btq_lang.nav2.yaml_reader import YamlMissing, YamlProblem
 from btq_lang.util.record import Record, replace
@@ -208,7 +209,8 @@ def _found(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) ->
     if file.problem is not None:
         yield None, file.problem
     if file.parameters is not None and file.distribution is None:
-        yield None, distribution_unknown(file.parameters)
+        of_file = [*file_findings(file.parameters)]
+        yield from ((None, each) for each in of_file or [distribution_unknown(file.parameters)])
     elif file.parameters is not None and file.distribution is not None:
         yield from findings(file.parameters, file.distribution, _loaded(file, workspace_of))
 

@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.listed_trees import listed_trees
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nav2 import DISTRIBUTIONS
-from btq_lang.catalog.nav2.navigator import NAVIGATORS, OWN_PACKAGE, PARAMETERS
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.nav2.libraries import NAMES, Libraries
 from btq_lang.nav2.loaded import Load, Skipped, file_with
+from btq_lang.nav2.names import parameter_findings
 from btq_lang.nav2.parameters import Parameters
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
@@ -34,17 +33,6 @@ class Loaded(Record):
     workspace: Workspace
 
 
-def distribution_unknown(parameters: Parameters) -> Diagnostic:
-    """Says that nothing tells for which distribution a file is."""
-    choices = ", ".join(f'"nav2-{each}"' for each in DISTRIBUTIONS)
-    return Diagnostic(
-        "nav2-distribution",
-        parameters.place or Span(0, 0),
-        "the parameters of bt_navigator do not tell for which distribution of ROS 2 they are",
-        notes=(f"write `nodes = [...]` with one of {choices} into btq.toml",),
-    )
-
-
 def findings(
     parameters: Parameters, distribution: str, found: Iterable[Loaded]
 ) -> Iterator[tuple[str | None, Diagnostic]]:
@@ -56,7 +44,7 @@ def findings(
     found = tuple(found)
     libraries = Libraries(parameters, distribution)
     all_found: list[tuple[str | None, Diagnostic]] = []
-    all_found += ((None, each) for each in (*_parameters(parameters, distribution), *libraries.findings()))
+    all_found += ((None, each) for each in (*parameter_findings(parameters, distribution), *libraries.findings()))
     for each in found:
         all_found += ((None, one) for one in _unloaded(each, parameters, libraries))
     for load, one in _of_loads(parameters, distribution, found):
@@ -80,35 +68,6 @@ def _of_loads(parameters: Parameters, distribution: str, found: Iterable[Loaded]
         of_load = [*_places(each), *_folders(each.load, parameters, seen)]
         of_load += _without_main(each, parameters) if distribution != "lyrical" else ()
         yield from ((each.load, one) for one in of_load)
-
-
-def _parameters(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]:
-    shown = distribution.capitalize()
-    if parameters.place is None:
-        yield Diagnostic("nav2-parameter", Span(0, 0), "this file has no parameters of bt_navigator")
-    for name, row in parameters.unread(distribution):
-        parameter = PARAMETERS[row]
-        notes = (parameter.instead,) if parameter.instead else ()
-        key = parameters.key(name) or Span(0, 0)
-        if distribution[0] in parameter.refused_in:
-            message = f"bt_navigator refuses to start with `{name}` in {shown}"
-            yield Diagnostic("nav2-parameter", key, message, notes=notes, severity=Severity.ERROR)
-        else:
-            yield Diagnostic("nav2-parameter", key, f"Nav2 does not read `{name}` in {shown}", notes=notes)
-    for navigator, plugin in parameters.plugins if distribution[0] != "h" else ():
-        class_ = NAVIGATORS[navigator][2] if navigator in NAVIGATORS else ""
-        right, wrong = (
-            f"{OWN_PACKAGE}{sign}{class_}" for sign in (("/", "::") if distribution[0] == "i" else ("::", "/"))
-        )
-        prefix = right.removesuffix(class_)
-        own = [f"{prefix}{each}" for _, _, each in NAVIGATORS.values()]
-        message = ""
-        if plugin.text == wrong:
-            message = f"the class of this navigator is called `{right}` in {shown}"
-        elif class_ and plugin.text.startswith(prefix) and plugin.text not in own:
-            message = f"Nav2 has no navigator `{plugin.text}`{did_you_mean(near(plugin.text, own, 1))}"
-        if message:
-            yield Diagnostic("nav2-parameter", plugin.span, message, severity=Severity.ERROR)
 
 
 # ---- trees and folders ----

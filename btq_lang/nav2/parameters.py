@@ -16,6 +16,7 @@ from btq_lang.catalog.nav2.libraries import LIBRARIES
 from btq_lang.catalog.nav2.navigator import NAVIGATORS, OWN_PACKAGE, PARAMETERS, RENAMED, SENDERS, outside_entries
 from btq_lang.nav2.yaml_reader import Value, read_yaml
 from btq_lang.util.record import Record
+from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
@@ -36,12 +37,14 @@ class Parameters(Record):
         values: by name, `a.b` for one below another; each with its key.
         place: of the name of the node; None if the file has no such node.
         goals: the trees that other servers name for the goals that they send to it.
+        misspelt: keys that keep the node from its parameters, each with what is meant.
         has_client_nodes: whether it sets parameters of the nodes that only Humble configures by themselves.
     """
 
     values: dict[str, tuple[Value, Value]]
     place: Span | None
     goals: tuple[Text, ...] = ()
+    misspelt: tuple[tuple[Text, str], ...] = ()
     has_client_nodes: bool = False
 
     def text(self, name: str) -> Text | None:
@@ -69,8 +72,11 @@ class Parameters(Record):
     def unread(self, distribution: str) -> Iterator[tuple[str, str]]:
         """The parameters that a distribution does not read, each with its row in the table."""
         for name in self.values:
-            row = self._row(name)
-            if row is not None and distribution[0] not in PARAMETERS[row].of:
+            row = self.row(name)
+            value = self.text(name)
+            if row is None or distribution[0] in PARAMETERS[row].of:
+                continue
+            if value is None or not value.text or value.text != PARAMETERS[row].default:
                 yield name, row
 
     @property
@@ -78,7 +84,7 @@ class Parameters(Record):
         """The only distribution that the parameters can be for, if there is one."""
         letters = {each[0] for each in DISTRIBUTIONS}
         for name in self.values:
-            row = self._row(name)
+            row = self.row(name)
             letters &= {*PARAMETERS[row].of} or letters if row is not None else letters
         for parameter, _, _ in NAVIGATORS.values():
             named = self.text(parameter)
@@ -114,7 +120,8 @@ class Parameters(Record):
         codes = self.texts("error_code_names" if distribution[0] in "ij" else "error_code_name_prefixes")
         return outside_entries(distribution, None if codes is None else tuple(each.text for each in codes), renamed)
 
-    def _row(self, name: str) -> str | None:
+    def row(self, name: str) -> str | None:
+        """The row of a parameter in the table; None: it is not one of Nav2."""
         navigator, _, rest = name.partition(".")
         found = f"*.{rest}" if rest and navigator in (*NAVIGATORS, *self.navigators) else name
         return found if found in PARAMETERS else None
@@ -133,20 +140,22 @@ def read_parameters(text: str) -> Parameters:
         YamlProblem: it is not YAML.
         YamlMissing: PyYAML is not installed.
     """
-    nodes = [*_nodes(read_yaml(text))]
+    top = read_yaml(text)
+    nodes = [*_nodes(top)]
     values: dict[str, tuple[Value, Value]] = {}
     goals: dict[Text, None] = {}
     place = None
-    for key, node in sorted(nodes, key=lambda each: _last(each[0]) == _NODE):  # what names the node counts most
-        if _last(key) in (_NODE, "*", "**"):
-            place = key.span if _last(key) == _NODE else place
+    for key, node in sorted(nodes, key=lambda each: _last(each[0]) == NODE):  # what names the node counts most
+        if _last(key) in (NODE, "*", "**"):
+            place = key.span if _last(key) == NODE else place
             for name, value in _flat(node):
                 values[".".join(each.text or "" for each in name)] = name[-1], value
         named = node.get(SENDERS[_last(key)]) if _last(key) in SENDERS else None
         if named is not None and named.text:
             goals[Text(named.text, named.span)] = None
-    is_of_humble = any(_last(key).startswith(f"{_NODE}_navigate_") for key, _ in nodes)
-    return Parameters(values, place, tuple(goals), is_of_humble)
+    is_of_humble = any(_last(key).startswith(f"{NODE}_navigate_") for key, _ in nodes)
+    misspelt = tuple(_misspelt(top, place is None))
+    return Parameters(values, place, tuple(goals), misspelt, is_of_humble)
 
 
 def _nodes(top: Value) -> Iterator[tuple[Value, Value]]:
@@ -154,10 +163,24 @@ def _nodes(top: Value) -> Iterator[tuple[Value, Value]]:
     waiting, seen = [top], {id(top)}
     for value in waiting:
         for key, below in value.entries:
-            parameters = below.get("ros__parameters")
+            parameters = below.get(_PARAMETERS)
             if parameters is not None:
                 yield key, parameters
             elif id(below) not in seen:  # an alias may name it many times
+                seen.add(id(below))
+                waiting.append(below)
+
+
+def _misspelt(top: Value, has_no_node: bool) -> Iterator[tuple[Text, str]]:
+    """The keys that are nearly those around the parameters of bt_navigator, each with what is meant."""
+    waiting, seen = [top], {id(top)}
+    for value in waiting:
+        for key, below in value.entries:
+            if near(key.text or "", (_PARAMETERS,)):
+                yield Text(key.text or "", key.span), _PARAMETERS
+            elif has_no_node and below.get(_PARAMETERS) is not None and near(_last(key), (NODE,)):
+                yield Text(_last(key), key.span), NODE
+            elif below.get(_PARAMETERS) is None and id(below) not in seen:
                 seen.add(id(below))
                 waiting.append(below)
 
@@ -175,5 +198,6 @@ def _last(key: Value) -> str:
 
 
 _ID: Final = re.compile(r"[\w.-]+")  # what a launch file replaces is often a sentence
-_NODE: Final = "bt_navigator"
+NODE: Final = "bt_navigator"
+_PARAMETERS: Final = "ros__parameters"
 _ADDING: Final = "jkl"  # the distributions that add the named libraries to their own

@@ -12,7 +12,7 @@ from nav2_libraries import table_file
 
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, libraries
 from btq_lang.catalog.nav2.libraries import LIBRARIES
-from btq_lang.catalog.nav2.navigator import ENTRIES, ERROR_CODES, outside_entries
+from btq_lang.catalog.nav2.navigator import ENTRIES, ERROR_CODES, PARAMETERS, outside_entries
 from btq_lang.commands.explain_nav2 import models_of
 
 
@@ -61,6 +61,17 @@ def test_the_error_codes_are_those_of_the_code(branch: str) -> None:
     assert set(re.findall(r'"(\w+)"', found[1]) if found else ()) == {*ERROR_CODES[branch[0]]}
 
 
+@pytest.mark.parametrize("branch", DISTRIBUTIONS)
+def test_the_parameters_are_those_that_the_code_reads(branch: str) -> None:
+    """And what all nodes of ROS 2 read, or those of Nav2 for introspection."""
+    texts = [_text(branch, path) for path in _files(branch)]
+    found = {match[2] if match[1] is None else f"*{match[2]}" for text in texts for match in _READ.finditer(text)}
+    assert ("*search_window" in found) == (branch == "lyrical")  # without a point
+    named = {name for name, parameter in PARAMETERS.items() if branch[0] in parameter.of}
+    of_all_nodes = {"use_sim_time", "introspection_mode", "service_introspection_mode"}
+    assert found - of_all_nodes - {"*search_window"} == named - of_all_nodes
+
+
 def _files(branch: str) -> list[str]:
     command = ["git", "-C", str(clone()), "ls-tree", "-r", "--name-only", branch]
     listed = run(command, capture_output=True, check=True, text=True).stdout.splitlines()
@@ -74,4 +85,8 @@ def _text(branch: str, path: str) -> str:
 
 
 _TREES = "nav2_behavior_tree/include/nav2_behavior_tree"
+_READ = re.compile(
+    r"(?:declare_parameter(?:_if_not_declared)?|declare_or_get_parameter|get_parameter(?:_or)?)(?:<[^;()]*>)?"
+    r'\(\s*(?:\w+,\s*)?(getName\(\)\s*\+\s*|default_navigator_ids\[i\]\s*\+\s*)?"([^"]+)"'
+)
 _SET = re.compile(r'blackboard_?->(?:template )?set(?:<[^;]*?>)?\(\s*(?:"(\w+)"|(\w+))')

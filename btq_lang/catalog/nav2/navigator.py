@@ -89,18 +89,31 @@ def outside_entries(
 
 
 class Parameter(Record):
-    """A parameter that not every distribution reads.
+    """A parameter of bt_navigator.
 
     Attributes:
-        of: the distributions that do.
+        of: the distributions that read it.
         instead: what to do where it is not read, for a message.
         refused_in: the distributions that do not start with it.
+        type: of its value, where YAML may easily say another one.
+        default: the value that counts where it is not read, so that it may as well be in a file.
     """
 
     of: str
     instead: str = ""
     refused_in: str = ""
+    type: str = ""
+    default: str = ""
 
+
+_OF_ALL: Final = (
+    *("default_nav_to_pose_bt_xml", "default_nav_through_poses_bt_xml"),
+    *("global_frame", "robot_base_frame", "odom_topic", "use_sim_time"),
+)
+INTEGER: Final = "integer"
+DOUBLE: Final = "number with a decimal point"
+BOOLEAN: Final = "boolean"
+STRINGS: Final = "list of strings"
 
 # By name; `*` is a navigator.
 PARAMETERS: Final[Mapping[str, Parameter]] = {
@@ -108,11 +121,13 @@ PARAMETERS: Final[Mapping[str, Parameter]] = {
     "enable_groot_monitoring": Parameter("", "write it below each navigator, from Jazzy on"),
     "groot_zmq_publisher_port": Parameter("", "write `navigate_to_pose.groot_server_port`, from Jazzy on"),
     "groot_zmq_server_port": Parameter("", "write `navigate_to_pose.groot_server_port`, from Jazzy on"),
-    "navigators": Parameter("ijkl"),
+    "navigators": Parameter("ijkl", type=STRINGS),
     "*.plugin": Parameter("ijkl"),
-    "error_code_names": Parameter("ij", "write `error_code_name_prefixes`, without `_error_code`", "kl"),
-    "error_code_name_prefixes": Parameter("kl", "write `error_code_names`, with `_error_code`"),
-    "bt_search_directories": Parameter("l", "there each tree is loaded from one file and what that includes"),
+    "error_code_names": Parameter("ij", "write `error_code_name_prefixes`, without `_error_code`", "kl", STRINGS),
+    "error_code_name_prefixes": Parameter("kl", "write `error_code_names`, with `_error_code`", type=STRINGS),
+    "bt_search_directories": Parameter(
+        "l", "there each tree is loaded from one file and what that includes", type=STRINGS
+    ),
     "goal_blackboard_id": Parameter("hijk", "write `navigate_to_pose.goal_blackboard_id`"),
     "goals_blackboard_id": Parameter("hijk", "write `navigate_through_poses.goals_blackboard_id`"),
     "path_blackboard_id": Parameter("hijk", "write it below each navigator: `navigate_to_pose.path_blackboard_id`"),
@@ -123,13 +138,27 @@ PARAMETERS: Final[Mapping[str, Parameter]] = {
     "*.goals_blackboard_id": Parameter("l", "write `goals_blackboard_id` without the navigator"),
     "*.path_blackboard_id": Parameter("l", "write `path_blackboard_id` without the navigator"),
     "*.waypoint_statuses_blackboard_id": Parameter("l", "write it without the navigator in Kilted"),
-    "*.enable_groot_monitoring": Parameter("jkl"),
-    "*.groot_server_port": Parameter("jkl"),
-    "default_cancel_timeout": Parameter("jkl"),
-    "bt_log_idle_transitions": Parameter("l"),
-    "action_server_result_timeout": Parameter("ij"),
+    "*.tracking_feedback_blackboard_id": Parameter("l"),
+    "*.enable_groot_monitoring": Parameter("jkl", type=BOOLEAN),
+    "*.groot_server_port": Parameter("jkl", type=INTEGER),
+    # Lyrical reads it without the point after the navigator.
+    "*.search_window": Parameter("", "Lyrical reads `navigate_to_posesearch_window`, without a point", default="2.0"),
+    "default_cancel_timeout": Parameter("jkl", type=INTEGER),
+    "bt_log_idle_transitions": Parameter("l", type=BOOLEAN),
+    "action_server_result_timeout": Parameter("ij", type=DOUBLE),
+    "filter_duration": Parameter("kl", type=DOUBLE),
+    "allow_navigator_preemption": Parameter("l", type=BOOLEAN),
+    "navigator_preemption_timeout": Parameter("l", type=INTEGER),
     "service_introspection_mode": Parameter("k", "write `introspection_mode` in Lyrical"),
     "introspection_mode": Parameter("l", "write `service_introspection_mode` in Kilted"),
+    **{name: Parameter("hijkl") for name in _OF_ALL},
+    **{
+        name: Parameter("hijkl", type=INTEGER)
+        for name in ("bt_loop_duration", "default_server_timeout", "wait_for_service_timeout")
+    },
+    "always_reload_bt_xml": Parameter("hijkl", type=BOOLEAN),
+    "transform_tolerance": Parameter("hijkl", type=DOUBLE),
+    "plugin_lib_names": Parameter("hijkl", type=STRINGS),
 }
 # The navigators: the parameter that names a tree, the file in nav2_bt_navigator that counts without it, and the class,
 # which Iron writes with `/` and later ones with `::`.

@@ -196,7 +196,7 @@ _TABLE = (
     Rule("target-differs", _W, "what means something else in the engine or the distribution of `--target`"),
     Rule("yaml-syntax", _E, "a parameter file that is not YAML"),
     Rule("nav2-distribution", _H, "a parameter file of Nav2 that does not tell for which distribution it is"),
-    Rule("nav2-parameter", _W, "a parameter of bt_navigator that the distribution does not read, or refuses"),
+    Rule("nav2-parameter", _W, "a parameter of bt_navigator that is misspelt, refused or not read"),
     Rule("unknown-library", _E, "a library of nodes that Nav2 does not have in the distribution"),
     Rule("library-loaded-twice", _E, "a library of nodes that bt_navigator loads twice"),
     Rule("unloaded-node", _E, "a node in a tree of which bt_navigator does not load the library"),

@@ -1,0 +1,144 @@
+"""Names of parameters that are misspelt, and values of another type than bt_navigator reads."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from in_process import run_btq
+from nav2_robot import make_robot, shown
+
+HEAD = "bt_navigator:\n  ros__parameters:\n"
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    make_robot(tmp_path)
+    return tmp_path
+
+
+def found(robot: Path, *lines: str, distribution: str = "jazzy") -> list[str]:
+    """What is wrong with parameters, each with its line among them."""
+    below = "".join(f"    {line}\n" for line in lines)
+    rest = [each.replace("nav2-parameter ", "") for each in shown(robot, HEAD + below, distribution)]
+    return [f"{int(line) - 2}:{message}" for line, _, message in (each.partition(":") for each in rest)]
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("default_nav_to_pose_bt_xnl", "default_nav_to_pose_bt_xml"),
+        ("plugin_lib_name", "plugin_lib_names"),
+        ("Bt_loop_duration", "bt_loop_duration"),
+        ("error_codes_names", "error_code_names"),
+        ("navigators_", "navigators"),
+        ("goal_blackboard_ids", "goal_blackboard_id"),
+        ("bt_serch_directories", None),  # Jazzy has none
+        ("planner_id", None),
+        ("goal_frame", None),  # a node of one's own may read it
+        ("odom_frame", None),
+        ("qos_overrides", None),
+    ],
+)
+def test_a_name_that_is_nearly_one(robot: Path, name: str, meant: str | None) -> None:
+    message = f"1:5 warning Nav2 has no parameter `{name}`; did you mean `{meant}`?"
+    assert found(robot, f"{name}: x") == ([message] if meant else [])
+
+
+def test_a_name_below_a_navigator(robot: Path) -> None:
+    assert found(robot, "navigate_to_pose:", "  enable_groot_monitorin: true", "  groot_serverport: 1", "  own: 1") == [
+        "2:7 warning Nav2 has no parameter `navigate_to_pose.enable_groot_monitorin`; did you mean "
+        "`navigate_to_pose.enable_groot_monitoring`?",
+        "3:7 warning Nav2 has no parameter `navigate_to_pose.groot_serverport`; did you mean "
+        "`navigate_to_pose.groot_server_port`?",
+    ]
+    pose = "did you mean `navigate_to_pose`?"
+    assert found(robot, "navigate_to_pos:", "  groot_server_port: 1667") == [
+        f"1:5 warning Nav2 has no parameter `navigate_to_pos`; {pose}"
+    ]
+    assert found(robot, "navigate_to_pos.groot_server_port: 1667") == [
+        "1:5 warning Nav2 has no parameter `navigate_to_pos.groot_server_port`; did you mean "
+        "`navigate_to_pose.groot_server_port`?"
+    ]
+    assert found(robot, "navigators: [mine]", "mine: {plugin: my_robot/Mine, groot_server_port: 1}") == []
+
+
+@pytest.mark.parametrize(
+    ("parameter", "wanted"),
+    [
+        *((f"bt_loop_duration: {value}", "an integer") for value in ("10.0", "'10'", "ten", "true", "[10]", "1e1")),
+        *(
+            (f"transform_tolerance: {value}", "a number with a decimal point")
+            for value in ("1", "'0.1'", "x", "{a: b}")
+        ),
+        *((f"always_reload_bt_xml: {value}", "a boolean") for value in ("1", "'true'", "maybe")),
+        *((f"plugin_lib_names: {value}", "a list of strings") for value in ("nav2_spin_action_bt_node", "1")),
+        ("navigate_to_pose: {groot_server_port: 1667.0}", "an integer"),
+        *((f"bt_loop_duration: {value}", "") for value in ("10", "-1", "0x0A", "$(var loop)", "", "~")),
+        *((f"transform_tolerance: {value}", "") for value in ("0.1", ".5", "1.", "1e-3", "-.inf", "$(var x)")),
+        *((f"always_reload_bt_xml: {value}", "") for value in ("true", "False", "yes", "off")),
+        *((f"plugin_lib_names: {value}", "") for value in ("[]", "", "$(var libraries)")),
+        ("default_cancel_timeout: 20.0", "an integer"),
+    ],
+)
+def test_a_value_of_another_type(robot: Path, parameter: str, wanted: str) -> None:
+    name = "navigate_to_pose.groot_server_port" if "groot" in parameter else parameter.partition(":")[0]
+    messages = [each.partition(" ")[2] for each in found(robot, parameter)]
+    assert messages == ([f"error `{name}` must be {wanted}"] if wanted else [])
+
+
+def test_a_type_of_what_is_not_read_does_not_matter(robot: Path) -> None:
+    assert found(robot, "default_cancel_timeout: 20.0", distribution="humble") == [
+        "1:5 warning Nav2 does not read `default_cancel_timeout` in Humble"
+    ]
+
+
+def test_parameters_that_no_distribution_reads_any_more(robot: Path) -> None:
+    names = ("enable_groot_monitoring", "groot_zmq_publisher_port", "groot_zmq_server_port", "default_bt_xml_filename")
+    for distribution in ("humble", "jazzy", "lyrical"):
+        assert found(robot, *(f"{name}: 1" for name in names), distribution=distribution) == [
+            f"{line}:5 warning Nav2 does not read `{name}` in {distribution.capitalize()}"
+            for line, name in enumerate(names, 1)
+        ]
+
+
+@pytest.mark.parametrize("distribution", ["kilted", "lyrical"])
+def test_a_parameter_that_is_read_without_the_point(robot: Path, distribution: str) -> None:
+    """With the value that counts anyway, as in Nav2's own file, nothing is lost."""
+    below = "navigate_to_pose:"
+    message = f"2:7 warning Nav2 does not read `navigate_to_pose.search_window` in {distribution.capitalize()}"
+    assert found(robot, below, "  search_window: 3.0", distribution=distribution) == [message]
+    assert found(robot, below, "  search_window: 2.0", distribution=distribution) == []
+
+
+def test_what_later_distributions_added(robot: Path) -> None:
+    names = ("filter_duration: 0.3", "allow_navigator_preemption: true", "navigator_preemption_timeout: 500")
+    assert found(robot, *names, distribution="lyrical") == []
+    assert [each.partition("`")[2] for each in found(robot, *names, distribution="kilted")] == [
+        f"{name.partition(':')[0]}` in Kilted" for name in names[1:]
+    ]
+
+
+def test_a_misspelt_node(robot: Path) -> None:
+    text = "bt_navigater:\n  ros__parameters: {error_code_names: [a]}\n"
+    message = "1:1 warning nav2-parameter unknown key `bt_navigater`; did you mean `bt_navigator`?"
+    assert shown(robot, text) == shown(robot, text, "kilted") == [message]
+    other = "bt_navigator_2:\n  ros__parameters: {}\n"
+    assert shown(robot, f"{HEAD}    error_code_names: [a]\n{other}", "jazzy") == []
+
+
+@pytest.mark.parametrize("name", ["ros_parameters", "ros__parameter", "ros__paramters", "Ros__parameters"])
+def test_a_misspelt_key_above_the_parameters(robot: Path, name: str) -> None:
+    text = f"robot:\n  bt_navigator:\n    {name}: {{error_code_names: [a]}}\n"
+    message = f"3:5 error nav2-parameter unknown key `{name}`; did you mean `ros__parameters`?"
+    assert shown(robot, text) == shown(robot, text, "kilted") == [message]
+
+
+def test_such_a_file_needs_no_distribution(robot: Path) -> None:
+    (robot / "a.yaml").write_text("bt_navigator: {ros_parameters: {}}\n")
+    (robot / "b.yaml").write_text("controller_server: {ros__parameters: {}}\n")
+    _, out, _ = run_btq("check", "--output-format", "concise", "a.yaml", "b.yaml", cwd=robot)
+    assert [each.partition("] ")[2] for each in out.splitlines()[:-1]] == [
+        "unknown key `ros_parameters`; did you mean `ros__parameters`?",
+        "this file has no parameters of bt_navigator",
+    ]
