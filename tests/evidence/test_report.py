@@ -209,10 +209,11 @@ def reported(folder: Path, *options: str) -> tuple[int, Page]:
 def test_one_label_has_nothing_to_compare_with(kept: Path) -> None:
     code, page = reported(kept)
     assert code == 0
-    assert page.texts[:4] == [
+    assert page.texts[:5] == [
         "What robots did: kept",
         "1 run, 2026-11-20 21:22 UTC, 1 label: v<1>",
         "What got worse",
+        "0 violated now of 1 requirement",
         "All runs have the same label, so there is nothing to compare.",
     ]
     assert page.tables[f"Verdicts, and the share of violations; {DOTTED}"] == [
@@ -265,9 +266,10 @@ def test_labels_of_different_missions(kept: Path) -> None:
     keep(kept, 1, SLOW, mission="other.btq")
     code, page = reported(kept)
     assert code == 0
-    assert page.texts[1:4] == [
+    assert page.texts[1:5] == [
         "2 runs, 2026-11-20 21:22–2026-11-21 21:22 UTC, 2 labels: v<1>, (none)",
         "What got worse from v<1> to (none)",
+        "1 violated now of 2 requirements",
         "No mission was run with both v<1> and (none).",
     ]
     assert [text for text in page.texts if text.startswith("Mission")] == ["Mission main", "Mission other"]

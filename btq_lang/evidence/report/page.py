@@ -64,28 +64,27 @@ def _extent(overview: Overview) -> str:
 def _changes(overview: Overview) -> Iterator[str]:
     sides = overview.sides
     if sides is None:
-        yield '<section id="changes"><h2>What got worse</h2>'
+        yield f'<section id="changes"><h2>What got worse</h2>{_tiles(overview)}'
         yield "<p>All runs have the same label, so there is nothing to compare.</p></section>"
         return
     names = (sides[0] or NO_NAME, sides[1] or NO_NAME)
     first, second = map(escape, names)
-    yield f'<section id="changes"><h2>What got worse from {first} to {second}</h2>'
+    yield f'<section id="changes"><h2>What got worse from {first} to {second}</h2>{_tiles(overview)}'
     if not overview.comparisons:
-        yield f"<p>No mission was run with both {first} and {second}.</p></section>"
-        return
-    yield _tiles(overview)
+        yield f"<p>No mission was run with both {first} and {second}.</p>"
     for each in overview.comparisons:
         yield from _comparison(each, names, _keys(overview, each.mission))
     yield "</section>"
 
 
 def _tiles(overview: Overview) -> str:
-    """The numbers of what got worse, and of what is violated."""
-    found = overview.comparisons
-    changes = [change.finding for each in found for change in each.changes]
+    """The numbers of what got worse, where something is compared, and of what is violated."""
+    tiles = []
+    if found := overview.comparisons:
+        changes = [change.finding for each in found for change in each.changes]
+        tiles = [("newly violated", sum(len(each.newly) for each in found), "")]
+        tiles += [(word, changes.count(word), "") for word in reversed(WORSE)]
     last = [mission.parts[-1] for mission in overview.missions]
-    tiles = [("newly violated", sum(len(each.newly) for each in found), "")]
-    tiles += [(word, changes.count(word), "") for word in reversed(WORSE)]
     requirements = sum(len(part.verdicts.requirements) for part in last)
     tiles.append(("violated now", sum(part.violated for part in last), f" of {counted(requirements, 'requirement')}"))
     items = [
@@ -208,7 +207,7 @@ class _Mission:
 
         rows = [self._row([_node(node), *cells(node)]) for node in self._mission.failures]
         caption = "Nodes where failures began, with their share of the failed runs"
-        yield from self._folded(caption, "Node", rows)
+        yield from _folded("parts", caption, self._heads("Node", ""), rows)
 
     def _robots(self) -> Iterator[str]:
         if "robot" not in self._overview.by:
@@ -244,9 +243,6 @@ class _Mission:
     def _of_parts(self, caption: str, first: str, rows: Sequence[str], trend: str = "") -> Iterator[str]:
         yield from _table("parts", caption, self._heads(first, trend), rows)
 
-    def _folded(self, caption: str, first: str, rows: Sequence[str]) -> Iterator[str]:
-        yield from _folded("parts", caption, self._heads(first, ""), rows)
-
     def _heads(self, first: str, trend: str) -> Sequence[str]:
         return (first, *self._names, *((f"{trend} by {self._overview.steps.name}",) if trend else ()))
 
@@ -265,7 +261,7 @@ class _Mission:
             kind = _class("last" if place == last > 0 else "")
             parts.append(f'<td{kind} data-of="{escape(name)}">{cell}</td>')
         if values is not None:
-            parts.append(f"<td>{bars(values, self._overview.steps, self._overview.labels, shown)}</td>")
+            parts.append(f"<td>{bars(values, self._overview.steps, self._overview.labels[-_LABELS:], shown)}</td>")
         return "".join((*parts, "</tr>"))
 
 
