@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.btcpp.around import LIMITING, WATCHING
 from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.evidence.history import History, Nearby, near
-from btq_lang.evidence.model import CLOCK_SET_BACK, ROOT, Activation, LoggedTree
+from btq_lang.evidence.model import (
+    BEGUN_BEFORE,
+    CLOCK_SET_BACK,
+    CUT_BY_GAP,
+    ROOT,
+    ROWS_LOST,
+    Activation,
+    LoggedTree,
+)
 from btq_lang.evidence.observed import Observed, parts_in
 from btq_lang.evidence.over_run import OverRun, target_of
 from btq_lang.evidence.recent import Recent
@@ -27,6 +35,7 @@ from btq_lang.util.record import Record, replace
 if TYPE_CHECKING:
     from btq_lang.evidence.guards import Guard, Refusal
     from btq_lang.evidence.identity import Joined
+    from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.verdicts import Verdict
     from btq_lang.requirements.model import Applied, Claim, Event, Requirement, Subject
 
@@ -68,12 +77,18 @@ class JudgedClause:
         explain_run: the same for a clause judged over a run, from its judgement, the run and the other nodes.
     """
 
-    def __init__(self, requirement: Requirement, claim: Claim, applied: Applied | None) -> None:
+    def __init__(
+        self, requirement: Requirement, claim: Claim, applied: Applied | None, limits: Limits = "one look"
+    ) -> None:
+        """
+        Args:
+            limits: which limits of probabilities decide, except in a window.
+        """
         subject = applied.subject if applied is not None else None
         self.requirement: Final = requirement
         self.claim: Final = claim
         odds, confidence, window = requirement.odds, requirement.confidence, requirement.window
-        self._tally: Final = Tally(odds, confidence) if window is None else Recent(window, odds, confidence)
+        self._tally: Final = Tally(odds, confidence, limits) if window is None else Recent(window, odds, confidence)
         self._subject: Final = subject
         self._judge, self._judge_run = judges_of(claim, subject)
         self.judged: Final = replace(within(claim, requirement.scopes), subject=subject)
@@ -89,13 +104,13 @@ class JudgedClause:
         self._paths: Final[dict[str, None]] = {}
         self._missing = ""
         self._has_run = self._waits = False
-        self._record: Callable[[Judgement, int, int, str], None] | None = None
+        self._records: Final[list[Callable[[Judgement, int, int, str], None]]] = []
         self.explain: Callable[[Judgement, str], tuple[Link, ...]] = lambda judgement, path: ()
         self.explain_run: Callable[[Judgement, OverRun, Nearby], tuple[Link, ...]] = lambda judgement, run, others: ()
 
     def record(self, record: Callable[[Judgement, int, int, str], None]) -> None:
         """Give each judgement to a function, with begin and end of what is judged, and the path of its node."""
-        self._record = record
+        self._records.append(record)
 
     def join(self, joined: Joined, signals: Signals, history: History, nearby: Callable[[int], Nearby]) -> list[int]:
         """Begin another log; returns the nodes of it that the clause holds for.
@@ -131,6 +146,8 @@ class JudgedClause:
             observed: what was observed during it.
         """
         self._has_run = True
+        if activation.timing in BEGUN_BEFORE:
+            return
         self._waits = self._waits or activation.started[1] != activation.ended[1]
         if guard is not None and self._is_own(guard):
             sentence = f"stopped by its own guard after {duration(activation.seconds)}"
@@ -156,11 +173,15 @@ class JudgedClause:
         Args:
             root: the activation of the run's root.
         """
-        for activation, observed, path in self._waiting:
+        is_whole = root.timing not in BEGUN_BEFORE  # else it is unknown what ran in its first part
+        for activation, observed, path in self._waiting if is_whole else ():
             self._judge_one(activation, observed.during(activation), path, root)  # again: a late sample may count
         self._waiting.clear()
-        if self._judge_run is not None:
+        if self._judge_run is not None and is_whole:
             self._judge_over(root)
+        if root.timing in CUT_BY_GAP and self._nodes:
+            lost = Judgement(None, root.end, ROWS_LOST)
+            self._add(lost, next(iter(self._paths)), root.end, root.end, ())
         self._tally.end_run(run)
 
     def _judge_over(self, root: Activation) -> None:
@@ -218,8 +239,8 @@ class JudgedClause:
 
     def _add(self, judgement: Judgement, path: str, begin: int, end: int, chain: tuple[Link, ...]) -> None:
         self._tally.add(judgement, path, end, chain)
-        if self._record is not None:
-            self._record(judgement, begin, end, path)
+        for record in self._records:
+            record(judgement, begin, end, path)
 
     def _own(self, joined: Joined) -> list[tuple[int, ...]]:
         """The nodes of a log that it holds for, grouped: the nodes of a group are judged as one."""
@@ -311,9 +332,13 @@ class JudgedClause:
         later = findings.tally
         return isinstance(self._tally, Tally) and isinstance(later, Tally) and later.is_worse_than(self._tally, run)
 
-    def verdict(self) -> ClauseVerdict:
-        """The verdict on all judgements so far."""
-        tally = self._tally.result()
+    def verdict(self, open_run: Run | None = None) -> ClauseVerdict:
+        """The verdict on all judgements so far.
+
+        Args:
+            open_run: the open run, to include it.
+        """
+        tally = self._tally.result() if open_run is None else self._tally.so_far(open_run)
         verdict, why = verdict_of(tally, self._not_judged or self._missing, self._has_run)
         goal = self.requirement.goal
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None

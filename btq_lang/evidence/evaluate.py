@@ -5,9 +5,9 @@ One invariant: the only state is open activations, the current run, and counts.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Protocol
 
 from btq_lang.evidence.clause import ClauseFindings, JudgedClause
 from btq_lang.evidence.contexts import Contexts
@@ -35,8 +35,8 @@ from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate, Joined
-    from btq_lang.evidence.model import Outcome, Series, Session
-    from btq_lang.evidence.store.rows import Part
+    from btq_lang.evidence.model import Activation, Outcome, Series, Session
+    from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.verdicts import Timeline
 
 
@@ -57,35 +57,56 @@ class Findings(Record):
     timelines: dict[int, Timeline]
 
 
+class Listener(Protocol):
+    """Something that is given all that is found while it is found."""
+
+    def join(self, joined: Joined, clauses: Sequence[JudgedClause]) -> None:
+        """A session begins."""
+
+    def see(self, activation: Activation) -> None:
+        """An activation has ended."""
+
+    def end_run(self, root: Activation, retries: int, recoveries: int, failure: int | None) -> None:
+        """The open run has ended, and is judged; `failure`: the node where its failure began, if it failed."""
+
+    def end(self, clauses: Sequence[JudgedClause]) -> None:
+        """The log has been read."""
+
+
 class MissionEvaluation:
-    """Judges a mission's requirements while its logs are read."""
+    """Judges a mission's requirements while its logs are read.
+
+    Attributes:
+        listeners: they are given all that is found.
+    """
 
     def __init__(
         self,
         mission: Candidate,
         with_timelines: bool = False,
         ran: Callable[[int], None] = lambda number: None,
-        part: Part | None = None,
+        listeners: Sequence[Listener] = (),
+        limits: Limits = "one look",
     ) -> None:
         """
         Args:
             with_timelines: keep the runs that broke clauses worst.
             ran: called with the number of each run after it is judged.
-            part: writes all that is found.
+            limits: which limits of probabilities decide.
         """
         self._ran: Final = ran
-        self._part: Final = part
+        self.listeners: Final = [*listeners]
         self.mission: Final = mission
         found = mission.requirements
         clauses = [
-            JudgedClause(applied.requirement, claim, applied)
+            JudgedClause(applied.requirement, claim, applied, limits)
             for applied in found.applied
             for claim in applied.requirement.claims
             if not applied.requirement.is_verified_by_people
         ]
         used = {(clause.requirement.name, clause.claim.text) for clause in clauses}
         clauses += [
-            JudgedClause(requirement, claim, None)
+            JudgedClause(requirement, claim, None, limits)
             for requirement in found.all.values()
             for claim in requirement.claims
             if not requirement.is_verified_by_people and (requirement.name, claim.text) not in used
@@ -120,8 +141,8 @@ class MissionEvaluation:
         for clause in self._clauses:
             clause.explain = partial(explainer.chain, clause.claim)
             clause.explain_run = partial(explainer.over_run.chain, clause.judged)
-        if self._part is not None:
-            self._part.join(joined, self._clauses)
+        for listener in self.listeners:
+            listener.join(joined, self._clauses)
         self._contexts.join(joined, signals, history)
         self._coverage.expect(tree, joined.written())
         begin: int | None = None
@@ -134,8 +155,8 @@ class MissionEvaluation:
             history.add(activation)
             if self._timelines is not None:
                 self._timelines.see(activation)
-            if self._part is not None:
-                self._part.see(activation)
+            for listener in self.listeners:
+                listener.see(activation)
             if activation.uid in guards.concerned:  # few nodes are
                 for refusal in guards.refused(activation):
                     clauses, path, _ = judged[refusal.uid]
@@ -157,8 +178,8 @@ class MissionEvaluation:
                 self._coverage.end_run(run.number, began)
                 for clause in self._clauses:
                     clause.end_run(run, activation)
-                if self._part is not None:
-                    self._part.end_run(activation, *repeats, began)
+                for listener in self.listeners:
+                    listener.end_run(activation, *repeats, began)
                 self._contexts.end_run(activation)
                 history.clear()
                 explainer.end_run()
@@ -184,10 +205,10 @@ class MissionEvaluation:
         )
         return runs
 
-    def write_clauses(self) -> None:
-        """Write the clauses, when the log has been read."""
-        if self._part is not None:
-            self._part.end(self._clauses)
+    def end(self) -> None:
+        """Tell the listeners that the log has been read."""
+        for listener in self.listeners:
+            listener.end(self._clauses)
 
     def findings(self) -> Findings:
         """What the verdicts need of the logs so far; refers to no text, and may go to another process."""
@@ -220,12 +241,16 @@ class MissionEvaluation:
         self._coverage.add_all(findings.coverage, runs)
         self._contexts.add_all(findings.contexts)
 
-    def result(self) -> MissionVerdicts:
-        """The verdicts so far."""
+    def result(self, open_run: Run | None = None) -> MissionVerdicts:
+        """The verdicts so far.
+
+        Args:
+            open_run: the open run, to include it.
+        """
         found = self.mission.requirements
         by_requirement: dict[str, list[ClauseVerdict]] = {name: [] for name in found.all}
         for clause in self._clauses:
-            by_requirement[clause.requirement.name].append(self._verdict(clause))
+            by_requirement[clause.requirement.name].append(self._verdict(clause, open_run))
         return MissionVerdicts(
             name=self.mission.name,
             file=self.mission.path,
@@ -248,8 +273,8 @@ class MissionEvaluation:
             by_people=tuple(each.name for each in found.all.values() if each.claims and each.is_verified_by_people),
         )
 
-    def _verdict(self, clause: JudgedClause) -> ClauseVerdict:
-        verdict = clause.verdict()
+    def _verdict(self, clause: JudgedClause, open_run: Run | None) -> ClauseVerdict:
+        verdict = clause.verdict(open_run)
         if self._timelines is None or verdict.verdict != VIOLATED:
             return verdict
         return replace(verdict, timeline=self._timelines.kept.get(clause))

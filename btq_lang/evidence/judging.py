@@ -6,8 +6,8 @@ up in their order.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Final, Protocol
 
 from btq_lang.evidence.evaluate import Findings, MissionEvaluation
 from btq_lang.evidence.identity import difference
@@ -20,7 +20,8 @@ from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
-    from btq_lang.evidence.model import Series
+    from btq_lang.evidence.model import NamedLog, Series, Session
+    from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.store.rows import Rows
     from btq_lang.evidence.store.sets import Keeping
     from btq_lang.workspace.project_evidence import SignalSource
@@ -36,6 +37,7 @@ class Means(Record):
         remarks: notes about these bags.
         shown: gives a path as people read it.
         keeping: where what is found is kept; None: nowhere.
+        limits: which limits of probabilities decide.
     """
 
     missions: Sequence[Candidate]
@@ -47,6 +49,25 @@ class Means(Record):
     shown: Callable[[str], str]
     with_timelines: bool
     keeping: Keeping | None
+    limits: Limits = "one look"
+
+
+class Running(Protocol):
+    """A running robot whose transitions are judged as they come."""
+
+    @property
+    def id(self) -> str:
+        """Unique to these runs, in 64 hexadecimal digits."""
+
+    @property
+    def sessions(self) -> Iterable[Session | NamedLog]:
+        """They end when the robot is no longer watched."""
+
+    def judged_by(self, evaluation: MissionEvaluation) -> None:
+        """Its next session is judged by a mission that none before was judged by."""
+
+    def foreign(self, difference: str) -> None:
+        """Its next session belongs to no mission; `difference`: as in `Foreign`."""
 
 
 class JudgedLog(Record):
@@ -65,20 +86,23 @@ class JudgedLog(Record):
     problems: tuple[str, ...]
 
 
-def judge(log: str, means: Means, ran: Callable[[int], None] = lambda number: None) -> JudgedLog:
+def judge(
+    log: str, means: Means, ran: Callable[[int], None] = lambda number: None, running: Running | None = None
+) -> JudgedLog:
     """Judge the runs of a log, and keep what was found in the store, if there is one.
 
     Args:
         ran: called with the number of each run after it is judged.
+        running: the robot, if its log is not in a file.
     """
     if means.keeping is None:
-        return _judged(log, means, ran, None)
+        return _judged(log, means, ran, None, running)
     from btq_lang.evidence.store.sets import NotKept, draft
 
     found: JudgedLog | None = None
     try:
-        with draft(means.keeping, log) as written:
-            found = _judged(log, means, ran, written.rows)
+        with draft(means.keeping, log, running.id if running is not None else None) as written:
+            found = _judged(log, means, ran, written.rows, running)
             if found.runs and not found.problems:
                 written.publish(means.shown(log))
     except NotKept as error:
@@ -87,15 +111,20 @@ def judge(log: str, means: Means, ran: Callable[[int], None] = lambda number: No
     return found
 
 
-def _judged(log: str, means: Means, ran: Callable[[int], None], rows: Rows | None) -> JudgedLog:
+def _judged(
+    log: str, means: Means, ran: Callable[[int], None], rows: Rows | None, running: Running | None
+) -> JudgedLog:
     missions, shown = means.missions, means.shown
     evaluations: dict[tuple[str, str], MissionEvaluation] = {}
     foreign: dict[tuple[str, str], Foreign] = {}
     problems: tuple[str, ...] = ()
     runs = 0
     try:
-        for source, session, joined in joined_sessions(read(log, means.sources), missions, shown(log)):
+        sessions = read(log, means.sources) if running is None else running.sessions
+        for source, session, joined in joined_sessions(sessions, missions, shown(log)):
             if isinstance(joined, str):
+                if running is not None:
+                    running.foreign(difference(missions, session.tree))
                 number = count_runs(session)
                 known = foreign.get((source, joined))
                 what = known or Foreign(source, 0, joined, difference(missions, session.tree))
@@ -105,8 +134,11 @@ def _judged(log: str, means: Means, ran: Callable[[int], None], rows: Rows | Non
                 key = mission.path, session.robot
                 if key not in evaluations:
                     robot = session.robot or (means.keeping.robot_of(log) if means.keeping is not None else "")
-                    part = rows.part(mission.name, robot) if rows is not None else None
-                    evaluations[key] = MissionEvaluation(mission, means.with_timelines, ran, part)
+                    parts = [rows.part(mission.name, robot)] if rows is not None else []
+                    evaluation = MissionEvaluation(mission, means.with_timelines, ran, parts, means.limits)
+                    evaluations[key] = evaluation
+                    if running is not None:
+                        running.judged_by(evaluation)
                 signals = mission.requirements.signals.values()
                 given = by_signal(signals, means.samples, means.of_files, session.signals, means.of_bags)
                 session.remarks.extend(means.remarks)
@@ -116,7 +148,7 @@ def _judged(log: str, means: Means, ran: Callable[[int], None], rows: Rows | Non
     except OSError as error:
         problems = (f"{shown(log)}: cannot be read: {error.strerror or error}",)
     for evaluation in evaluations.values():
-        evaluation.write_clauses()
+        evaluation.end()
     findings = tuple((path, evaluation.findings()) for (path, _), evaluation in evaluations.items())
     return JudgedLog(runs, findings, tuple(foreign.values()), problems)
 
@@ -130,7 +162,7 @@ class Judging:
 
     def __init__(self, means: Means) -> None:
         self.runs = 0
-        self._evaluations: Final = {each.path: MissionEvaluation(each, means.with_timelines) for each in means.missions}
+        self._evaluations: Final = {each.path: _empty(each, means) for each in means.missions}
         self._foreign: Final[dict[tuple[str, str], Foreign]] = {}
         self._problems: Final[list[str]] = []
 
@@ -149,3 +181,7 @@ class Judging:
         missions = [each.result() for each in self._evaluations.values()]
         found = tuple(each for each in missions if each.sources)
         return Report(found, tuple(self._foreign.values()), tuple(self._problems))
+
+
+def _empty(mission: Candidate, means: Means) -> MissionEvaluation:
+    return MissionEvaluation(mission, means.with_timelines, limits=means.limits)

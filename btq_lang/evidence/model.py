@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     Transition: TypeAlias = tuple[int, int, int]  # time, uid, new status
     SampleValue: TypeAlias = float | bool | str
     Outcome: TypeAlias = Literal["S", "F", "H", "O"]
-    Timing: TypeAlias = Literal["exact", "latest", "broken"]
+    Timing: TypeAlias = Literal["exact", "latest", "broken", "late", "lost", "part"]
     Moment: TypeAlias = tuple[int, int]  # time, and row of the log, which orders rows of one time
 
 IDLE: Final = 0
@@ -29,7 +29,18 @@ FAILURE: Final = 3
 SKIPPED: Final = 4
 UNKNOWN_END: Final = "the log does not say when it was halted"
 CLOCK_SET_BACK: Final = "the clock was set back meanwhile"
+ROWS_LOST: Final = "transitions were lost meanwhile"
+BEGUN_BEFORE: Final = ("late", "part")  # the timings of activations whose begin was not seen
+CUT_BY_GAP: Final = ("lost", "part")  # those of runs of which later rows were lost
 ROOT: Final = 1  # the uid of the node whose activations are the runs
+
+
+class Mark(int):
+    """A uid that no node has: what is known of a running robot between two of its transitions."""
+
+
+GAP: Final = Mark(-1)  # transitions before this one were not seen
+PAUSE: Final = Mark(-2)  # for a while there has been none
 
 
 class LoggedNode(Record):
@@ -82,7 +93,9 @@ class Activation:
         started, ended: when it began and ended, with the rows of the log that say so.
         begin, end: the times of these moments.
         outcome: succeeded, failed, halted, or still open when the log ends.
-        timing: `latest`: the log shows only that it had ended by `end`; `broken`: the clock was set back meanwhile.
+        timing: `latest`: the log shows only that it had ended by `end`; `broken`: the clock was set back meanwhile;
+            `late`: it began before `begin`, where nothing was seen; `lost`: a run of which later rows were lost;
+            `part`: both of these.
     """
 
     __slots__ = ("begin", "end", "ended", "outcome", "started", "timing", "uid")
@@ -153,7 +166,7 @@ class Session:
     """What one logger object wrote: a tree and its transitions, which can be read once.
 
     Attributes:
-        transitions: in the order of the file.
+        transitions: in the order of the file; of a running robot, with marks among them.
         samples: of the log's own blackboard entries, by entry; they grow while the transitions are read.
         signals: samples of signals that the project file finds in the log, by signal.
         keeping: the nodes that start a child again without resetting it; complete when the transitions have been read.

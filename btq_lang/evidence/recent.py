@@ -68,6 +68,10 @@ class Recent:
         """The judgements, as `Tally.__getstate__`."""
         return {**self.__dict__, "_odds": None, "_window": None}
 
+    def so_far(self, run: Run) -> Tally:
+        """The tally without the open run."""
+        return self.result()
+
     def result(self) -> Tally:
         """The tally of the judgements in the window."""
         is_of_odds = self._odds is None or self._odds.experiments == self._window.experiments

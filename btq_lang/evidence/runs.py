@@ -9,6 +9,8 @@ How real logs deviate from the plain sequence RUNNING, result, IDLE:
 * A node writes its first row after rows of its children (Nav2's PipelineSequence): it began with the first of those.
 * Nothing is written when a node is halted (logs without rows to IDLE): it had ended by the time a node above it ended,
   or by its next start.
+* Rows before the first one, or between two, were not seen (a running robot): the open run ends there, cut off, and of
+  each node it is unknown whether it is active until a row says so.
 """
 
 from __future__ import annotations
@@ -16,7 +18,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.model import FAILURE, ROOT, RUNNING, SKIPPED, SUCCESS, Activation, LoggedTree, Session
+from btq_lang.evidence.model import (
+    FAILURE,
+    GAP,
+    ROOT,
+    RUNNING,
+    SKIPPED,
+    SUCCESS,
+    Activation,
+    LoggedTree,
+    Mark,
+    Session,
+)
 from btq_lang.evidence.wording import timestamp
 
 if TYPE_CHECKING:
@@ -28,7 +41,7 @@ def activations(session: Session) -> Iterator[Activation]:
     tree = session.tree
     nodes = _OpenNodes(tree)
     parent = tree.parent
-    begun, running = nodes.begun, nodes.running
+    begun, running, unseen = nodes.begun, nodes.running, nodes.unseen
     odd = _Oddities(session)
     idle: tuple[int, Moment] | None = None  # a halt that may turn out to be part of the node's own completion
     done: set[int] = set()  # the nodes that have completed and have not been reset since
@@ -36,7 +49,17 @@ def activations(session: Session) -> Iterator[Activation]:
     row, now = 0, (0, 0)
     for row, (time, uid, status) in enumerate(session.transitions, 1):
         if uid not in parent or status not in _STATUSES:
-            odd.count("rows with an unknown node or status, left out", time)
+            if isinstance(uid, Mark):
+                if idle is not None:
+                    yield from nodes.end(*idle, "H")
+                    idle = None
+                if uid is GAP:
+                    if ROOT in begun:
+                        yield from nodes.end(ROOT, now, "O", "lost", below="O")
+                    done.clear()
+                    unseen.update(parent)
+            else:
+                odd.count("rows with an unknown node or status, left out", time)
             continue
         before, now = now, (time, row)
         if time < before[0]:
@@ -48,6 +71,8 @@ def activations(session: Session) -> Iterator[Activation]:
             idle = None
             if not (halted == uid and completes and time - then[0] <= ONE_COMPLETION):
                 yield from nodes.end(halted, then, "H")
+        if unseen:
+            nodes.see(uid, now, status)
         if status == RUNNING:
             if uid in running:
                 if uid == ROOT:
@@ -99,11 +124,14 @@ class _OpenNodes:
     Attributes:
         begun: when each began: at its own first row, or the first one below it.
         running: those that have written RUNNING.
+        unseen: those of which it is unknown whether they are active.
     """
 
     def __init__(self, tree: LoggedTree) -> None:
         self.begun: Final[dict[int, Moment]] = {}
         self.running: Final[set[int]] = set()
+        self.unseen: Final[set[int]] = set()
+        self._late: Final[set[int]] = set()  # those that began before their time in `begun`
         self._tree: Final = tree
         self._distrusted: Final[set[int]] = set()
 
@@ -112,6 +140,23 @@ class _OpenNodes:
         while uid and uid not in self.begun:
             self.begun[uid] = now
             uid = self._tree.parent[uid]
+
+    def see(self, uid: int, now: Moment, status: int) -> None:
+        """Conclude from a row which nodes were active before it."""
+        if status in _ACTIVE:
+            for above in self._tree.above(uid):
+                if above in self.unseen:
+                    self._begin_late(above, now)
+        if status in _RESULTS and uid in self.unseen:
+            self._begin_late(uid, now)
+        elif status == RUNNING:
+            self._late.discard(uid)  # rows below it came first
+        self.unseen.difference_update(range(uid, self._tree.last[uid] + 1))  # what is below is not active now
+
+    def _begin_late(self, uid: int, now: Moment) -> None:
+        self.unseen.discard(uid)
+        self.begun[uid] = now
+        self._late.add(uid)
 
     def end(
         self, uid: int, now: Moment, outcome: Outcome, timing: Timing = "exact", below: Outcome = "H"
@@ -133,6 +178,7 @@ class _OpenNodes:
         del self.begun[uid]
         self.running.discard(uid)
         self._distrusted.discard(uid)
+        self._late.discard(uid)
 
     def distrust(self) -> None:
         """Mark the durations of all active nodes as unknown: the clock was set back."""
@@ -143,6 +189,9 @@ class _OpenNodes:
         if uid in self._distrusted:
             self._distrusted.remove(uid)
             timing = "broken"
+        if uid in self._late:
+            self._late.remove(uid)
+            timing = "part" if timing == "lost" else "late"
         return Activation(uid, self.begun.pop(uid), now, outcome, timing)
 
 
@@ -166,3 +215,4 @@ ONE_COMPLETION: Final = 1000  # µs between a node's IDLE and its own result
 _UNWRITTEN: Final = "halts without a row of their own, so only the latest possible end is known"
 _STATUSES: Final = frozenset(range(SKIPPED + 1))
 _RESULTS: Final = (SUCCESS, FAILURE)
+_ACTIVE: Final = (RUNNING, SUCCESS, FAILURE)  # what a node writes only while those above it are active

@@ -5,6 +5,7 @@ One invariant: counts are enough for the verdict, so the only judgements kept ar
 
 from __future__ import annotations
 
+from copy import copy
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.distribution import Distribution
@@ -149,6 +150,15 @@ class Tally:
     def result(self) -> Tally:
         """The tally itself; `Recent` computes one."""
         return self
+
+    def so_far(self, run: Run) -> Tally:
+        """The tally as if the open run ended now; where runs are counted, only if it is violated already."""
+        found = copy(self)
+        vars(found).update(violations=[*self.violations], _broken=[*self._broken])
+        if self.counts_runs and not self._broken:
+            found._kept = found._unclear = 0
+        found.end_run(run)
+        return found
 
     def verdict(self) -> Verdict:
         """Without odds one violation decides; with odds the unknown ones are taken as false and as true, and a verdict

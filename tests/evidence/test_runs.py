@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import defaultdict
 from itertools import pairwise
 from pathlib import Path
@@ -12,7 +13,7 @@ from evidence_logs import MAIN_XML, START, btlog, rows, write_db3
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btq_lang.evidence.model import Activation, LoggedTree, Session
+from btq_lang.evidence.model import GAP, PAUSE, Activation, LoggedTree, Session
 from btq_lang.evidence.readers import read
 from btq_lang.evidence.runs import activations
 
@@ -170,3 +171,38 @@ def test_whatever_rows_there_are(steps: list[tuple[int, int, int]]) -> None:
             assert all(each.begin <= inside.begin and inside.end <= each.end for inside in waiting)
             waiting.clear()
     assert waiting == []
+
+
+def seen(text: str) -> str:
+    """The activations of a running robot, in ms; `G` in the text is a gap, `P` a pause."""
+    found: list[tuple[int, int, int]] = []
+    for piece in re.split("([GP])", text):
+        at = found[-1][0] if found else 0
+        found += [(at, GAP if piece == "G" else PAUSE, 0)] if piece in ("G", "P") else rows(piece)
+    session = Session(LoggedTree([(1, "Sequence", "S", 0), (2, "A", "A", 1), (3, "B", "B", 1)]), iter(found))
+    kinds = [
+        f"{each.uid}{each.outcome} {each.begin / 1000:g}..{each.end / 1000:g} {each.timing}"
+        for each in activations(session)
+    ]
+    assert session.remarks == []
+    return ", ".join(kinds)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("G 5 2S 3R 8 3S 1S 1I", "2S 5..5 late, 3S 5..8 exact, 1S 5..8 late"),
+        ("G 5 2I 1I 6 1R 2R 8 2S 1S", "2S 6..8 exact, 1S 6..8 exact"),
+        ("G 5 2R 6 1R 8 2S 1S", "2S 5..8 exact, 1S 5..8 exact"),  # children first
+        ("G 5 1R 6 2S 1S", "2S 6..6 exact, 1S 5..6 exact"),
+        ("G 5 1F", "1F 5..5 late"),
+        ("G 5 2R", "2O 5..5 exact, 1O 5..5 late"),
+        ("1R 2R 3 G 9 3R", "2O 0..0 exact, 1O 0..0 lost, 3O 9..9 exact, 1O 9..9 late"),
+        ("1R 2R G 9 2S 1S", "2O 0..0 exact, 1O 0..0 lost, 2S 9..9 late, 1S 9..9 late"),
+        ("G 1 2R 2 G 9 1R", "2O 1..1 exact, 1O 1..1 part, 1O 9..9 exact"),
+        ("1R 1S 1I G G 9 1R 1S", "1S 0..0 exact, 1S 9..9 exact"),
+        ("1R 5 1I P 9 1R", "1H 0..5 exact, 1O 9..9 exact"),
+    ],
+)
+def test_what_was_not_seen_is_neither_begin_nor_end(text: str, expected: str) -> None:
+    assert seen(text) == expected

@@ -36,9 +36,9 @@ def judged_and_kept(made: Case, store: Path) -> MissionVerdicts:
         folder = store / f"{number:064x}"
         folder.mkdir()
         with Rows(str(folder)) as written:
-            one = MissionEvaluation(made.mission, part=written.part(made.mission.name, ""))
+            one = MissionEvaluation(made.mission, listeners=[written.part(made.mission.name, "")])
             read = one.read(Session(made.joined.tree, iter(transitions)), made.joined, made.series, 1, "log")
-            one.write_clauses()
+            one.end()
         engine.write_parquet(str(folder), {"log": folder.name, "label": "", "source": f"log {number}"})
         evaluation.add(one.findings(), runs)
         runs += read

@@ -1,6 +1,7 @@
 """The sets of files in a store, one for each log, in a folder named by the SHA-256 of the log.
 
-One invariant: such a folder is whole, because it gets its name by one rename when all its files are written.  A log
+One invariant: such a folder is whole, because it gets its name by one rename when all its files are written.  What a
+running robot did is in no file, so the name of its set is random.  A log
 that is judged again leaves its set as it is if the same was found; otherwise the new set takes the old one's place.
 
 Two renames replace a set: the old folder goes aside, the new one takes its name.  If a writer is killed between them,
@@ -96,14 +97,17 @@ class Draft:
 
 
 @contextmanager
-def draft(keeping: Keeping, log: str) -> Iterator[Draft]:
+def draft(keeping: Keeping, log: str, name: str | None = None) -> Iterator[Draft]:
     """A set to be filled; unless it is published, nothing is left of it.
+
+    Args:
+        name: of the set; None: the SHA-256 of the log.
 
     Raises:
         NotKept: the log or the store cannot be read or written.
     """
     try:
-        name = _sha256(log)
+        name = name or _sha256(log)
         folder = os.path.join(keeping.folder, f"{DRAFT}{name[:_SHORT]}-{uuid.uuid4().hex}")
         os.makedirs(folder)
     except OSError as error:

@@ -37,7 +37,7 @@ ROWS: Final = {
         "joined": "INTEGER",
     },
     # An activation of a node.  `timing`: `exact`; `latest`, if it may have ended before; `broken`, if the clock was set
-    # back meanwhile.
+    # back meanwhile; `late`, if it began before; `lost`, if the rest of the run was lost; `part`, if both.
     "activations": {
         **_WHOSE,
         "run": "INTEGER",
