@@ -270,7 +270,8 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         "  btq verify logs/ --format junit -o verdicts.xml    for CI\n"
         "  btq verify bag/ --events violations.mcap           for Foxglove and rqt_console\n"
         "  btq verify logs/ --store evidence --label v1.4     kept beside earlier runs\n"
-        "  btq verify --store evidence --by label             the verdicts of all that is kept\n",
+        "  btq verify --store evidence --by label             the verdicts of all that is kept\n"
+        "  btq verify --live tcp://127.0.0.1:1667             a running robot, until Ctrl+C\n",
     )
     parser.add_argument(
         "logs",
@@ -295,6 +296,11 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         "--events",
         metavar="FILE",
         help="write the violations as messages of a bag (.mcap), for the timeline of Foxglove and for rqt_console",
+    )
+    parser.add_argument(
+        "--live",
+        metavar="ADDRESS",
+        help="judge a running robot through its Groot2Publisher, until Ctrl+C, as in tcp://127.0.0.1:1667",
     )
     kept = parser.add_argument_group("keeping verdicts")
     store = kept.add_mutually_exclusive_group()

@@ -4,16 +4,44 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from btq_lang.commands.output import form_of, is_coloured, terminal_width, write_output
+from btq_lang.commands.verdict_events import write_events
 from btq_lang.commands.verdict_formats import FORMATS, write
+from btq_lang.evidence.notes import foreign_runs
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.verdicts import Report
+    from btq_lang.evidence.verifying import Verification
+
+
+def finish(options: Namespace, found: Verification, missions: Sequence[Candidate], logs: Sequence[str]) -> int:
+    """Print what was found; returns the exit code.
+
+    Args:
+        missions, logs: that were compared.
+    """
+    report = found.report
+    remarks = report.remarks if form_of(options, FORMATS) != "table" else ()  # the table has them
+    for note in (*remarks, *foreign_runs(report)):
+        print(f"btq verify: {note}", file=sys.stderr)
+    code = print_report(options, report, missions)
+    if options.events is not None:
+        code = max(code, write_events(options.events, report, logs))
+    return failed(found.problems) or code
+
+
+def failed(problems: Iterable[str]) -> int:
+    """Print why there are no verdicts, or why they may be incomplete; returns the exit code, 0 without problems."""
+    code = 0
+    for problem in problems:
+        print(f"btq verify: {problem}", file=sys.stderr)
+        code = 2
+    return code
 
 
 def print_report(options: Namespace, report: Report, missions: Sequence[Candidate]) -> int:

@@ -241,8 +241,8 @@ class MissionEvaluation:
         self._coverage.add_all(findings.coverage, runs)
         self._contexts.add_all(findings.contexts)
 
-    def result(self, open_run: Run | None = None) -> MissionVerdicts:
-        """The verdicts so far.
+    def verdicts(self, open_run: Run | None = None) -> tuple[RequirementVerdict, ...]:
+        """The verdict on each requirement so far.
 
         Args:
             open_run: the open run, to include it.
@@ -251,20 +251,25 @@ class MissionEvaluation:
         by_requirement: dict[str, list[ClauseVerdict]] = {name: [] for name in found.all}
         for clause in self._clauses:
             by_requirement[clause.requirement.name].append(self._verdict(clause, open_run))
+        return tuple(
+            RequirementVerdict(
+                name,
+                " ".join((found.all[name].title or "").split()),
+                worst_of(each.verdict for each in clauses),
+                tuple(clauses),
+            )
+            for name, clauses in by_requirement.items()
+            if clauses
+        )
+
+    def result(self) -> MissionVerdicts:
+        """All that was found so far."""
+        found = self.mission.requirements
         return MissionVerdicts(
             name=self.mission.name,
             file=self.mission.path,
             sources=tuple(self._sources),
-            requirements=tuple(
-                RequirementVerdict(
-                    name,
-                    " ".join((found.all[name].title or "").split()),
-                    worst_of(each.verdict for each in clauses),
-                    tuple(clauses),
-                )
-                for name, clauses in by_requirement.items()
-                if clauses
-            ),
+            requirements=self.verdicts(),
             outcomes=tuple((OUTCOMES[outcome], number) for outcome, number in self._outcomes.items() if number),
             nodes=self._coverage.summary(found.nodes.all),
             contexts=self._contexts.summary(),

@@ -28,12 +28,13 @@ def render(report: Report, colour: bool = False, verbose: bool = False, width: i
         width: of the terminal, at least 60 columns; None: lines are not broken.
     """
     paint = painter(colour)
-    room = max(width, _LEAST) if width is not None else sys.maxsize
+    room = max(width, LEAST) if width is not None else sys.maxsize
     lines: list[str] = []
     for index, mission in enumerate(report.missions):
         notes = [printable(f"  note: {remark}") for remark in report.remarks] if index == 0 else []
         lines += _broken([*_heading(mission), *notes], room)
-        lines += ["", *_rows(mission, paint, verbose, room), "", *_broken(_summary(mission), room), ""]
+        rows = requirement_rows(mission.requirements, mission.medians, paint, verbose, room)
+        lines += ["", *rows, "", *_broken(_summary(mission), room), ""]
     return "\n".join(lines[:-1]) + "\n" if lines else ""
 
 
@@ -54,16 +55,22 @@ def _heading(mission: MissionVerdicts) -> Iterator[str]:
             yield printable(f"  note: {remark}")
 
 
-def _rows(mission: MissionVerdicts, paint: Paint, verbose: bool, room: int) -> Iterator[str]:
+def requirement_rows(
+    requirements: Sequence[RequirementVerdict], medians: Mapping[str, float], paint: Paint, verbose: bool, room: int
+) -> Iterator[str]:
+    """The verdicts on requirements, in the room of some columns, the violated ones first.
+
+    Args:
+        medians: how long nodes take, in seconds by path.
+        verbose: as of `render`.
+    """
     rows: list[tuple[Verdict, list[str], Sequence[str]]] = []
-    for requirement in sorted(mission.requirements, key=lambda each: _ORDER.index(each.verdict)):
+    for requirement in sorted(requirements, key=lambda each: _ORDER.index(each.verdict)):
         title = requirement.title
         name = requirement.id
         for clause in sorted(requirement.clauses, key=lambda each: _ORDER.index(each.verdict)):
             texts = [name, title, _clause(clause, requirement), result(clause), _hint(clause)]
-            below: Sequence[str] = (
-                [*_explanation(clause, mission.medians, verbose)] if clause.verdict == VIOLATED else []
-            )
+            below: Sequence[str] = [*_explanation(clause, medians, verbose)] if clause.verdict == VIOLATED else []
             rows.append((clause.verdict, [printable(text) for text in texts], below))
             name = title = ""  # shown once
     left = len(NEVER) + 4
@@ -142,7 +149,7 @@ def _broken(lines: Iterable[str], room: int) -> Iterator[str]:
     return (part for line in lines for part in broken(line, room))
 
 
-_LEAST: Final = 60
+LEAST: Final = 60  # columns that the table needs
 _FURTHER: Final = 4  # violations explained in addition to the worst
 _NAMED: Final = 3  # nodes where failures began
 _LONG_TICK: Final = 0.01  # s, the period in which Nav2 ticks its trees

@@ -26,6 +26,7 @@ from btq_lang.util.record import Record, replace
 from btq_lang.workspace.loader import IS_SPECIAL, absolute, collect, is_special, shown
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.judging import Running
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.store.sets import Keeping
     from btq_lang.evidence.verdicts import Report
@@ -145,5 +146,37 @@ def judged(
     read_from = [(file, each) for each in series.values()]
     read_from += [(source.file, of_files[source.signal]) for source in sources if source.signal in of_files]
     report = replace(report, remarks=(*ignored_columns(file, series, missions), *other_times(read_from, report)))
+    return _with_problems(report, missions, requested)
+
+
+def judged_live(
+    running: Running,
+    address: str,
+    missions: Sequence[Candidate],
+    requested: Sequence[str],
+    *,
+    with_timelines: bool = False,
+    keeping: Keeping | None = None,
+) -> Verification:
+    """Judge missions by what a running robot does, until its sessions end.
+
+    Args:
+        address: of the robot.
+        requested, with_timelines, keeping: as in `judged`.
+    """
+    from btq_lang.evidence.judging import Judging, Means, judge
+
+    # The limits must hold at every look, for verdicts are looked at after every run.
+    means = Means(missions, {}, (), {}, {}, (), str, with_timelines, keeping, limits="every look")
+    judging = Judging(means)
+    judging.add(judge(address, means, running=running))
+    report = judging.report()
+    if not (report.missions or report.foreign or report.problems):
+        return Verification(report, (f"no robot answered at {address}, so there is nothing to judge",))
+    return _with_problems(report, missions, requested)
+
+
+def _with_problems(report: Report, missions: Sequence[Candidate], requested: Sequence[str]) -> Verification:
+    """The report with what makes its verdicts incomplete."""
     problems = (*report.problems, *missing_verdicts(report, requested), *missions_with_errors(report, missions))
     return Verification(report, problems)

@@ -52,6 +52,8 @@ ONLY_IN = {
     "tree_sitter": {"cpp"},
     "tree_sitter_cpp": {"cpp"},
     "yaml": {"nav2"},
+    "zmq": {"evidence"},
+    "msgpack": {"evidence"},
 }
 
 

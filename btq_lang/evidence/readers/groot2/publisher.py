@@ -1,0 +1,103 @@
+"""Asks a Groot2Publisher through pyzmq, which only this module imports.
+
+One invariant: `ask` returns or raises within a few seconds, and after either it may be called again.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from contextlib import suppress
+from time import monotonic
+from typing import Any, Final
+
+from btq_lang.evidence.readers.groot2.messages import Reply, reply, request
+
+
+class NoLive(Exception):
+    """pyzmq or msgpack is missing; the message says how to get them."""
+
+
+class NoAnswer(Exception):
+    """The publisher does not answer."""
+
+
+def check_installed() -> None:
+    """Check that what reads a running robot is there.
+
+    Raises:
+        NoLive: it is not.
+    """
+    try:
+        import msgpack  # noqa: F401  # whether it is installed
+        import zmq  # noqa: F401  # likewise
+    except ImportError as error:
+        raise NoLive("a running robot is read with pyzmq; install it with pip install 'btq-lang[live]'") from error
+
+
+class Publisher:
+    """A publisher at an address, which may come and go."""
+
+    def __init__(self, address: str, is_over: Callable[[], bool]) -> None:
+        """
+        Args:
+            address: as in `tcp://127.0.0.1:1667`.
+            is_over: whether nothing more will be asked, so that waiting for an answer is in vain.
+        """
+        import zmq
+
+        self._address: Final = address
+        self._is_over: Final = is_over
+        self._zmq: Final = zmq
+        self._context: Final = zmq.Context()
+        self._socket: Any = None
+
+    def ask(self, kind: str, argument: str | None = None) -> Reply:
+        """The reply to a request.
+
+        Raises:
+            NoAnswer: none came in time.
+            BadReply: as `messages.reply`.
+        """
+        if self._socket is None:
+            self._socket = self._context.socket(self._zmq.REQ)
+            self._socket.setsockopt(self._zmq.LINGER, 0)
+            self._socket.setsockopt(self._zmq.MAXMSGSIZE, MOST)
+            self._socket.connect(self._address)
+        parts = request(kind, random.getrandbits(32), argument)
+        try:
+            self._socket.send_multipart(parts, self._zmq.NOBLOCK)
+            self._wait()
+            found = self._socket.recv_multipart(self._zmq.NOBLOCK)
+        except self._zmq.ZMQError as error:
+            self._forget()
+            raise NoAnswer from error
+        return reply(found, parts[0])
+
+    def close(self) -> None:
+        """Ask nothing more."""
+        self._forget()
+        self._context.term()
+
+    def _wait(self) -> None:
+        """Wait until a reply is there, or for as long as one may take."""
+        patience = _PATIENCE
+        begin = monotonic()
+        while not self._socket.poll(_SLICE):
+            if self._is_over():
+                patience = _LAST_PATIENCE
+            if monotonic() - begin > patience:
+                return
+
+    def _forget(self) -> None:
+        """Drop the socket: one that waits for a reply cannot ask again."""
+        with suppress(self._zmq.ZMQError):
+            if self._socket is not None:
+                self._socket.close()
+        self._socket = None
+
+
+MOST: Final = 1 << 24  # bytes of a part of a reply; larger ones end the connection
+_SLICE: Final = 100  # ms between two looks at whether to go on waiting
+_PATIENCE: Final = 2.0  # s
+_LAST_PATIENCE: Final = 0.3  # s, when nothing more will be asked

@@ -1,0 +1,152 @@
+"""The sessions of a running robot, for the judge; a thread follows the publisher meanwhile, whatever judging takes.
+
+One invariant: all that the judge and the screen are given, they are given in one thread, in the order in which it came.
+"""
+
+from __future__ import annotations
+
+import queue
+import time
+from collections.abc import Callable, Collection, Iterator
+from threading import Event as Flag
+from threading import Thread
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.evidence.model import Series, Session
+from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Sampled
+from btq_lang.evidence.readers.groot2.publisher import Publisher
+from btq_lang.evidence.wording import timestamp
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.model import Transition
+
+
+def sessions(
+    address: str, entries: Collection[str], stop: Flag, tell: Callable[[str], None], wait: Callable[[], None]
+) -> Iterator[Session]:
+    """The sessions of the robots that publish at an address, until it is stopped.
+
+    Args:
+        entries: those of the blackboard that are wanted.
+        stop: ends the last session.
+        tell: given what happens to the connection.
+        wait: called several times a second.
+    """
+    yield from sessions_of(_followed(address, entries, stop, wait), tell)
+
+
+def sessions_of(events: Iterator[Event], tell: Callable[[str], None]) -> Iterator[Session]:
+    """The sessions that the events of a `Following` make; each must be read before the next is requested."""
+    began: list[Began] = []
+    for event in events:
+        began = [event] if isinstance(event, Began) else began
+        while began:
+            yield _session(began.pop(), events, began, tell)
+        if not isinstance(event, Began | Came | Sampled | Lost):
+            tell(event.text)
+
+
+def _session(began: Began, events: Iterator[Event], after: list[Began], tell: Callable[[str], None]) -> Session:
+    samples: dict[str, Series] = {}
+    remarks: list[str] = []
+    if began.is_amid:
+        remarks.append("it was running already, so what was active then is left out")
+        tell("a run is open already; what is active now is left out")
+    return Session(began.tree, _transitions(events, samples, remarks, after, tell), samples, remarks)
+
+
+def _transitions(
+    events: Iterator[Event],
+    samples: dict[str, Series],
+    remarks: list[str],
+    after: list[Began],
+    tell: Callable[[str], None],
+) -> Iterator[Transition]:
+    """The transitions of a session; samples and remarks are appended while they are read.
+
+    Args:
+        after: the next session is appended.
+    """
+    gaps = _Gaps(tell)
+    for event in events:
+        if isinstance(event, Came):
+            yield from event.transitions
+        elif isinstance(event, Sampled):
+            for entry, value in event.values.items():
+                samples.setdefault(entry, Series()).add(event.time, value)
+        elif isinstance(event, Lost):
+            gaps.add(event)
+        elif isinstance(event, Began):
+            after.append(event)
+            tell("another tree")
+            break
+        else:
+            tell(event.text)
+    remarks.extend(gaps.remarks())
+
+
+class _Gaps:
+    """Counts gaps, and tells of them, but not of every one where there are many."""
+
+    def __init__(self, tell: Callable[[str], None]) -> None:
+        self._tell: Final = tell
+        self._found: Final[dict[str, tuple[int, int]]] = {}
+        self._next = 0.0
+
+    def add(self, lost: Lost) -> None:
+        first, number = self._found.get(lost.why, (lost.time, 0))
+        self._found[lost.why] = first, number + 1
+        if time.monotonic() >= self._next:
+            self._next = time.monotonic() + _BETWEEN
+            times = f", {number + 1} times so far" if number else ""
+            self._tell(f"gap: {lost.why}{times}; what happened meanwhile is unknown")
+
+    def remarks(self) -> Iterator[str]:
+        for why, (first, number) in self._found.items():
+            yield f"gaps: {why}: {number}, the first at {timestamp(first)}"
+
+
+def _followed(address: str, entries: Collection[str], stop: Flag, wait: Callable[[], None]) -> Iterator[Event]:
+    """The events of a thread that follows a publisher, until it is stopped and no more are there."""
+    events: queue.Queue[Event | Exception] = queue.Queue(_MOST_WAITING)
+    thread = Thread(target=_follow, args=(address, entries, stop, events), daemon=True)
+    thread.start()
+    try:
+        while True:
+            try:
+                event = events.get(timeout=_SLICE)
+            except queue.Empty:
+                if not thread.is_alive() and events.empty():
+                    return
+            else:
+                if isinstance(event, Exception):
+                    raise event
+                yield event
+            wait()
+    finally:
+        stop.set()
+        while thread.is_alive():  # also if it waits for room in the queue
+            while not events.empty():
+                events.get()
+            thread.join(_SLICE)
+
+
+def _follow(address: str, entries: Collection[str], stop: Flag, events: queue.Queue[Event | Exception]) -> None:
+    try:
+        publisher = Publisher(address, stop.is_set)
+        try:
+            following = Following(publisher.ask, lambda: time.monotonic_ns() // 1000, entries, address)
+            is_last = False
+            while not is_last:
+                is_last = stop.wait(following.pause)
+                for event in following.step():
+                    events.put(event)
+        finally:
+            publisher.close()
+    except Exception as error:  # a bug: it is raised where people see it
+        events.put(error)
+
+
+_MOST_WAITING: Final = 256  # events; while the judge is slower than the robot, the publisher's buffer overflows: a gap
+_SLICE: Final = 0.1  # s
+_BETWEEN: Final = 10.0  # s between two gaps that are reported
