@@ -148,6 +148,10 @@ def _report(
         problems += trouble
     if options.add_ignore is not None:
         return _add_ignores(groups, findings, options, files)
+    if options.target is not None:
+        from btq_lang.commands.together import together
+
+        findings = together(findings)
     why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)
     report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), why_empty, known)
     is_written = write_report(report, options, before.mended)
@@ -177,7 +181,7 @@ def _parameter_files(files: Files, options: CheckOptions) -> tuple[ParameterFile
 
 
 def _chosen(
-    groups: tuple[Group, ...], parameter_files: Iterable[ParameterFile], options: CheckOptions
+    groups: tuple[Group, ...], parameter_files: tuple[ParameterFile, ...], options: CheckOptions
 ) -> tuple[Group, ...]:
     """The groups for the target, with only what has changed.
 
@@ -187,6 +191,9 @@ def _chosen(
     if options.target is not None:
         from btq_lang.commands.target import is_comparable, moving
 
+        if parameter_files and not groups and not options.target.startswith("nav2-"):
+            why = "the version of the engine changes no parameter of Nav2; name a distribution, such as nav2-lyrical"
+            raise _Refused(f"--target {options.target}: {why}")
         groups = moving(groups, options.target)
         if not (is_comparable(groups, options.target) or any(each.distribution for each in parameter_files)):
             what = 'write `nodes = ["nav2-jazzy"]` into btq.toml'

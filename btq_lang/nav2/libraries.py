@@ -9,7 +9,7 @@ from btq_lang.catalog.nav2.libraries import LIBRARIES
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.nav2.parameters import Parameters, Text
 from btq_lang.util.spelling import did_you_mean, distance, near
-from btq_lang.util.text import Span, counted
+from btq_lang.util.text import Span
 
 NAMES: Final = "plugin_lib_names"
 
@@ -56,7 +56,7 @@ class Libraries:
         if not named:
             return
         first, *others = named
-        more = f" and {counted(len(others), 'other')} of these libraries" if others else ""
+        more = f" and {len(others)} more of the named libraries" if others else ""
         message = f"Nav2 loads `{first.text}`{more} by itself in {self._shown}, so nodes are registered twice"
         related = tuple(Related(Place(each.span), "this one too") for each in others[:_SHOWN])
         yield Diagnostic("library-loaded-twice", first.span, message, related, (_REFUSED,))

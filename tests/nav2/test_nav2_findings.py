@@ -209,8 +209,8 @@ def test_a_list_from_humble_is_one_finding(robot: Path) -> None:
     ]
     text = f"{HEAD}    plugin_lib_names: [{', '.join(names)}, my_own_bt_node]\n"
     ((_, found),) = findings_in(robot, text, "jazzy")
-    message = "Nav2 loads `nav2_spin_action_bt_node` and 4 others of these libraries by itself in Jazzy, so nodes are"
-    assert found.message == f"{message} registered twice"
+    message = "Nav2 loads `nav2_spin_action_bt_node` and 4 more of the named libraries by itself in Jazzy"
+    assert found.message == f"{message}, so nodes are registered twice"
     assert [text[each.place.span.start : each.place.span.end] for each in found.related] == names[1:4]
 
 
