@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
@@ -179,6 +180,16 @@ def test_the_page_is_no_wider_than_the_window(width: int, robots: Path, tmp_path
     environment = {**os.environ, "HOME": str(tmp_path)}
     dom = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120, env=environment).stdout
     assert re.findall(r'data-wide="(-?\d+)"', dom) == ["0"]
+
+
+def test_twins_have_what_their_robot_has(robots: Path, tmp_path: Path) -> None:
+    shutil.copytree(robots / "evidence", tmp_path / "evidence")
+    fleet.add_twins(tmp_path / "evidence", 2)
+    code, text, errors = run_btq("report", "evidence", cwd=tmp_path)
+    assert (code, errors) == (1, "")
+    table = Page(text).tables["Robots, those with the most violated requirements first"]
+    assert [row[0] for row in table[1:]] == ["r003", "r003-2", "r001", "r001-2", "r002", "r002-2"]
+    assert [row[1:] for row in table[1::2]] == [row[1:] for row in table[2::2]]
 
 
 # ---- stores made by hand ----

@@ -81,9 +81,9 @@ def _tiles(overview: Overview) -> str:
     """The numbers of what got worse, where something is compared, and of what is violated."""
     tiles = []
     if found := overview.comparisons:
-        changes = [change.finding for each in found for change in each.changes]
         tiles = [("newly violated", sum(len(each.newly) for each in found), "")]
-        tiles += [(word, changes.count(word), "") for word in reversed(WORSE)]
+        changes = {(each.mission, subject(change), change.finding) for each in found for change in each.changes}
+        tiles += [(word, sum(finding == word for *_, finding in changes), "") for word in reversed(WORSE)]
     last = [mission.parts[-1] for mission in overview.missions]
     requirements = sum(len(part.verdicts.requirements) for part in last)
     tiles.append(("violated now", sum(part.violated for part in last), f" of {counted(requirements, 'requirement')}"))
@@ -94,13 +94,13 @@ def _tiles(overview: Overview) -> str:
 
 
 def _comparison(comparison: Comparison, sides: tuple[str, str], keys: dict[str, str]) -> Iterator[str]:
-    found = [each for each in comparison.changes if each.finding]
+    found = sorted((each for each in comparison.changes if each.finding), key=_importance)
     worse = [_newly(each.id, each.title, each.before, keys) for each in comparison.newly]
     worse += [_change(each, keys) for each in found if each.finding in WORSE]
     others = [_change(each, keys) for each in found if each.finding not in WORSE]
     yield f"<p>{escape(heading(comparison, sides))}</p>"
     if worse:
-        yield from _table("changes", f"What got worse in {comparison.mission}", ("Finding", "Of", "Change"), worse)
+        yield from _folded("changes", f"What got worse in {comparison.mission}", ("Finding", "Of", "Change"), worse)
     else:
         yield f"<p>Nothing that chance does not explain got worse in {escape(comparison.mission)}.</p>"
     if others:
@@ -110,6 +110,11 @@ def _comparison(comparison: Comparison, sides: tuple[str, str], keys: dict[str, 
     yield "<details><summary>What else was compared</summary>"
     yield from (f"<p><small>{escape(line)}</small></p>" for line in remarks(comparison))
     yield "</details>"
+
+
+def _importance(change: Change) -> tuple[bool, float]:
+    """What to read first: what requirements say, then nodes; of each, what changed by the largest factor."""
+    return not change.requirement, -abs(change.after - change.before) / (change.before or _NOTHING)
 
 
 def _newly(name: str, title: str, before: str, keys: dict[str, str]) -> str:
@@ -386,5 +391,6 @@ _LABELS: Final = 4  # with a column of their own
 _ROWS: Final = 10
 _CLAUSES: Final = 3
 _LARGE: Final = 1000
+_NOTHING: Final = 1e-9
 _DOTTED: Final = "a dotted line is where the first run of a label begins"
 _LATE: Final = len(WORST_FIRST)
