@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from build_command import btq as btq  # a fixture of every folder
-from damage_seed import CASES, seed_of
+from by_day import DAY
 from hypothesis import settings
 from strict_queries import strict_queries as strict_queries  # a fixture of some tests
 
@@ -50,12 +50,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: LONGEST.index(item.path.stem) if item.path.stem in LONGEST else len(LONGEST))
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
-    # Here and not in the test: what a worker prints nobody sees.
-    reports = (each for every in terminalreporter.stats.values() for each in every)
-    if any("test_damage.py" in getattr(each, "nodeid", "") for each in reports):
-        seed = seed_of(config)
-        terminalreporter.write_line(f"damaged missions: python tests/damage.py --cases {CASES} --seed {seed}")
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    terminalreporter.write_line(f"inputs of the day: BTQ_DAY={DAY}")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

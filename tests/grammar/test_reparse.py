@@ -7,6 +7,7 @@ from pathlib import Path
 
 import missions
 import pytest
+from by_day import of_the_day
 
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.util.text import LineIndex, Position, Span, changed
@@ -56,7 +57,7 @@ def same(one: Parsed, other: Parsed) -> bool:
     return (one.text, one.entries, one.starts) == (other.text, other.entries, other.starts)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", of_the_day(range(4), 4))
 @pytest.mark.parametrize(
     "text",
     [EVERY_FORM, IN_ROOT, missions.mission(60, 3, "classic"), missions.mission(60, 3, "short"), "", "Root\n"],
@@ -75,7 +76,7 @@ def test_after_any_edits_it_is_the_parse_of_the_text(text: str, seed: int) -> No
         assert same(parsed, parse(after)), (step, after)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", of_the_day(range(4), 4))
 @pytest.mark.parametrize(
     "text",
     [EVERY_FORM, IN_ROOT, missions.mission(60, 3, "classic"), missions.mission(60, 3, "short")],
@@ -112,7 +113,7 @@ LINES = (
 )
 
 
-@pytest.mark.parametrize("seed", range(100))
+@pytest.mark.parametrize("seed", of_the_day(range(100), 2))
 def test_after_edits_of_wrong_lines_behind_open_brackets_it_is_the_parse_of_the_text(seed: int) -> None:
     chance = random.Random(seed)
     lines = chance.choices(LINES, k=chance.randint(3, 12))
@@ -198,7 +199,7 @@ def test_what_an_edit_replaced(before: str, after: str, span: tuple[int, int] | 
     assert changed(before, after) == span
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", of_the_day(range(4), 4))
 def test_a_line_index_that_is_patched_is_that_of_the_text(seed: int) -> None:
     chance = random.Random(seed)
     text = "ab\ncd\r\nef\r\n\n"

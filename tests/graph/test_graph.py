@@ -70,7 +70,7 @@ def trees(draw: st.DrawFn) -> tuple[list[Size], list[int | None]]:
 
 
 @given(trees())
-@settings(max_examples=300)
+@settings(max_examples=100)
 def test_boxes_stand_apart_below_the_middle_of_their_parents(tree: tuple[list[Size], list[int | None]]) -> None:
     sizes, parents = tree
     places = layout(sizes, parents, 10, 20)

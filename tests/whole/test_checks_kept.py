@@ -10,6 +10,7 @@ from pathlib import Path
 
 import missions
 import pytest
+from by_day import of_the_day
 from kept_checks import Kept
 
 from btq_lang.btcpp.opening import file_of
@@ -140,7 +141,7 @@ PIECES = (
 )
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", of_the_day(range(4), 4))
 @pytest.mark.parametrize(
     "files",
     [
@@ -177,7 +178,7 @@ TOP = """<root BTCPP_format="4">
 """
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", of_the_day(range(4), 4))
 @pytest.mark.parametrize(
     ("project", "factory"),
     [

@@ -15,7 +15,7 @@ from btq_lang.workspace.workspace import Workspace
 
 T = TypeVar("T")
 MAIN = "main.btq"
-FEW, MANY = 200, 400
+FEW, MANY = 100, 200
 # Up to some hundreds of unknown names what is near to each is looked for among all: so many for it to show.
 MORE = {"unknown in contexts": 600}
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import missions
 import pytest
+from by_day import of_the_day
 from kept_checks import Kept
 
 from btq_lang.checks import check
@@ -170,7 +171,7 @@ LINES = (
 )
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", of_the_day(range(2), 2))
 @pytest.mark.parametrize(
     "files",
     [FILES, GUARDS, CLASSIC, SHORT, EXAMPLE],
