@@ -39,7 +39,7 @@ small { color: var(--soft); }
 .numbers thead th:not(:first-child) { text-align: right; }
 @media (max-width: 700px) { .numbers th, .numbers td { padding: .3rem .2rem; font-size: .75rem; hyphens: auto; }
   .numbers thead th { overflow-wrap: anywhere; } }
-.verdict { font-weight: 700; }
+.verdict { font-weight: 700; white-space: nowrap; }
 .verdict::before { content: "\\25CB\\00A0"; }
 .verdict.violated { color: var(--missing); } .verdict.violated::before { content: "\\2716\\00A0"; }
 .verdict.satisfied { color: var(--enforced); } .verdict.satisfied::before { content: "\\2714\\00A0"; }

@@ -222,7 +222,7 @@ class _Mission:
         yield f"<h3>Robots{escape(label)}</h3>"
         rows = [_robot(each, self._keys) for each in robots]
         heads = ("Robot", "Violated", "Runs", "Failed", "Retries per run", "Recoveries per run")
-        yield from _folded("parts", "Robots, those with the most violated requirements first", heads, rows)
+        yield from _folded("robots", "Robots, those with the most violated requirements first", heads, rows)
 
     def _coverage(self) -> Iterator[str]:
         yield "<h3>Coverage</h3>"

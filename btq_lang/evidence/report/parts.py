@@ -73,7 +73,7 @@ h3 { display: block; margin-top: 1.5rem; }
 .worse { font-weight: 700; color: var(--missing); white-space: nowrap; }
 .worse::before { content: "\\2716\\00A0"; }
 @media (min-width: 701px) { .changes th { width: 12rem; } .changes td:last-child { width: 40%; }
-  .parts tbody th { width: 26%; } .parts thead th { white-space: nowrap; } }
+  .parts tbody th { width: 26%; } .robots tbody th { width: 12%; } thead th { white-space: nowrap; } }
 td small { display: block; }
 .last { background: var(--raised); }
 .trend { display: block; width: 12.5rem; max-width: 100%; height: 2.25rem; border-bottom: 1px solid var(--soft); }
@@ -86,7 +86,8 @@ tr:target > th, tr:target > td { background: var(--chosen); }
   main table, main tbody, main tr, main th, main td { display: block; }
   main thead { display: none; } main caption { display: block; }
   main tr { border-bottom: 1px solid var(--line); padding: .3rem 0; }
-  main tbody th, main tbody td { border: 0; padding: .15rem .3rem; } .parts tbody th { font-weight: 600; }
+  main tbody th, main tbody td { border: 0; padding: .15rem .3rem; }
+  .parts tbody th, .robots tbody th { font-weight: 600; }
   main td[data-of]::before { content: attr(data-of) ": "; color: var(--soft); }
   .tiles li { flex: 1 1 40%; } }
 @media print { .tiles li, .last { background: none; } }
