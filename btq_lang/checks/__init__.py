@@ -1,7 +1,7 @@
 """The checks: what is wrong with a file beyond its syntax.
 
-One invariant: a check is a function of the view of an item and its entry, and yields diagnostics whose spans count from
-that entry; it never raises, whatever the file.  A module holds the rules of one subject, and `CHECKS` below maps types
+One invariant: a check is a function of the view of an item, and yields diagnostics whose spans count from that item; it
+never raises, whatever the file.  A module holds the rules of one subject, and `CHECKS` below maps types
 of items to functions.  A check gets all it needs from its view, and so from the query store (workspace/queries.py),
 which caches results from one edit to the next.  Not known here: what an edit changed, and how findings are printed.
 
@@ -89,7 +89,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.workspace import Workspace
 
-Check: TypeAlias = "Callable[[View, Entry], Iterator[Diagnostic]]"
+Check: TypeAlias = "Callable[[View], Iterator[Diagnostic]]"
 
 _OF_PORTS: tuple[Check, ...] = (
     ports.duplicate_port,
@@ -329,18 +329,18 @@ def _reported(store: Store[Workspace], viewpoint: str, facts: Facts, is_alone: b
     view = View(store, viewpoint, facts)
     entry = view.entry
     checks = checks_of(entry)
-    found: Iterable[Diagnostic] = [diagnostic for each in checks for diagnostic in each(view, entry)]
+    found: Iterable[Diagnostic] = [diagnostic for each in checks for diagnostic in each(view)]
     if view.project.moves_to is not None:
         from btq_lang.checks.moved_engine import new_in_target  # few checks have a target
 
-        found = [*found, *new_in_target(view, entry, checks, [*found])]
+        found = [*found, *new_in_target(view, checks, [*found])]
     if type(facts.item) is Include and not is_alone:
-        found = [*found, *includes.include_with_errors(view, entry, _errors_in)]
+        found = [*found, *includes.include_with_errors(view, _errors_in)]
     if entry.diagnostics:
         found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
     elif not found:
         return None
-    wanted = tuple(configured(view.project, viewpoint, as_uncreated(view, entry, found)))
+    wanted = tuple(configured(view.project, viewpoint, as_uncreated(view, found)))
     return Reported(wanted, (viewpoint, facts.item)) if wanted else None
 
 

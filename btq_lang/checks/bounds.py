@@ -17,7 +17,6 @@ from btq_lang.syntax.tokens import NUMBER, QUANTITY
 from btq_lang.syntax.tree import (
     Amount,
     Claim,
-    Entry,
     Mission,
     Requirement,
     Scope,
@@ -31,10 +30,10 @@ if TYPE_CHECKING:
     from btq_lang.checks.view import View
 
 
-def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def impossible_bound(view: View) -> Iterator[Diagnostic]:
     """A fractional number of attempts, a negative time, and attempts of a mission, which starts once."""
     limits: dict[int, bool] = {}  # by the `id` of the requirement, which may have thousands of claims
-    for requirement, claim in _claims(view, entry):
+    for requirement, claim in _claims(view):
         bound, verb = claim.bound, claim.verb.raw
         operand = VERBS[verb].operand
         is_count = operand in _COUNTED
@@ -58,9 +57,9 @@ def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:
                         yield from _time(amount, number, is_lower)
 
 
-def uses_of_gauge(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def uses_of_gauge(view: View) -> Iterator[Diagnostic]:
     """`uses … of` a signal that is neither a counter nor a level, so that its use is undefined."""
-    for _, claim in _claims(view, entry):
+    for _, claim in _claims(view):
         declaration = view.declaration(Kind.SIGNAL, claim.resource.text) if claim.resource is not None else None
         signal = declaration.symbol.target if declaration is not None else None
         if claim.resource is None or declaration is None or not isinstance(signal, Signal) or signal.unit is None:
@@ -83,12 +82,11 @@ def uses_of_gauge(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def _claims(view: View, entry: Entry) -> Iterator[tuple[Requirement, Claim]]:
-    for symbol in view.facts.summary.symbols:
-        if isinstance(requirement := symbol.target, Requirement):
-            for clause in requirement.clauses:
-                if isinstance(clause, Claim):
-                    yield requirement, clause
+def _claims(view: View) -> Iterator[tuple[Requirement, Claim]]:
+    for _, requirement in view.requirements:
+        for clause in requirement.clauses:
+            if isinstance(clause, Claim):
+                yield requirement, clause
 
 
 def _value(amount: Amount) -> tuple[float, str]:

@@ -13,7 +13,7 @@ from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Node, Word
+from btq_lang.syntax.tree import Node, Word
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _INTEGER = re.compile(r"-?[0-9]{1,18}")
 
 
-def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def child_count(view: View) -> Iterator[Diagnostic]:
     """More or fewer children than the node takes."""
     nodes = view.nodes
     for index, seen in enumerate(nodes):
@@ -38,7 +38,7 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue  # the wrong one of the two is reported first
         if any(misspelt_clause(child) for child in seen.node.nodes):
             continue  # a child that is meant as a clause is reported
-        if count == 0 and entry.diagnostics:
+        if count == 0 and view.entry.diagnostics:
             after = nodes[index + 1].node.start if index + 1 < len(nodes) else len(view.text)
             if view.is_torn(seen.node.start, after - 1):
                 continue  # its child may be on a line that could not be read
@@ -59,7 +59,7 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def switch_cases(view: View) -> Iterator[Diagnostic]:
     """A Switch whose cases and children do not match: a child for each case, and one more for the default."""
     for seen in view.seen.of_flow("switch"):
         if seen.kind is None:
@@ -90,7 +90,7 @@ def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic("switch-cases", node.head.span, message, notes=(note,), severity=Severity.WARNING)
 
 
-def parallel_threshold(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def parallel_threshold(view: View) -> Iterator[Diagnostic]:
     """A threshold that the children of a Parallel cannot reach: the engine throws when it is ticked."""
     for seen in view.seen.of_flow("parallel", "parallel-all"):
         count = len(seen.node.children)

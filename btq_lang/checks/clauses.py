@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, Tag, replace_fix
 from btq_lang.syntax.tree import (
     Clause,
     Confidence,
-    Entry,
     Goal,
     How,
     NodeClause,
     Odds,
     OnViolation,
-    Requirement,
     Window,
     Word,
     walk,
@@ -36,12 +33,9 @@ _ONCE: dict[type, str] = {
 }
 
 
-def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def duplicate_clause(view: View) -> Iterator[Diagnostic]:
     """A second clause of a kind of which the first counts; an equal one can be removed."""
-    for symbol in view.facts.summary.symbols:
-        requirement = symbol.target
-        if symbol.kind is not Kind.REQUIREMENT or not isinstance(requirement, Requirement):
-            continue
+    for symbol, requirement in view.requirements:
         first: dict[type, Clause] = {}
         for clause in requirement.clauses:
             if type(clause) in _ONCE and (counts := first.setdefault(type(clause), clause)) is not clause:
@@ -50,12 +44,9 @@ def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 yield _duplicate(view, counts, clause, is_alone)
 
 
-def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def clause_without_odds(view: View) -> Iterator[Diagnostic]:
     """A confidence, or a window of runs or activations, in a requirement without a required probability."""
-    for symbol in view.facts.summary.symbols:
-        requirement = symbol.target
-        if symbol.kind is not Kind.REQUIREMENT or not isinstance(requirement, Requirement):
-            continue
+    for _, requirement in view.requirements:
         if any(isinstance(clause, Odds) for clause in requirement.clauses):
             continue
         if view.is_torn(requirement.start, requirement.end):
@@ -71,11 +62,10 @@ def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 )
 
 
-def unused_parameter(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unused_parameter(view: View) -> Iterator[Diagnostic]:
     """A parameter that no clause of its requirement uses, so that its value has no effect."""
-    for symbol in view.facts.summary.symbols:
-        requirement = symbol.target
-        if not isinstance(requirement, Requirement) or not requirement.parameters:
+    for _, requirement in view.requirements:
+        if not requirement.parameters:
             continue
         if view.is_torn(requirement.start, requirement.end):
             continue  # its use may be on a line that could not be read

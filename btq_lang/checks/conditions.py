@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.syntax.tokens import NAME
-from btq_lang.syntax.tree import Clause, Context, Entry, Operand, ReqRef, Requirement, Tree, walk
+from btq_lang.syntax.tree import Clause, Context, Operand, ReqRef, Requirement, Tree, walk
 from btq_lang.workspace.symbols import requirements_at
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
 
 
-def subtraction_without_blanks(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def subtraction_without_blanks(view: View) -> Iterator[Diagnostic]:
     """`full-empty`, one name, where only `full` and `empty` are known: a subtraction needs blanks."""
-    for operand in _operands(view, entry):
+    for operand in _operands(view):
         word = operand.word
-        if word.kind != NAME or "-" not in word.text or _is_known(view, entry, word.text):
+        if word.kind != NAME or "-" not in word.text or _is_known(view, word.text):
             continue
         for at, character in enumerate(word.text):
             left, right = word.text[:at], word.text[at + 1 :]
-            if character == "-" and _is_known(view, entry, left) and _is_known(view, entry, right):
+            if character == "-" and _is_known(view, left) and _is_known(view, right):
                 yield Diagnostic(
                     "subtraction-without-blanks",
                     word.span,
@@ -34,8 +34,8 @@ def subtraction_without_blanks(view: View, entry: Entry) -> Iterator[Diagnostic]
                 break
 
 
-def _operands(view: View, entry: Entry) -> Iterator[Operand]:
-    item = entry.item
+def _operands(view: View) -> Iterator[Operand]:
+    item = view.item
     if isinstance(item, Tree):
         clauses = (item.clauses, *[seen.node.clauses for seen in view.seen.demanding])
         roots: Iterable[Requirement | ReqRef | Context] = (
@@ -59,8 +59,8 @@ def _operands(view: View, entry: Entry) -> Iterator[Operand]:
                 yield part
 
 
-def _is_known(view: View, entry: Entry, name: str) -> bool:
+def _is_known(view: View, name: str) -> bool:
     if any(view.find(kind, name) for kind in (Kind.SIGNAL, Kind.CONTEXT)):
         return True
-    item = entry.item
+    item = view.item
     return isinstance(item, Requirement) and any(parameter.name.text == name for parameter in item.parameters)

@@ -11,14 +11,14 @@ from btq_lang.checks import lookups
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tokens import QUANTITY
-from btq_lang.syntax.tree import Entry, Port, Tree, Word, models_in
+from btq_lang.syntax.tree import Port, Tree, Word, models_in
 from btq_lang.workspace.port_types import is_number
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
 
 
-def number_for_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def number_for_text(view: View) -> Iterator[Diagnostic]:
     """A number that a SubTree passes to a port, or that is a port's default, where a node below expects a text."""
     if not TYPED_CONSTANTS.holds(view.target):
         return
@@ -29,7 +29,7 @@ def number_for_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
             met = _text_below(view, seen.id, pair.key, pair.value)
             if met is not None and pair.value is not None:
                 yield _diagnostic(pair.value, met, None)
-    for tree, port in _ports_of_trees(entry):
+    for tree, port in _ports_of_trees(view):
         met = _text_below(view, tree, port.name, port.default)
         if met is not None and port.default is not None:
             # Only if a SubTree passes nothing else to the port.
@@ -62,8 +62,8 @@ def _diagnostic(value: Word, met: tuple[Place, str, str], severity: Severity | N
     )
 
 
-def _ports_of_trees(entry: Entry) -> Iterator[tuple[Word, Port]]:
-    item = entry.item
+def _ports_of_trees(view: View) -> Iterator[tuple[Word, Port]]:
+    item = view.item
     if isinstance(item, Tree) and item.name is not None:
         yield from ((item.name, port) for port in item.ports)
     for model in models_in(item):

@@ -15,11 +15,11 @@ from btq_lang.syntax.tokens import QUANTITY
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import NodeKind
     from btq_lang.checks.view import View
-    from btq_lang.syntax.tree import Entry, Word
+    from btq_lang.syntax.tree import Word
     from btq_lang.workspace.resolved import ResolvedNode
 
 
-def count_of_nothing(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def count_of_nothing(view: View) -> Iterator[Diagnostic]:
     """A Repeat or a Retry that never runs its child, a Timeout that never ends."""
     for seen in view.seen.of_flow("repeat", "retry", "timeout"):
         if seen.kind is None:

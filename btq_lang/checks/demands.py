@@ -16,7 +16,6 @@ from btq_lang.checks.view import View
 if TYPE_CHECKING:
     from btq_lang.checks.demanded import Found, Guard
     from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.syntax.tree import Entry
     from btq_lang.util.text import Span
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 ByItem: TypeAlias = "dict[int, list[Diagnostic]]"
 
 
-def demands(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def demands(view: View) -> Iterator[Diagnostic]:
     """All findings of these rules in an entry."""
     if view.ask(is_measured):
         yield from view.ask(_in_item, view.facts)

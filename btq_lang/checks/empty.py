@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 _Found: TypeAlias = "Iterator[tuple[str, syntax.Word | None]]"
 
 
-def empty_text(view: View, entry: syntax.Entry) -> Iterator[Diagnostic]:
+def empty_text(view: View) -> Iterator[Diagnostic]:
     """An empty name, to which nothing can refer; or an empty text for readers."""
     if view.is_xml or not any(sign in view.text for sign in _EMPTY):
         return
-    for what, word in _names(entry.item):
+    for what, word in _names(view.item):
         if word is not None and word.raw in _EMPTY:
             severity = Severity.HINT if what in _FOR_PEOPLE else None
             yield Diagnostic("empty-text", word.span, f"{what} is empty", severity=severity)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import TREE_OF_GOAL, ports_of
 from btq_lang.checks import lookups
@@ -11,11 +10,8 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.util.record import replace
 
-if TYPE_CHECKING:
-    from btq_lang.syntax.tree import Entry
 
-
-def tree_of_goal(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def tree_of_goal(view: View) -> Iterator[Diagnostic]:
     """A tree that bt_navigator does not find, or skips or refuses."""
     goals = view.look_up(lookups.goals)
     for seen in view.seen.given if goals else ():

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.syntax.tree import Entry, Include, quote
+from btq_lang.syntax.tree import Include, quote
 from btq_lang.util.text import Span, counted
 from btq_lang.workspace.file import is_of_package
 
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 NOWHERE = "; neither this file nor its includes define it"
 
 
-def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def missing_include(view: View) -> Iterator[Diagnostic]:
     """An included file that cannot be found."""
-    include = entry.item
+    include = view.item
     if not isinstance(include, Include) or include.path is None or is_of_package(include):
         return
     path = include.path.text
@@ -48,9 +48,9 @@ def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
     )
 
 
-def cyclic_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def cyclic_include(view: View) -> Iterator[Diagnostic]:
     """A file that includes itself, directly or not."""
-    include = entry.item
+    include = view.item
     if not isinstance(include, Include) or include.path is None:
         return
     target = view.look_up(lookups.included, view.facts)
@@ -65,13 +65,13 @@ def cyclic_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
     )
 
 
-def include_with_errors(view: View, entry: Entry, errors_in: ErrorsIn) -> Iterator[Diagnostic]:
+def include_with_errors(view: View, errors_in: ErrorsIn) -> Iterator[Diagnostic]:
     """An included file that cannot be read or loaded as it is, or one that includes such a file.
 
     Args:
         errors_in: the query for the errors that keep a file from being read.
     """
-    include = entry.item
+    include = view.item
     target = view.look_up(lookups.included, view.facts)
     if target is None or not isinstance(include, Include) or include.path is None:
         return

@@ -21,7 +21,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES
-from btq_lang.syntax.tree import Entry, Include, Model, Tree, Word, quote, written
+from btq_lang.syntax.tree import Model, Word, quote, written
 from btq_lang.util.spelling import did_you_mean, distance, without_digits
 from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Symbol, differences, has_ports_of, interface
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
 
-def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unknown_node(view: View) -> Iterator[Diagnostic]:
     """An unknown kind: if a palette of models is in scope, or if a known name is so similar that this must be a
     misspelling.  Otherwise, any name without a palette is a custom node that the robot's program registers."""
     for seen in view.seen.strangers:
@@ -48,7 +48,7 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         elif name is None:
             continue
         elif view.defines(Kind.TREE, name.text):
-            if not is_of_tree_named(entry, name.text):  # else the tree's name is the mistake
+            if not is_of_tree_named(view, name.text):  # else the tree's name is the mistake
                 yield _tree_as_node(view, seen, name)
         elif view.is_pooled(Kind.MODEL, name.text):
             continue  # models that differ: whichever the program means, it is known
@@ -59,15 +59,15 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             message = f"btq reads `{name.text}` as a node here; did you mean `{category}`?"
             yield Diagnostic("unknown-node", name.span, message, fixes=(fix,))
         elif not (_is_refused(view, seen, name) or _is_clause(seen) or misspelt_clause(seen.node)):
-            yield from _unknown(view, entry, seen, name)
+            yield from _unknown(view, seen, name)
 
 
-def is_of_tree_named(entry: Entry, name: str) -> bool:
+def is_of_tree_named(view: View, name: str) -> bool:
     """Whether an item is a tree of a name: no node in it can mean that tree."""
-    return isinstance(entry.item, Tree) and entry.item.name is not None and entry.item.name.text == name
+    return view.tree_name is not None and view.tree_name.text == name
 
 
-def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
     """A word of the published language, or of an older engine, that no current engine registers."""
     for seen in view.nodes:
         name = seen.id
@@ -90,7 +90,7 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic("not-an-engine-node", name.span, message, notes=(note,), fixes=(fix,))
 
 
-def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def newer_engine_node(view: View) -> Iterator[Diagnostic]:
     """A built-in that is missing in a version which the project targets."""
     for tagged in view.seen.by_tag.values():
         missing = [] if tagged[0].kind is None else _missing(tagged[0].kind.tag, view.engines)
@@ -113,7 +113,7 @@ def _missing(tag: str, engines: tuple[str, ...]) -> list[str]:
     return [version for version in engines if not available(BUILTINS[tag], version)]
 
 
-def no_models(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def no_models(view: View) -> Iterator[Diagnostic]:
     """A mission of many nodes with ports and not one model: an include may be missing, which nothing else would
     report."""
     if view.is_xml or not view.is_first_tree or view.has_names(Kind.MODEL):
@@ -145,7 +145,7 @@ def _gives_ports(seen: ResolvedNode) -> bool:
     return any(is_port_name(pair.key.text) for pair in seen.node.attributes)
 
 
-def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def category_mismatch(view: View) -> Iterator[Diagnostic]:
     """`Condition MoveBase` where MoveBase is an action."""
     for seen in view.seen.categorized:
         category = declared_category(seen)
@@ -162,7 +162,7 @@ def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic("category-mismatch", written_as.span, message, related=related, fixes=(fix,))
 
 
-def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def clause_as_node(view: View) -> Iterator[Diagnostic]:
     """`keeps` in the block of a node is a node of that name."""
     nodes = view.seen
     for seen in nodes.given:
@@ -193,7 +193,7 @@ def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def duplicate_definition(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def duplicate_definition(view: View) -> Iterator[Diagnostic]:
     """A second signal, context or quality of one name, or a second model with another interface."""
     for first, second in view.clashes(*_DEFINED_ONCE):
         if not _is_same_model(first.symbol, second.symbol):
@@ -201,7 +201,7 @@ def duplicate_definition(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 Related(first.place, COUNTS),
                 Related(second.place, "second definition"),
             )
-            yield _second(second.symbol, include_place(entry), both, "this file includes a second definition of")
+            yield _second(second.symbol, view.head, both, "this file includes a second definition of")
     for symbol in view.facts.summary.symbols:
         if symbol.kind not in _DEFINED_ONCE or not view.is_repeated(symbol.kind, symbol.name):
             continue
@@ -234,12 +234,6 @@ def likely_category(seen: ResolvedNode) -> str:
     if seen.stated_category is not None:
         return seen.stated_category
     return ("Action", "Decorator", "Control")[min(len(seen.node.children), 2)]
-
-
-def include_place(entry: Entry) -> Span:
-    """Where a diagnostic about an included file points."""
-    item = entry.item
-    return item.path.span if isinstance(item, Include) and item.path else Span(item.start, item.end)
 
 
 def way_in(view: View) -> tuple[str, ...]:
@@ -281,7 +275,7 @@ def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:
     return lookup(name.text) if name.quoted and seen.kind is None else None
 
 
-def _unknown(view: View, entry: Entry, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]:
+def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]:
     is_complete = view.is_complete and not view.project.hides_nodes
     has_palette = view.look_up(lookups.has_palette) and is_complete
     likely = view.near(name.text, Kind.MODEL)
@@ -298,7 +292,7 @@ def _unknown(view: View, entry: Entry, seen: ResolvedNode, name: Word) -> Iterat
     notes: tuple[str, ...] = ()
     if not likely:
         category, ports = view.look_up(lookups.custom_node, name.text)
-        fixes = (_declared(view, entry, seen, f"{category} {written(name.text)}", ports),)
+        fixes = (_declared(view, seen, f"{category} {written(name.text)}", ports),)
         shortest = f"a line `{category} {written(name.text)}`"
         if view.is_xml:
             shortest = f'`<{category} ID="{name.text}"/>` in <TreeNodesModel>'
@@ -309,9 +303,9 @@ def _unknown(view: View, entry: Entry, seen: ResolvedNode, name: Word) -> Iterat
     yield Diagnostic("unknown-node", name.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
-def _declared(view: View, entry: Entry, seen: ResolvedNode, model: str, ports: tuple[LikelyPort, ...]) -> Fix:
+def _declared(view: View, seen: ResolvedNode, model: str, ports: tuple[LikelyPort, ...]) -> Fix:
     """The fix that declares a node's model, with the ports that its uses show, before an item."""
-    margin = view.text[: entry.item.start]
+    margin = view.text[: view.item.start]
     below = view.text[: seen.node.start + 1].splitlines()[1:]
     inside = next((line[: len(line) - len(line.lstrip())] for line in below if line.strip()), "")
     inside = inside if inside.startswith(margin) and inside != margin else f"{margin}    "

@@ -18,7 +18,7 @@ from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import BRACED, QUANTITY
-from btq_lang.syntax.tree import Entry, Pair, Port, Tree, Word, models_in, port_named, quote, written
+from btq_lang.syntax.tree import Pair, Port, Tree, Word, models_in, port_named, quote, written
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
@@ -45,14 +45,14 @@ class _Target(Record):
     is_output: bool = False
 
 
-def old_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def old_entry(view: View) -> Iterator[Diagnostic]:
     """`${key}`, an entry of the blackboard to version 3 of the engine, and a text to version 4."""
     if not ENTRY_WITHOUT_DOLLAR.holds(view.target):
         return
     pairs = (pair for seen in view.seen.given for pair in seen.node.attributes)
     begun = [(pair.key, pair.value) for pair in pairs if pair.value is not None and "${" in pair.value.raw[:3]]
     values = [value for key, value in begun if OLD_ENTRY.fullmatch(value.text) and is_port_name(key.text)]
-    typed = {value.span: target for target, value in _values(view, entry)} if values else {}
+    typed = {value.span: target for target, value in _values(view)} if values else {}
     for value in values:
         key, target = value.text[1:], typed.get(value.span)
         refused = target is not None and check_literal(target.type, value.text, view.target) is not None
@@ -66,10 +66,10 @@ def old_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def invalid_literal(view: View) -> Iterator[Diagnostic]:
     """A literal that the port's type refuses, or whose end the engine drops."""
     version = view.target
-    for target, value in _values(view, entry):
+    for target, value in _values(view):
         if target.is_output:
             continue
         if value.kind == QUANTITY:
@@ -104,9 +104,9 @@ def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
             )
 
 
-def quantity_on_unitless_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def quantity_on_unitless_port(view: View) -> Iterator[Diagnostic]:
     """A quantity where the port's unit is unknown or of another dimension."""
-    for target, value in _values(view, entry, QUANTITY):
+    for target, value in _values(view, QUANTITY):
         quantity = parse_quantity(value.raw)
         if quantity is None or target.is_output:
             continue  # an unknown unit, or a value for an output: both are reported
@@ -150,9 +150,9 @@ def _converted(target: _Target, value: Word, version: str) -> Iterator[Diagnosti
     yield Diagnostic("invalid-literal", value.span, message, notes=notes)
 
 
-def _values(view: View, entry: Entry, kind: int | None = None) -> Iterator[tuple[_Target, Word]]:
+def _values(view: View, kind: int | None = None) -> Iterator[tuple[_Target, Word]]:
     """Each literal (of one kind) that is assigned to a port with a type or a unit, with that target."""
-    for port in _declared_ports(entry):
+    for port in _declared_ports(view):
         value = port.default
         if value is None or value.kind == BRACED or kind not in (None, value.kind) or not value.text:
             continue
@@ -171,8 +171,8 @@ def _values(view: View, entry: Entry, kind: int | None = None) -> Iterator[tuple
                 yield target, value
 
 
-def _declared_ports(entry: Entry) -> Sequence[Port]:
-    item = entry.item
+def _declared_ports(view: View) -> Sequence[Port]:
+    item = view.item
     if isinstance(item, Tree):
         return item.ports
     return [port for model in models_in(item) for port in model.ports]

@@ -10,7 +10,7 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.syntax.tree import Entry, Requirement
+from btq_lang.syntax.tree import Requirement
 from btq_lang.workspace.queries import Store, hub
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def _has_clauses(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     )
 
 
-def unresolved(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unresolved(view: View) -> Iterator[Diagnostic]:
     """What is wrong with the requirements of an entry when they are resolved: units, signals, paths, arguments."""
     if not view.ask(is_measured):
         return
@@ -47,10 +47,10 @@ def unresolved(view: View, entry: Entry) -> Iterator[Diagnostic]:
     yield from [problem.diagnostic for problem in view.ask(problems_in, view.path, view.facts)]
 
 
-def requirement_without_subject(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def requirement_without_subject(view: View) -> Iterator[Diagnostic]:
     """A claim about nothing, in a requirement that has other claims with subjects of their own; without any the whole
     requirement is unused, and reported as that.  Also what only applies to nodes, demanded of a span or a sum."""
-    if not isinstance(entry.item, Requirement) or not view.ask(is_measured):
+    if not isinstance(view.item, Requirement) or not view.ask(is_measured):
         return
     names = [symbol.name for symbol in view.facts.summary.symbols]
     found = [each for name in names if view.defines_here(Kind.REQUIREMENT, name) for each in _found_in(view, name)]

@@ -16,7 +16,7 @@ from btq_lang.checks.calls import callers
 from btq_lang.checks.entries import Mention, blackboards
 from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
-from btq_lang.syntax.tree import Entry, Tree, Verbatim
+from btq_lang.syntax.tree import Tree, Verbatim
 from btq_lang.util.spelling import distance, without_digits
 
 if TYPE_CHECKING:
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
 
-def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def misspelt_entry(view: View) -> Iterator[Diagnostic]:
     """An entry that is named once, and read though nothing writes it, or written though nothing reads it, if another
     entry has nearly the same name."""
-    tree = entry.item
+    tree = view.item
     mentions = view.ask(mentions_in, view.path, view.facts)
     if not isinstance(tree, Tree) or tree.name is None or not mentions:
         return

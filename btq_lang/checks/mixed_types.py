@@ -19,7 +19,7 @@ from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Pair, Tree
+from btq_lang.syntax.tree import Pair
 from btq_lang.util.record import Record
 from btq_lang.workspace.port_types import declared_type, is_text
 from btq_lang.workspace.queries import Store, on_circle
@@ -57,13 +57,11 @@ class _Meeting(Record):
 _Types: TypeAlias = "dict[str, list[_Meeting]]"
 
 
-def entry_with_two_types(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def entry_with_two_types(view: View) -> Iterator[Diagnostic]:
     """An entry that is assigned to ports of two types: the engine refuses to load the tree."""
-    tree = entry.item
-    if not isinstance(tree, Tree) or tree.name is None or not view.look_up(lookups.has_pointers):
-        return
-    if view.defines_here(Kind.TREE, tree.name.text):
-        yield from view.ask(_found_in, tree.name.text)
+    name = view.tree_name
+    if name is not None and view.look_up(lookups.has_pointers) and view.defines_here(Kind.TREE, name.text):
+        yield from view.ask(_found_in, name.text)
 
 
 def _found_in(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[Diagnostic, ...]:

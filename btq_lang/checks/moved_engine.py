@@ -19,13 +19,13 @@ from btq_lang.checks.statuses import RUNNING, SKIPPED
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Tree, is_name
+from btq_lang.syntax.tree import is_name
 from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.workspace.resolved import ResolvedNode
 
-    Check = Callable[[View, Entry], Iterator[Diagnostic]]
+    Check = Callable[[View], Iterator[Diagnostic]]
 
 
 def engine_changes(view: View, origin: str, target: str) -> Iterator[Diagnostic]:
@@ -53,7 +53,7 @@ def is_between(since: str, until: str, after: str, origin: str, target: str) -> 
     return (not until or not at_least(target, until)) and (not after or at_least(last_of(origin), after))
 
 
-def new_in_target(view: View, entry: Entry, checks: tuple[Check, ...], found: list[Diagnostic]) -> Iterator[Diagnostic]:
+def new_in_target(view: View, checks: tuple[Check, ...], found: list[Diagnostic]) -> Iterator[Diagnostic]:
     """What the target refuses, or reads otherwise, and the version that the tree is for does not.
 
     Args:
@@ -62,7 +62,7 @@ def new_in_target(view: View, entry: Entry, checks: tuple[Check, ...], found: li
     workspace = view.workspace.moved
     moved = View(workspace.store, view.viewpoint, view.facts)
     known = {(each.rule, each.span) for each in found if is_severe(each)}
-    for each in (each for check in checks for each in check(moved, entry)):
+    for each in (each for check in checks for each in check(moved)):
         if (each.rule, each.span) not in known and is_severe(each):
             yield of_target(each, workspace.project.target)
 
@@ -99,10 +99,10 @@ def _entries(seen: ResolvedNode) -> Iterator[Diagnostic]:
 
 def _first_tree(view: View) -> Iterator[Diagnostic]:
     """A tree whose ID another one before it has."""
-    tree = view.facts.item
-    if isinstance(tree, Tree) and tree.name is not None and not view.defines_here(Kind.TREE, tree.name.text):
-        what = f"from {LAST_TREE_COUNTS.since} on this tree `{tree.name.text}` counts, no longer the first one"
-        yield Diagnostic("target-differs", tree.name.span, what)
+    name = view.tree_name
+    if name is not None and not view.defines_here(Kind.TREE, name.text):
+        what = f"from {LAST_TREE_COUNTS.since} on this tree `{name.text}` counts, no longer the first one"
+        yield Diagnostic("target-differs", name.span, what)
 
 
 def _runs_on(view: View, seen: ResolvedNode) -> bool:

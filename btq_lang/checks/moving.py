@@ -18,14 +18,13 @@ from btq_lang.syntax.tree import Include
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
-    from btq_lang.syntax.tree import Entry
     from btq_lang.workspace.resolved import ResolvedNode
 
 _FIRST_OF_4 = "jazzy"  # that comes with BehaviorTree.CPP 4
 _OF_3 = DISTRIBUTIONS[: DISTRIBUTIONS.index(_FIRST_OF_4)]
 
 
-def moving_on(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def moving_on(view: View) -> Iterator[Diagnostic]:
     """Nodes and ports that the target does not have, and those that mean something else in it."""
     target = view.project.moves_to
     if target is None:
@@ -45,9 +44,9 @@ def moving_on(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield from changes_of(view, seen, seen.id, steps)
 
 
-def moving_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def moving_include(view: View) -> Iterator[Diagnostic]:
     """An included file that Humble looks for in another folder."""
-    path = entry.item.path if isinstance(entry.item, Include) else None
+    path = view.item.path if isinstance(view.item, Include) else None
     steps = _steps(view)
     if path is not None and steps[:1] == ("humble",) and not path.text.startswith("/"):
         what = "from Iron on the path counts from the file that includes it, not from bt_navigator's working folder"

@@ -12,7 +12,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Tree, Word, is_name, models_in, written
+from btq_lang.syntax.tree import Tree, Word, is_name, models_in, written
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 _NO_NAMESPACES = ("it does not support XML namespaces: the prefix is part of the name",)
 
 
-def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def forbidden_name(view: View) -> Iterator[Diagnostic]:
     """The name of a tree, a node, an instance or a SubTree's port that the engine refuses at load."""
     version = view.target
-    item = entry.item
+    item = view.item
     if isinstance(item, Tree):
         if item.name is None:
-            yield from _nameless(view, entry, item) if ID_OF_EACH_TREE.holds(version) else ()
+            yield from _nameless(view, item) if ID_OF_EACH_TREE.holds(version) else ()
         elif reason := model_name_problem(item.name.text, version):
             yield _tree_name(view, item.name, reason, _renamed(view, item.name))
         nodes = view.seen
@@ -46,7 +46,7 @@ def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 yield _refused("port name", port.name, reason)
 
 
-def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def duplicate_instance_name(view: View) -> Iterator[Diagnostic]:
     """Two nodes of a tree with one name: their paths are one path, in logs and in Groot."""
     first: dict[tuple[bool, str], Word] = {}
     for seen in view.seen.named:
@@ -102,10 +102,10 @@ def _of_instance(view: View, seen: ResolvedNode, label: Word, version: str) -> I
             yield replace(refused, severity=Severity.WARNING, notes=("`btq build` leaves it out",))
 
 
-def _nameless(view: View, entry: Entry, tree: Tree) -> Iterator[Diagnostic]:
+def _nameless(view: View, tree: Tree) -> Iterator[Diagnostic]:
     """A tree without an ID: the engine accepts it only if it is alone."""
     if view.look_up(lookups.has_neighbours) and not any(
-        problem.span.start <= tree.end for problem in entry.diagnostics
+        problem.span.start <= tree.end for problem in view.entry.diagnostics
     ):
         span = Span(tree.start, tree.start + len("BehaviorTree"))
         note = "the engine accepts a tree without an ID only as the only tree of a file"

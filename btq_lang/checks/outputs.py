@@ -14,7 +14,7 @@ from btq_lang.checks.engines import is_for_version_3
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Pair, Port, Word, is_name
+from btq_lang.syntax.tree import Pair, Port, Word, is_name
 
 if TYPE_CHECKING:
     from btq_lang.workspace.item_index import Facts
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
 
-def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def literal_for_output(view: View) -> Iterator[Diagnostic]:
     """A value for an output, which needs an entry to write to: the node's own writing fails when it is ticked.  A value
     that the output's type does not accept is refused before.
 

@@ -13,7 +13,7 @@ from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
-from btq_lang.syntax.tree import Entry, Node, Pair, Tree, Word, is_name, quote
+from btq_lang.syntax.tree import Node, Pair, Tree, Word, is_name, quote
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
@@ -32,7 +32,7 @@ _WHITE = " \t\r\n"
 _NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERB_WORDS | {"xml"}
 
 
-def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def classic_placeholder(view: View) -> Iterator[Diagnostic]:
     """A placeholder, with its short form."""
     for seen in view.seen.placeholders:
         if seen.name is None or seen.node.kind is None:
@@ -41,7 +41,7 @@ def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if _taken(view, name) is not None:
             continue  # reported as a clash
         what = "the condition" if seen.category == "Condition" else "the action"
-        fix = _short_form(view, entry, seen, name)
+        fix = _short_form(view, seen, name)
         yield Diagnostic(
             "classic-placeholder",
             seen.node.kind.span,
@@ -50,7 +50,7 @@ def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def placeholder_clash(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def placeholder_clash(view: View) -> Iterator[Diagnostic]:
     """A name that becomes an ID which another name has become already, or which is taken."""
     for seen in view.seen.placeholders:
         name = seen.name
@@ -116,13 +116,13 @@ def _taken(view: View, name: str) -> str | None:
     return "which is the name of a tree" if view.defines(Kind.TREE, name) else None
 
 
-def _short_form(view: View, entry: Entry, seen: ResolvedNode, name: str) -> Fix | None:
+def _short_form(view: View, seen: ResolvedNode, name: str) -> Fix | None:
     """`MoveBase (…)`, `Condition BatteryLow "BatteryLow?"`; None if what is around the name is unusual.
 
     It is safe if no models are in scope: with models the node would be checked against them.
     """
     node = seen.node
-    if entry.diagnostics or node.children or node.kind is None or node.name is None:
+    if view.entry.diagnostics or node.children or node.kind is None or node.name is None:
         return None
     head = _as_kind(name)
     if seen.category == "Condition" or _looks_like_builtin(name):

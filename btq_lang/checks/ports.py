@@ -19,7 +19,7 @@ from btq_lang.checks.kinds import model_related, way_in
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, written
+from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, written
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 _OWN = frozenset(("ID", "name"))
 
 
-def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unknown_port(view: View) -> Iterator[Diagnostic]:
     """A port that the built-in, the model or the tree of a SubTree does not have."""
     for seen in view.seen.given:
         yield from _forbidden_id(seen) if ID_IN_COMPACT_FORM.holds(view.target) else ()
@@ -67,7 +67,7 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 break  # all of the model's ports are missing
 
 
-def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def missing_port(view: View) -> Iterator[Diagnostic]:
     """A port without a value: one the engine requires, or an input without default of a model."""
     for seen in view.nodes:
         ports = _ports(view, seen)
@@ -106,10 +106,10 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unknown_attribute(view: View) -> Iterator[Diagnostic]:
     """`_skipif`: neither a port nor anything the engine reads, which it does not report."""
-    if isinstance(entry.item, Tree):
-        for pair in entry.item.attributes:
+    if isinstance(view.item, Tree):
+        for pair in view.item.attributes:
             kind = RESERVED_ATTRIBUTES.get(pair.key.text)
             if kind is not None and kind.is_script:
                 message = f"`{pair.key.text}` has no effect on a BehaviorTree: move it to the tree's node"
@@ -148,9 +148,9 @@ def _taken_for_port(view: View, seen: ResolvedNode, key: Word) -> Iterator[Diagn
     yield Diagnostic("unknown-attribute", key.span, message, severity=Severity.ERROR)
 
 
-def duplicate_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def duplicate_attribute(view: View) -> Iterator[Diagnostic]:
     """Two values for one attribute: the first counts."""
-    for pairs, said_before in _attribute_lists(view, entry):
+    for pairs, said_before in _attribute_lists(view):
         keys = {pair.key.text for pair in pairs}
         if len(keys) == len(pairs) and keys.isdisjoint(said_before):
             continue
@@ -163,9 +163,9 @@ def duplicate_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
             first.setdefault(key, pair)
 
 
-def duplicate_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def duplicate_port(view: View) -> Iterator[Diagnostic]:
     """Two ports of one name in a model or a tree: the engine takes the last one, and tools the first."""
-    item = entry.item
+    item = view.item
     for owner in (item,) if isinstance(item, Tree) else models_in(item):
         if len(owner.ports) < 2:
             continue
@@ -184,9 +184,9 @@ def duplicate_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 )
 
 
-def misspelt_type(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def misspelt_type(view: View) -> Iterator[Diagnostic]:
     """`strng`: not a type of C++ and probably not one of the robot's program; its values then are not checked."""
-    item = entry.item
+    item = view.item
     for owner in (item,) if isinstance(item, Tree) else models_in(item):
         for port in owner.ports:
             name = port.type.text if port.type is not None else ""
@@ -394,9 +394,9 @@ def adding_fix(view: View, node: Node, title: str, pairs: str) -> tuple[Fix, ...
     return () if behind.startswith("(") else (replace_fix(title, Span(end, end), f" ({pairs})"),)
 
 
-def _attribute_lists(view: View, entry: Entry) -> Iterator[tuple[tuple[Pair, ...], dict[str, Word | None]]]:
+def _attribute_lists(view: View) -> Iterator[tuple[tuple[Pair, ...], dict[str, Word | None]]]:
     """Every list of attributes in an item, with the attributes that are written before the brackets."""
-    item = entry.item
+    item = view.item
     if isinstance(item, Tree):
         yield item.attributes, {"ID": item.name}
         for port in item.ports:

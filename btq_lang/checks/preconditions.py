@@ -13,7 +13,6 @@ from btq_lang.diagnostics.rules import Severity
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
-    from btq_lang.syntax.tree import Entry
     from btq_lang.workspace.resolved import ResolvedNode
 
 _PASS_SKIPPED_ON = frozenset(
@@ -21,7 +20,7 @@ _PASS_SKIPPED_ON = frozenset(
 )
 
 
-def one_shot_monitor(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def one_shot_monitor(view: View) -> Iterator[Diagnostic]:
     """`_failureIf`, which is evaluated once, on a node that runs; `_successIf` is a hint, for it mostly means "do it
     unless it is done"."""
     for seen in view.seen.marked:
@@ -48,7 +47,7 @@ def one_shot_monitor(view: View, entry: Entry) -> Iterator[Diagnostic]:
             )
 
 
-def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def while_skip_is_success(view: View) -> Iterator[Diagnostic]:
     """`_while` on a step of a Sequence: when it becomes false the step is halted, and the next one begins.
 
     If another step has a `_while` or a `_skipIf` too, the steps are the branches of a choice, and that is intended.
@@ -76,7 +75,7 @@ def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def skipped_condition(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def skipped_condition(view: View) -> Iterator[Diagnostic]:
     """`_skipIf` or `_while` on the condition of an IfThenElse or a WhileDoElse, which do not accept SKIPPED from it, or
     on a child of a node that accepts it from none."""
     for seen in view.seen.marked:

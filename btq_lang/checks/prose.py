@@ -11,7 +11,7 @@ from btq_lang.checks.measures import is_measured
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
-from btq_lang.syntax.tree import Entry, Requirement, Signal, Word
+from btq_lang.syntax.tree import Requirement, Signal, Word
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
@@ -20,11 +20,10 @@ if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
 
-def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def prose_constraint(view: View) -> Iterator[Diagnostic]:
     """A keyword followed by prose, in a requirement that has no clause yet: reported once, where it is defined."""
-    for symbol in view.facts.summary.symbols:
-        requirement = symbol.target
-        if not isinstance(requirement, Requirement) or requirement.text is None or requirement.clauses:
+    for symbol, requirement in view.requirements:
+        if requirement.text is None or requirement.clauses:
             continue
         found = _not_checked(view, requirement, symbol.name)
         first = view.declaration(Kind.REQUIREMENT, symbol.name)
@@ -39,7 +38,7 @@ def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
             in_source(requirement.text, keyword),
             f"no tool can check the prose after `{requirement.text.text[keyword.start : keyword.end]}`",
             notes=_notes(clauses),
-            fixes=_fixes(view, entry, requirement.text, symbol.name, clauses),
+            fixes=_fixes(view, requirement.text, symbol.name, clauses),
         )
 
 
@@ -93,9 +92,9 @@ def _notes(clauses: tuple[str, ...]) -> tuple[str, ...]:
     return (f"write it as a clause: {', '.join(f'`{clause}`' for clause in clauses)}",)
 
 
-def _fixes(view: View, entry: Entry, text: Word, name: str, clauses: tuple[str, ...]) -> tuple[Fix, ...]:
+def _fixes(view: View, text: Word, name: str, clauses: tuple[str, ...]) -> tuple[Fix, ...]:
     """The fixes that add the clauses; none if the text is repeated in other places, which would then differ."""
-    if not clauses or entry.diagnostics or view.is_repeated(Kind.REQUIREMENT, name):
+    if not clauses or view.entry.diagnostics or view.is_repeated(Kind.REQUIREMENT, name):
         return ()
     added = " ".join(clauses)
     return (replace_fix(f"Add `{added}`", Span(text.end, text.end), f" {added}"),)

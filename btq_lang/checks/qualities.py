@@ -9,7 +9,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
 from btq_lang.diagnostics.model import Diagnostic, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Qualities, Requirement, written
+from btq_lang.syntax.tree import Qualities, Requirement, written
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Use
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from btq_lang.checks.view import View
 
 
-def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unknown_quality(view: View) -> Iterator[Diagnostic]:
     """A name that is neither the standard's nor declared in a file, and an unknown edition."""
-    if isinstance(entry.item, Qualities) and entry.item.edition is not None:
-        edition = entry.item.edition
+    if isinstance(view.item, Qualities) and view.item.edition is not None:
+        edition = view.item.edition
         if edition.text not in EDITIONS:
             message = f"unknown quality model `{edition.text}`"
             fixes = tuple(replace_fix(f"Replace it with `{name}`", edition.span, name) for name in EDITIONS)
@@ -33,7 +33,7 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
             from btq_lang.checks.attached import other_word  # few confuse the two words
 
             takes_arguments = isinstance(meaning.target, Requirement) and bool(meaning.target.parameters)
-            yield other_word(view, entry, use, "unknown-quality", requirement=True, safe=not takes_arguments)
+            yield other_word(view, use, "unknown-quality", requirement=True, safe=not takes_arguments)
             continue
         own = tuple(written(name) for name in view.near(use.name, Kind.QUALITY))
         meant = tuple(dict.fromkeys((*own, *match.near)))[:3]
@@ -48,7 +48,7 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def old_quality_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def old_quality_name(view: View) -> Iterator[Diagnostic]:
     """An alias, or a name of another edition."""
     for use, match in _matches(view):
         if match.kind not in ("alias", "other-edition"):
@@ -76,7 +76,7 @@ def old_quality_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def ambiguous_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def ambiguous_quality(view: View) -> Iterator[Diagnostic]:
     """A name with several meanings."""
     for use, match in _matches(view):
         if match.kind != "ambiguous":

@@ -17,7 +17,7 @@ from btq_lang.checks.statuses import GOES_ON, RUNNING, SKIPPED
 from btq_lang.checks.view import View, called
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Node, Word, quote
+from btq_lang.syntax.tree import Node, Word, quote
 
 if TYPE_CHECKING:
     from btq_lang.workspace.resolved import ResolvedNode
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _APART = "put it in a Sequence of its own"
 
 
-def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def reactive_multiple_async(view: View) -> Iterator[Diagnostic]:
     """A running child of a reactive node after another one that runs: a warning if the other one certainly takes more
     than a tick, a hint if it does only if a custom action does."""
     for seen in view.seen.of_flow("sequence", "fallback"):
@@ -48,7 +48,7 @@ def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 surely = not results.first & goes_on
 
 
-def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def explicit_in_reactive(view: View) -> Iterator[Diagnostic]:
     """An explicit form just below a ReactiveSequence: for a `.btq` file a build writes the compact one, if the name can
     be a tag.
 
@@ -82,7 +82,7 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic("explicit-in-reactive", name.span, message, notes=(note,))
 
 
-def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def condition_without_recheck(view: View) -> Iterator[Diagnostic]:
     """A Fallback at the top of a mission that chooses by a condition and then keeps its choice."""
     choices = [seen for seen in view.seen.of_flow("fallback") if not _begins_again(seen)]
     if not choices or not view.is_main:

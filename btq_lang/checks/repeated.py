@@ -9,7 +9,6 @@ from btq_lang.checks.clauses import with_blanks
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.syntax.tree import (
     Apply,
-    Entry,
     NodeClause,
     ReqRef,
     Requirement,
@@ -42,9 +41,9 @@ class _Named(Record):
     beside: tuple[tuple[Span, ...], int] = ((), 0)
 
 
-def named_twice(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def named_twice(view: View) -> Iterator[Diagnostic]:
     """The second of two places that attach the same requirement, quality or tag to a node."""
-    item = entry.item
+    item = view.item
     if isinstance(item, Apply):
         for elements in (item.uses, item.targets, item.exceptions):
             spans = [part.name.span if isinstance(part, ReqRef) else Span(part.start, part.end) for part in elements]

@@ -7,15 +7,14 @@ from collections.abc import Iterator
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
-from btq_lang.checks.kinds import include_place
 from btq_lang.checks.view import COUNTS, View
 from btq_lang.diagnostics.model import Diagnostic, Related, Tag, replace_fix
-from btq_lang.syntax.tree import Claim, Entry, OnViolation, Requirement, written
+from btq_lang.syntax.tree import Claim, OnViolation, Requirement, written
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.workspace.symbols import Symbol, same_requirement
 
 
-def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unknown_requirement(view: View) -> Iterator[Diagnostic]:
     """A requirement that is named but defined nowhere."""
     for use in view.uses(Kind.REQUIREMENT):
         if view.defines(Kind.REQUIREMENT, use.name):
@@ -28,7 +27,7 @@ def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
             is_exact = quality is None or quality.kind == "exact"
             from btq_lang.checks.attached import other_word  # few confuse the two words
 
-            yield other_word(view, entry, use, "unknown-requirement", requirement=False, safe=is_exact)
+            yield other_word(view, use, "unknown-requirement", requirement=False, safe=is_exact)
             continue
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
         likely = view.near(use.name, Kind.REQUIREMENT)
@@ -37,13 +36,13 @@ def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic("unknown-requirement", use.span, message, fixes=fixes)
 
 
-def conflicting_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def conflicting_requirement(view: View) -> Iterator[Diagnostic]:
     """One ID with two texts; one ID with one text is one requirement in several places."""
     for first, second in view.clashes(Kind.REQUIREMENT):
         if _differ(second.symbol, first.symbol):
             related = (Related(first.place, COUNTS), Related(second.place, "other definition"))
             message = f"this file includes a second requirement `{second.symbol.name}` with different content"
-            yield Diagnostic("conflicting-requirement", include_place(entry), message, related=related)
+            yield Diagnostic("conflicting-requirement", view.head, message, related=related)
     for symbol in view.facts.summary.symbols:
         if symbol.kind is not Kind.REQUIREMENT or not view.is_repeated(symbol.kind, symbol.name):
             continue
@@ -54,13 +53,13 @@ def conflicting_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 symbol.span,
                 f"conflicting definitions of the requirement `{symbol.name}`",
                 related=(Related(other.place, which),),
-                notes=(_other_way(entry, symbol),),
+                notes=(_other_way(view, symbol),),
             )
 
 
-def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unused_requirement(view: View) -> Iterator[Diagnostic]:
     """A requirement at file level that no node, no `apply` and no subject of its own connects to the mission."""
-    requirement = entry.item
+    requirement = view.item
     if not isinstance(requirement, Requirement) or requirement.name is None:
         return
     if any(isinstance(clause, Claim) and clause.subject is not None for clause in requirement.clauses):
@@ -82,12 +81,9 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
     )
 
 
-def requirement_without_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def requirement_without_text(view: View) -> Iterator[Diagnostic]:
     """A requirement with neither a text nor a clause, or with nothing that its `on violation` could apply to."""
-    for symbol in view.facts.summary.symbols:
-        requirement = symbol.target
-        if not isinstance(requirement, Requirement):
-            continue
+    for symbol, requirement in view.requirements:
         action = _idle_action(view, requirement)
         if action is None and not _is_empty(requirement):
             continue
@@ -100,9 +96,9 @@ def requirement_without_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic("requirement-without-text", symbol.span, message, notes=(note,))
 
 
-def _other_way(entry: Entry, symbol: Symbol) -> str:
+def _other_way(view: View, symbol: Symbol) -> str:
     """What to write instead of a second definition: only below a node can a reference replace it."""
-    if symbol.target is entry.item:
+    if symbol.target is view.item:
         return "keep one definition, or give this requirement another ID"
     return f"write `satisfies {written(symbol.name)}` to refer to it, or use another ID"
 

@@ -14,7 +14,7 @@ from btq_lang.checks.results import result
 from btq_lang.checks.statuses import SUCCESS
 from btq_lang.checks.view import View, called
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
-from btq_lang.syntax.tree import Entry, Node
+from btq_lang.syntax.tree import Node
 from btq_lang.workspace.node_names import wraps
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ _REMEMBERING: Final[tuple[Flow, ...]] = ("notices", "throttle", "throttle-or-fai
 _REPEATING: Final[frozenset[Flow]] = frozenset(("pipeline", "together"))
 
 
-def memory_lost(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def memory_lost(view: View) -> Iterator[Diagnostic]:
     """A node that has an effect only if it is ticked again as it was left, below one that resets it before."""
     for seen in view.seen.of_flow(*_REMEMBERING):
         parent = seen.parent
@@ -42,7 +42,7 @@ def memory_lost(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def last_success_lost(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def last_success_lost(view: View) -> Iterator[Diagnostic]:
     """A node that takes turns and fails after its last child, though that may succeed."""
     for seen in view.seen.of_flow("rotate"):
         last = seen.node.children[-1] if seen.node.children else None

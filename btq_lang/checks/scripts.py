@@ -15,11 +15,11 @@ from btq_lang.util.record import replace
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
     from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.syntax.tree import Entry, Pair, Word
+    from btq_lang.syntax.tree import Pair, Word
     from btq_lang.workspace.resolved import ResolvedNode
 
 
-def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def script_error(view: View) -> Iterator[Diagnostic]:
     """What is wrong with a script, in any version that the project targets: script-error, empty-script,
     script-version."""
     for seen in view.seen.given:

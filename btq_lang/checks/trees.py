@@ -10,11 +10,10 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
-from btq_lang.checks.kinds import include_place
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.blocks import OF_ITS_OWN
-from btq_lang.syntax.tree import Entry, Model, Node, Tree, written
+from btq_lang.syntax.tree import Model, Node, Tree, written
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Use
@@ -28,7 +27,7 @@ _DEEPEST_OF_4_6 = 97  # below a BehaviorTree: its XML reader (tinyxml2 8.0) stop
 _LAST_WINS = "the engine does not report this: it runs the last one that it reads"
 
 
-def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unknown_tree(view: View) -> Iterator[Diagnostic]:
     """A SubTree, or a Root, whose tree does not exist."""
     for seen in view.seen.subtrees:
         word = seen.node.category
@@ -62,7 +61,7 @@ def _nowhere(view: View) -> str:
     return "; no file of the project defines it" if is_pooled else NOWHERE
 
 
-def nested_too_deep(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def nested_too_deep(view: View) -> Iterator[Diagnostic]:
     """A node deeper than 4.6 reads; what no version reads is reported by the parser."""
     nodes = view.nodes
     if len(nodes) <= _DEEPEST_OF_4_6 or DEEP_TREES.holds(view.engines[0]):
@@ -83,20 +82,18 @@ def nested_too_deep(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
 
 
-def duplicate_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def duplicate_tree(view: View) -> Iterator[Diagnostic]:
     """A tree whose ID another tree has already: the engine silently takes the last one."""
     for first, second in view.clashes(Kind.TREE):
         yield Diagnostic(
             "duplicate-tree",
-            include_place(entry),
+            view.head,
             f"this file includes a second tree `{second.symbol.name}`",
             related=(Related(first.place, "first one"), Related(second.place, "second one")),
             notes=(_LAST_WINS,),
         )
-    if not isinstance(entry.item, Tree) or entry.item.name is None:
-        return
-    name = entry.item.name
-    if not view.is_repeated(Kind.TREE, name.text):
+    name = view.tree_name
+    if name is None or not view.is_repeated(Kind.TREE, name.text):
         return
     if not view.defines_here(Kind.TREE, name.text):
         related = view.declared_at(Kind.TREE, name.text, "first one")
@@ -108,11 +105,11 @@ def duplicate_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     yield Diagnostic("duplicate-tree", name.span, message, related=related, notes=(_LAST_WINS,))
 
 
-def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def recursive_tree(view: View) -> Iterator[Diagnostic]:
     """A tree that contains itself, reported where the circle begins in the first of its trees."""
-    if not isinstance(entry.item, Tree) or entry.item.name is None:
+    if view.tree_name is None:
         return
-    name = entry.item.name.text
+    name = view.tree_name.text
     circle = view.ask(calls.circle, name)
     if circle is None or not view.defines_here(Kind.TREE, name):
         return
@@ -128,12 +125,10 @@ def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     )
 
 
-def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unused_tree(view: View) -> Iterator[Diagnostic]:
     """A tree to which nothing refers, or only such trees, in a file with a mission."""
-    if not isinstance(entry.item, Tree) or entry.item.name is None or (view.is_included and view.factory is None):
-        return
-    name = entry.item.name
-    if not view.ask(calls.is_missed, name.text):
+    name = view.tree_name
+    if name is None or (view.is_included and view.factory is None) or not view.ask(calls.is_missed, name.text):
         return
     mains = view.look_up(lookups.main_trees)
     main = f"main tree{'s are' if len(mains) > 1 else ' is'} {', '.join(f'`{each}`' for each in mains)}"
@@ -150,12 +145,12 @@ def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     yield Diagnostic("unreachable-tree", name.span, message, related=related, tags=(Tag.UNNECESSARY,))
 
 
-def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
     """Several trees of which none is marked as the mission, reported at the first; or a factory's missing main tree."""
-    if not isinstance(entry.item, Tree) or not view.is_first_tree:
+    if not view.is_first_tree:
         return
     if view.factory is not None:
-        yield from _missing_main_trees(view, entry.item)
+        yield from _missing_main_trees(view)
         return
     if view.is_included:
         return
@@ -168,11 +163,10 @@ def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return  # without one at the top they run in circles, which is reported
     shown = [f"`{name}`" for name in tops[:_MOST_NAMES]]
     names = f"{', '.join(shown[:-1])} or {shown[-1]}" if len(tops) <= _MOST_NAMES else f"{', '.join(shown)}, …"
-    span = entry.item.name.span if entry.item.name else Span(entry.item.start, entry.item.end)
     way = '`main_tree_to_execute="…"` of <root>' if view.is_xml else "a line `Root <tree>`"
     yield Diagnostic(
         "unknown-main-tree",
-        span,
+        view.head,
         f"ambiguous main tree: no other tree refers to {names}",
         related=tuple(
             related
@@ -184,7 +178,7 @@ def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     )
 
 
-def _missing_main_trees(view: View, tree: Tree) -> Iterator[Diagnostic]:
+def _missing_main_trees(view: View) -> Iterator[Diagnostic]:
     """The main trees that the files of a factory lack, reported at the first tree that it registers."""
     name, is_first = view.look_up(lookups.factory) or ("", False)
     for main in view.look_up(lookups.main_trees) if is_first and view.is_complete and not view.has_torn_tree else ():
@@ -192,17 +186,17 @@ def _missing_main_trees(view: View, tree: Tree) -> Iterator[Diagnostic]:
             likely = did_you_mean(view.near(main, Kind.TREE))
             yield Diagnostic(
                 "unknown-main-tree",
-                tree.name.span if tree.name else Span(tree.start, tree.end),
+                view.head,
                 f"the factory `{name}` has no tree `{main}`, which is its main tree{likely}",
                 notes=("this is the first tree that it registers; `main` is in the project file",),
                 severity=Severity.ERROR,
             )
 
 
-def nothing_to_load(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def nothing_to_load(view: View) -> Iterator[Diagnostic]:
     """Files that a factory registers and that are not here, reported at the first tree that it registers."""
     lost = view.look_up(lookups.lost_patterns)
-    if not lost or not isinstance(entry.item, Tree) or not view.is_first_tree:
+    if not lost or not view.is_first_tree:
         return
     name, is_first = view.look_up(lookups.factory) or ("", False)
     for pattern in lost if is_first else ():
@@ -211,25 +205,23 @@ def nothing_to_load(view: View, entry: Entry) -> Iterator[Diagnostic]:
             note = f"btq looks for packages in this workspace, and in AMENT_PREFIX_PATH; {note}"
         yield Diagnostic(
             "missing-include",
-            entry.item.name.span if entry.item.name else Span(entry.item.start, entry.item.end),
+            view.head,
             f"no file matches `{pattern}`, a pattern of the factory `{name}`",
             notes=(note,),
             severity=Severity.HINT,
         )
 
 
-def tree_root_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def tree_root_count(view: View) -> Iterator[Diagnostic]:
     """A tree without exactly one root node."""
-    tree = entry.item
+    tree = view.item
     if not isinstance(tree, Tree) or len(tree.children) == 1:
         return
-    place = tree.name.span if tree.name else Span(tree.start, tree.end)
     if not tree.children:
-        if not entry.diagnostics:  # else its node may be on a line that could not be read
+        if not view.entry.diagnostics:  # else its node may be on a line that could not be read
             note = "write one node in the tree's block"
-            yield Diagnostic(
-                "tree-root-count", place, "a tree must have one node at its top, found none", notes=(note,)
-            )
+            message = "a tree must have one node at its top, found none"
+            yield Diagnostic("tree-root-count", view.head, message, notes=(note,))
         return
     first, extra = (
         child.head.span if isinstance(child, Node) else Span(child.start, child.end) for child in tree.children[:2]
@@ -252,11 +244,11 @@ def tree_root_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
     )
 
 
-def tree_named_like_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def tree_named_like_node(view: View) -> Iterator[Diagnostic]:
     """A tree whose ID is the name of a node."""
-    if not isinstance(entry.item, Tree) or entry.item.name is None:
+    name = view.tree_name
+    if name is None:
         return
-    name = entry.item.name
     model = view.find(Kind.MODEL, name.text) if view.defines(Kind.MODEL, name.text) else None
     if name.text in BUILTINS:
         message = f"a tree cannot have the name `{name.text}`: a built-in node has it"

@@ -9,17 +9,15 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.checks import calls
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Tree
 from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
 
 
-def as_uncreated(view: View, entry: Entry, found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+def as_uncreated(view: View, found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """What was found in an item; errors are only warnings if the engine never comes to them."""
-    tree = entry.item
-    name = tree.name.text if isinstance(tree, Tree) and tree.name is not None else ""
+    name = view.tree_name.text if view.tree_name is not None else ""
     is_uncreated = view.factory is not None and view.ask(calls.is_uncreated, name)
     note = f"no main tree of the factory `{view.factory}` reaches `{name}`; the engine would refuse to create it"
     for each in found:

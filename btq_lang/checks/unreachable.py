@@ -11,14 +11,14 @@ from btq_lang.checks.results import UNKNOWN, result, results
 from btq_lang.checks.statuses import FAILURE, GOES_ON, SKIPPED, SUCCESS
 from btq_lang.checks.view import View, called
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, Tag
-from btq_lang.syntax.tree import Entry, Node, Verbatim
+from btq_lang.syntax.tree import Node, Verbatim
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.workspace.resolved import ResolvedNode
 
 
-def unreachable_child(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unreachable_child(view: View) -> Iterator[Diagnostic]:
     """A child that can never run; reported once for all those after one place."""
     for seen in view.nodes:
         if len(seen.node.children) < 2:

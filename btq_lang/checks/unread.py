@@ -22,13 +22,13 @@ from btq_lang.util.spelling import distance
 from btq_lang.workspace.queries import on_circle
 
 if TYPE_CHECKING:
-    from btq_lang.syntax.tree import Entry, Pair, Word
+    from btq_lang.syntax.tree import Pair, Word
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.resolved import ResolvedNode
     from btq_lang.workspace.workspace import Workspace
 
 
-def default_instead(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def default_instead(view: View) -> Iterator[Diagnostic]:
     """An entry for an input that is read before anything can have written it, and a number that the node's code refuses
     though the port's type does not: the node goes on with its default."""
     distribution = view.look_up(lookups.distribution)
@@ -51,7 +51,7 @@ def default_instead(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 yield _default(view, seen, pair, value, f"must not be negative: the node cannot read `{value.text}`")
 
 
-def error_code_not_collected(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def error_code_not_collected(view: View) -> Iterator[Diagnostic]:
     """An error code in an entry that neither a node reads nor the result of a goal has."""
     distribution = view.look_up(lookups.distribution)
     if distribution is None:

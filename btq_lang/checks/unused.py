@@ -9,7 +9,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Tag
-from btq_lang.syntax.tree import Context, Entry, Signal
+from btq_lang.syntax.tree import Context, Signal
 from btq_lang.util.spelling import near
 
 if TYPE_CHECKING:
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
 
-def unused_signal(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unused_signal(view: View) -> Iterator[Diagnostic]:
     """A signal that no condition, no bound and no `uses` names."""
-    if isinstance(entry.item, Signal) and _is_unused(view, Kind.SIGNAL):
-        yield from _unused(entry.item, "unused-signal", "no clause uses the signal")
+    if isinstance(view.item, Signal) and _is_unused(view, Kind.SIGNAL):
+        yield from _unused(view.item, "unused-signal", "no clause uses the signal")
 
 
-def unused_context(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def unused_context(view: View) -> Iterator[Diagnostic]:
     """A context that no condition names."""
-    if isinstance(entry.item, Context) and _is_unused(view, Kind.CONTEXT):
-        yield from _unused(entry.item, "unused-context", "no condition uses the context")
+    if isinstance(view.item, Context) and _is_unused(view, Kind.CONTEXT):
+        yield from _unused(view.item, "unused-context", "no condition uses the context")
 
 
 def _unused(item: Signal | Context, rule: str, message: str) -> Iterator[Diagnostic]:

@@ -15,10 +15,9 @@ from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
-    from btq_lang.syntax.tree import Entry
 
 
-def version_3_file(view: View, entry: Entry) -> Iterator[Diagnostic]:
+def version_3_file(view: View) -> Iterator[Diagnostic]:
     """What says that a file is for version 3, once: all else that version 4 refuses in it follows."""
     words, project = view.ask(old_words), view.project
     if not words or project.written_for:
@@ -30,7 +29,7 @@ def version_3_file(view: View, entry: Entry) -> Iterator[Diagnostic]:
         declared = f", but btq.toml names {project.target}"
     elif distribution is not None:
         declared = f", but {distribution.title()} has {ENGINES[distribution]}"
-    start = entry.item.start
+    start = view.item.start
     yield Diagnostic(
         "version-3-file",
         Span(start, start + len("Root")),

@@ -7,7 +7,7 @@ not belong here.
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -20,8 +20,9 @@ from btq_lang.checks.engines import engines_of
 from btq_lang.checks.sorted_nodes import NO_NODES, SortedNodes, sorted_nodes
 from btq_lang.diagnostics.model import Related
 from btq_lang.grammar.attributes import meant_clause
-from btq_lang.syntax.tree import Entry, Include, Node, Port, Requirement, Tree, is_name
+from btq_lang.syntax.tree import Entry, Include, Item, Node, Port, Requirement, Tree, Word, is_name
 from btq_lang.util.spelling import near
+from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 
 if TYPE_CHECKING:
@@ -71,6 +72,18 @@ class View:
     # ---- the item ----
 
     @property
+    def item(self) -> Item:
+        """The item."""
+        return self.facts.item
+
+    @property
+    def head(self) -> Span:
+        """Where a diagnostic about the whole item points: to the name of a tree or the path of an include, if there is
+        one."""
+        word = self.item.path if isinstance(self.item, Include) else self.tree_name
+        return word.span if word is not None else Span(self.item.start, self.item.end)
+
+    @property
     def entry(self) -> Entry:
         """The item and its syntax diagnostics; it begins at 0."""
         return inputs.entry(self.store, self.viewpoint, self.facts)
@@ -89,6 +102,18 @@ class View:
         """What the item refers to, of one kind."""
         return [use for use in self.facts.summary.uses if use.kind is kind]
 
+    @property
+    def requirements(self) -> Iterator[tuple[Symbol, Requirement]]:
+        """The requirements that the item defines, each with its symbol."""
+        for symbol in self.facts.summary.symbols:
+            if isinstance(symbol.target, Requirement):
+                yield symbol, symbol.target
+
+    @property
+    def tree_name(self) -> Word | None:
+        """The name of the tree; None for one without a name, and for any other item."""
+        return self.item.name if isinstance(self.item, Tree) else None
+
     def is_torn(self, start: int, end: int) -> bool:
         """Whether something could not be read that begins between two offsets of the item, both included."""
         starts = self.ask(_torn_places, self.facts)
@@ -103,8 +128,7 @@ class View:
     @property
     def is_main(self) -> bool:
         """Whether the item is the tree that runs when the engine loads the file."""
-        tree = self.facts.item
-        name = tree.name.text if isinstance(tree, Tree) and tree.name is not None else ""
+        name = self.tree_name.text if self.tree_name is not None else ""
         is_only_one = self.ask(_is_main_tree, name)
         return bool(is_only_one) or (is_only_one is not None and self.defines_here(Kind.TREE, name))
 
@@ -179,7 +203,7 @@ class View:
     def clashes(self, *kinds: Kind) -> list[tuple[Declaration, Declaration]]:
         """The names that the file of this include and one included before it both define, each with the definition that
         counts and the other one."""
-        if not isinstance(self.facts.item, Include):
+        if not isinstance(self.item, Include):
             return []
         found = self.look_up(lookups.clashes)
         return [(first, second) for at, first, second in found if at is self.facts and second.symbol.kind in kinds]

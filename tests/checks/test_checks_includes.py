@@ -14,7 +14,7 @@ from btq_lang.checks.view import View
 from btq_lang.commands.opening import open_workspace
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Entry, Tree
+from btq_lang.syntax.tree import Tree
 from btq_lang.util.text import Span
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
@@ -214,7 +214,7 @@ def test_included_xml_is_looked_at_again_when_it_or_what_it_includes_or_the_proj
 ) -> None:
     asked: list[str] = []
 
-    def noting(view: View, _: Entry) -> Iterator[Diagnostic]:
+    def noting(view: View) -> Iterator[Diagnostic]:
         asked.append(view.path)
         yield from ()
 

@@ -17,7 +17,7 @@ from btq_lang.btcpp.opening import file_of
 from btq_lang.checks import CHECKS, Check, check
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.syntax.tree import Entry, Tree
+from btq_lang.syntax.tree import Tree
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.factories import Factory
 from btq_lang.workspace.resolved import ResolvedTree
@@ -240,9 +240,8 @@ def asked_after(monkeypatch: pytest.MonkeyPatch, before: dict[str, str], after: 
     """The trees of a file that the checks read when some files change."""
     asked: list[str] = []
 
-    def noting(_: View, entry: Entry) -> Iterator[Diagnostic]:
-        assert isinstance(entry.item, Tree)
-        asked.append(entry.item.name.text if entry.item.name is not None else "")
+    def noting(view: View) -> Iterator[Diagnostic]:
+        asked.append(view.tree_name.text if view.tree_name is not None else "")
         yield from ()
 
     monkeypatch.setitem(CHECKS, Tree, (*CHECKS[Tree], noting))
@@ -274,9 +273,9 @@ def test_every_check_says_what_it_asks_for(monkeypatch: pytest.MonkeyPatch, text
     asked: list[tuple[str, type]] = []
 
     def watched(check: Check) -> Check:
-        def noting(view: View, entry: Entry) -> Iterator[Diagnostic]:
-            asked.append((check.__name__, type(entry.item)))
-            yield from check(view, entry)
+        def noting(view: View) -> Iterator[Diagnostic]:
+            asked.append((check.__name__, type(view.item)))
+            yield from check(view)
 
         return noting
 
