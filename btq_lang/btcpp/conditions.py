@@ -206,7 +206,9 @@ def _text(text: str) -> str:
 
 def _own_script(script: Script) -> str:
     """The script in a classic description: one expression without assignments that means the same in every version."""
-    from btq_lang.syntax.script import check_script, parse_script, variables  # few missions have one
+    from btq_lang.syntax.script.check import check_script  # few missions have one
+    from btq_lang.syntax.script.parser import parse_script
+    from btq_lang.syntax.script.tree import variables
 
     parsed = parse_script(script.code)
     if check_script(parsed, expects_value=True) or len(parsed.statements) != 1:

@@ -244,7 +244,7 @@ def _inside(pair: Pair, name: str) -> Span:
 
 
 def _in_script(view: View, seen: ResolvedNode, pair: Pair) -> Iterator[Mention]:
-    from btq_lang.syntax.script import variables  # most files have no script, and it is large
+    from btq_lang.syntax.script.tree import variables  # most files have no script, and it is large
 
     assert pair.value is not None, "there is a script"
     for variable in variables(view.script(pair.value.text)):

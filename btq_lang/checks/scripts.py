@@ -59,7 +59,7 @@ def _expects_value(seen: ResolvedNode, pair: Pair) -> bool | None:
 
 
 def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic, ...]:
-    from btq_lang.syntax.script import check_script  # most files have no script, and it is large
+    from btq_lang.syntax.script.check import check_script  # most files have no script, and it is large
 
     versions = view.engines
     return check_script(view.script(script), versions=versions, expects_value=expects_value)

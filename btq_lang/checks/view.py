@@ -28,7 +28,7 @@ from btq_lang.workspace import inputs
 if TYPE_CHECKING:
     from btq_lang.checks.lookups import Declaration, Meaning
     from btq_lang.requirements.constraints import Constraint
-    from btq_lang.syntax.script import Script
+    from btq_lang.syntax.script.tree import Script
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.inputs import Placed
     from btq_lang.workspace.item_index import Facts
@@ -456,7 +456,7 @@ def _misspelt_uses(_: Store[Workspace], facts: Facts) -> frozenset[str]:
 
 
 def _script(_: Store[Workspace], text: str) -> Script:
-    from btq_lang.syntax.script import parse_script  # most files have no script, and it is large
+    from btq_lang.syntax.script.parser import parse_script  # most files have no script, and it is large
 
     return parse_script(text)
 

@@ -147,7 +147,8 @@ def _names_entry(node: ResolvedNode, key: str) -> PortKind | None:
 
 
 def _assigned(script: str) -> Iterator[str]:
-    from btq_lang.syntax.script import parse_script, variables
+    from btq_lang.syntax.script.parser import parse_script
+    from btq_lang.syntax.script.tree import variables
 
     for variable in variables(parse_script(script)):
         if variable.writes:

@@ -74,7 +74,8 @@ def _nodes_needed(text: str) -> frozenset[str] | None:
 
 def is_script(text: str) -> bool:
     """Whether the engine takes it for a condition."""
-    from btq_lang.syntax.script import check_script, parse_script  # few files have a keyword
+    from btq_lang.syntax.script.check import check_script  # few files have a keyword
+    from btq_lang.syntax.script.parser import parse_script
 
     problems = check_script(parse_script(text), expects_value=True)
     return all(problem.effective_severity is not Severity.ERROR for problem in problems)

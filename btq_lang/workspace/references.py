@@ -329,8 +329,9 @@ def _script(word: syntax.Word, node: syntax.Node, tree: syntax.Tree, pair: synta
 @lru_cache(1_000)  # many nodes have the same one
 def _names_in_script(text: str) -> list[tuple[int, str, str | None]]:
     """Where each name in a script ends, in the order of the text; the name; the operator that assigns to it."""
-    from btq_lang.syntax.script import Assign, Name, parse_script  # most files have no script, and it is large
-    from btq_lang.syntax.script import children as parts
+    from btq_lang.syntax.script.parser import parse_script  # most files have no script, and it is large
+    from btq_lang.syntax.script.tree import Assign, Name
+    from btq_lang.syntax.script.tree import children as parts
 
     found: list[tuple[int, str, str | None]] = []
     stack = list(parse_script(text).statements)

@@ -24,7 +24,8 @@ from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.keys import Keys
 from btq_lang.commands.opening import open_workspace
 from btq_lang.requirements.resolve import requirements
-from btq_lang.syntax.script import check_script, parse_script
+from btq_lang.syntax.script.check import check_script
+from btq_lang.syntax.script.parser import parse_script
 from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -17,7 +17,6 @@ NAMING = {
     "btcpp/guards.py": "writes these",
     "btcpp/wrappers.py": "writes these",
     "ide/refactor.py": "offers nodes to put around another one, and writes them",
-    "syntax/script/__init__.py": "exports a class Script",
 }
 
 

@@ -9,12 +9,16 @@ from collections import Counter
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from script_text import unparse
 
 from btq_lang.catalog.versions import VERSIONS as ENGINES
 from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.script import (
-    MAX_DEPTH,
+from btq_lang.syntax.script import tokens
+from btq_lang.syntax.script.check import check_script
+from btq_lang.syntax.script.parser import MAX_DEPTH, parse_script
+from btq_lang.syntax.script.tokens import Tokens
+from btq_lang.syntax.script.tree import (
     Assign,
     Binary,
     Bool,
@@ -28,14 +32,9 @@ from btq_lang.syntax.script import (
     Text,
     Unary,
     Variable,
-    check_script,
     children,
-    parse_script,
-    tokens,
-    unparse,
     variables,
 )
-from btq_lang.syntax.script.tokens import Tokens
 from btq_lang.util.text import Edit, Span, apply_edits
 
 # ---- what a script means: the same in every version, and without a problem in any ----
@@ -467,17 +466,7 @@ def test_variables_of_broken_scripts() -> None:
     ]
 
 
-# ---- back to text ----
-
-
-def test_unparse_of_a_tree_that_nobody_wrote() -> None:
-    guard = Binary(
-        "||", Unary("!", Name("moving")), Comparison((">", "!="), (Name("@battery"), Number("20"), Name("c")))
-    )
-    assert unparse(guard) == "((!moving) || (@battery > 20 != c))"
-    assert unparse(guard, fully_parenthesised=False) == "!moving || @battery > 20 != c"
-    flag = Assign(":=", Name("@stop"), Binary("||", Name("@stop"), Unary("!", Name("done"))))
-    assert unparse(Script("", (flag, guard.left))) == "@stop := (@stop || (!done)); (!moving)"
+# ---- how tightly operators bind ----
 
 
 @pytest.mark.parametrize(
@@ -496,7 +485,7 @@ def test_unparse_of_a_tree_that_nobody_wrote() -> None:
         ("(x := 1) + 2;y:=(z:=3)", "(x := 1) + 2; y := z := 3"),
     ],
 )
-def test_unparse_with_few_brackets(text: str, short: str) -> None:
+def test_how_tightly_operators_bind(text: str, short: str) -> None:
     script = parse_script(text)
     assert unparse(script, fully_parenthesised=False) == short
     assert shapes(parse_script(short)) == shapes(script)

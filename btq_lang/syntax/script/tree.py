@@ -1,4 +1,4 @@
-"""The tree of a script: statements of nested expressions, and the way back to text.
+"""The tree of a script: statements of nested expressions.
 
 One invariant: `start` and `end` of a record are its place in the script's text, without the brackets around it (a
 `Group` has them); a tree that was not parsed from a text has zeros there.  Versions of the engine are unknown here.
@@ -130,7 +130,7 @@ class Assign(Record):
 
 Expression: TypeAlias = Number | Text | Bool | Name | Group | Unary | Binary | Comparison | Ternary | Assign
 
-# How tightly an operator binds in the newest engine; a prefix binds like UNARY, and nothing tighter than an ATOM.
+# How tightly an operator binds in the newest engine.
 RANK: Final = {
     **dict.fromkeys((":=", "=", "+=", "-=", "*=", "/="), 2),
     "?": 4,
@@ -149,8 +149,6 @@ RANK: Final = {
 ASSIGNMENT: Final = RANK[":="]
 TERNARY: Final = RANK["?"]
 COMPARISON: Final = RANK["=="]
-UNARY: Final = 20
-ATOM: Final = 22
 
 
 class Variable(Record):
@@ -222,53 +220,3 @@ def ungrouped(node: Expression) -> Expression:
     while isinstance(node, Group):
         node = node.inner
     return node
-
-
-def unparse(tree: Script | Expression, *, fully_parenthesised: bool = True) -> str:
-    """A script or an expression as text: `; ` between statements, text in single quotes.
-
-    Args:
-        fully_parenthesised: brackets around every operator and its operands, the form that all versions of the engine
-            read alike; otherwise as few as the newest version needs.  Brackets of the source are not kept.
-    """
-    statements = tree.statements if isinstance(tree, Script) else (tree,)
-    full = fully_parenthesised
-    return "; ".join(
-        _write(statement, ATOM if full and not isinstance(ungrouped(statement), Assign) else 0, full)
-        for statement in statements
-    )
-
-
-def _write(node: Expression, least: int, full: bool) -> str:
-    """`node`, in brackets if it binds less tightly than `least`."""
-
-    def inside(child: Expression, rank: int) -> str:
-        return _write(child, ATOM if full else rank, full)
-
-    node = ungrouped(node)
-    if isinstance(node, Number):
-        return node.raw
-    if isinstance(node, Name):
-        return node.name
-    if isinstance(node, Bool):
-        return "true" if node.value else "false"
-    if isinstance(node, Text):
-        # There are no escapes: the newest engine cannot express text with a single quote, but older ones read this.
-        return f"'{node.value}'" if "'" not in node.value else f'"{node.value}"'
-
-    if isinstance(node, Unary):
-        rank, text = UNARY, f"{node.operator}{inside(node.operand, UNARY)}"
-    elif isinstance(node, Binary):
-        rank = RANK[node.operator]
-        text = f"{inside(node.left, rank)} {node.operator} {inside(node.right, rank + 1)}"
-    elif isinstance(node, Comparison):
-        rank = COMPARISON
-        text = inside(node.operands[0], rank + 1)
-        for operator, operand in zip(node.operators, node.operands[1:], strict=True):
-            text += f" {operator} {inside(operand, rank + 1)}"
-    elif isinstance(node, Ternary):
-        rank = TERNARY
-        text = f"{inside(node.condition, rank + 1)} ? {inside(node.then, 0)} : {inside(node.otherwise, rank)}"
-    elif isinstance(node, Assign):
-        rank, text = ASSIGNMENT, f"{inside(node.target, ATOM)} {node.operator} {inside(node.value, 0)}"
-    return f"({text})" if rank < least else text
