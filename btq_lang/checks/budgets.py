@@ -7,8 +7,8 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found, highest, seconds, summed
-from btq_lang.diagnostics.model import Diagnostic, Related
+from btq_lang.checks.demanded import Demanded, Found, found_at, highest, seconds, summed
+from btq_lang.diagnostics.model import Related
 from btq_lang.requirements.composition import Budget, port_seconds
 from btq_lang.requirements.durations import Range, Term, together
 
@@ -39,7 +39,7 @@ def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
             message = f"{node.shown} may take {seconds(allowed.high)}, more than `{most[1]}` allows: {what}{rest}"
         terms = together(allowed.terms)
         related = tuple(Related(term.node.place, _share(term)) for term in terms)
-        yield place, Diagnostic("budget-exceeded", place.span, message, related=related)
+        yield found_at(place, "budget-exceeded", message, related=related)
 
 
 def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
@@ -56,7 +56,7 @@ def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
             continue
         related = (Related(child.place, f"takes at least {seconds(success.low)}"),)
         message = f"{node.shown} can never succeed: {child.shown} takes at least {seconds(success.low)}"
-        yield node.place, Diagnostic("timeout-never-succeeds", node.place.span, message, related=related)
+        yield found_at(node.place, "timeout-never-succeeds", message, related=related)
 
 
 def _held_against(claim: Claim, budget: Budget) -> Range | None:

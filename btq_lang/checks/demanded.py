@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Diagnostic, Place
+from btq_lang.diagnostics.model import Diagnostic, Place, Related
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, Span, Table, Value
@@ -127,6 +128,18 @@ def reported_at(view: View, applied: Applied, claim: Claim) -> Place | None:
     if claim.place.path == view.path and not (applied.arguments and applied.how != "subject"):
         return claim.place
     return next((place for place in (applied.place, claim.place) if place.path == view.path), None)
+
+
+def found_at(
+    place: Place,
+    rule: str,
+    message: str,
+    related: tuple[Related, ...] = (),
+    notes: tuple[str, ...] = (),
+    severity: Severity | None = None,
+) -> Found:
+    """A finding of a rule, with its place."""
+    return place, Diagnostic(rule, place.span, message, related, notes, severity=severity)
 
 
 def highest(claim: Claim) -> tuple[float, str] | None:

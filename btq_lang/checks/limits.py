@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found, highest, lowest, seconds
-from btq_lang.diagnostics.model import Diagnostic, Place, Related
+from btq_lang.checks.demanded import Demanded, Found, found_at, highest, lowest, seconds
+from btq_lang.diagnostics.model import Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.composition import port_count, port_seconds
 from btq_lang.requirements.model import Claim, Compare, Read, Requirement, Table, Target, Value
@@ -30,14 +30,11 @@ def limit_too_small(demanded: Demanded) -> Iterator[Found]:
         most = highest(claim) if VERBS[claim.verb].limits and applied.requirement.is_enforceable else None
         if most is None or most[0] >= 0.001:
             continue
-        yield (
+        yield found_at(
             place,
-            Diagnostic(
-                "limit-too-small",
-                place.span,
-                f"the engine cannot enforce `{most[1]}`: it counts whole milliseconds, and 0 disables the limit; "
-                "write at least 1 ms",
-            ),
+            "limit-too-small",
+            f"the engine cannot enforce `{most[1]}`: it counts whole milliseconds, and 0 disables the limit; "
+            "write at least 1 ms",
         )
 
 
@@ -48,17 +45,14 @@ def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
             continue
         if demanded.budgets.composed(node).waits:
             continue
-        yield (
+        yield found_at(
             place,
-            Diagnostic(
-                "limit-on-synchronous-node",
-                place.span,
-                f"{node.shown} completes within one tick, so the engine cannot stop it after {_typed(claim)}",
-                related=(Related(node.place, "never returns RUNNING"),),
-                notes=(
-                    "`btq verify` can only check it in the logs afterwards; "
-                    "remove `on violation`, or limit a node that returns RUNNING",
-                ),
+            "limit-on-synchronous-node",
+            f"{node.shown} completes within one tick, so the engine cannot stop it after {_typed(claim)}",
+            related=(Related(node.place, "never returns RUNNING"),),
+            notes=(
+                "`btq verify` can only check it in the logs afterwards; "
+                "remove `on violation`, or limit a node that returns RUNNING",
             ),
         )
 
@@ -68,7 +62,7 @@ def dead_bound(demanded: Demanded) -> Iterator[Found]:
     reported instead."""
     for _, claim, node, place in demanded.claims:
         most = highest(claim) if VERBS[claim.verb].limits else None
-        timeout = next(_timeouts(node), None) if most is not None else None
+        timeout = _tightest_timeout(node) if most is not None else None
         if most is None or timeout is None or most[0] <= timeout[1]:
             continue
         above, limit = timeout
@@ -77,7 +71,7 @@ def dead_bound(demanded: Demanded) -> Iterator[Found]:
             continue
         message = f"`{most[1]}` is never reached: a {above.tag} halts {node.shown} after {seconds(limit)}"
         related = (Related(above.place, above.tag),)
-        yield place, Diagnostic("dead-bound", place.span, message, related=related)
+        yield found_at(place, "dead-bound", message, related=related)
 
 
 def outbid_bound(demanded: Demanded) -> Iterator[Found]:
@@ -108,7 +102,7 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
                 if at.path == bound[3].path and at.anchor is bound[3].anchor:
                     at = Place(at.span)  # without its item, which would be hashed for each of many claims
                 related = (Related(at, "tighter bound"),) if tight[3].span != bound[3].span else ()
-                yield bound[3], Diagnostic("dead-bound", bound[3].span, message, related=related)
+                yield found_at(bound[3], "dead-bound", message, related=related)
 
 
 def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
@@ -132,7 +126,7 @@ def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
             continue
         place = Place(Span(clause.start, clause.end), requirement.place.path, requirement.place.anchor)
         related = (Related(claim.place, "bound"),)
-        yield place, Diagnostic("goal-beyond-bound", place.span, message, related=related)
+        yield found_at(place, "goal-beyond-bound", message, related=related)
 
 
 def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
@@ -151,10 +145,10 @@ def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
         allowed = int(most[0])
         if count > allowed:
             message = f"{node.shown} may be tried {count} times, but the requirement allows {allowed}"
-            yield place, Diagnostic("attempts-mismatch", place.span, message, related=related)
+            yield found_at(place, "attempts-mismatch", message, related=related)
         elif count < allowed:
             message = f"{node.shown} is tried at most {count} times and never reaches the {allowed} allowed attempts"
-            yield place, Diagnostic("attempts-mismatch", place.span, message, related=related, severity=Severity.HINT)
+            yield found_at(place, "attempts-mismatch", message, related=related, severity=Severity.HINT)
 
 
 def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
@@ -179,7 +173,7 @@ def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
             other = least[key] if high is not None and most[key][2] is place else most[key]
             related = () if other[2] is place else (Related(other[2], "other bound"),)
             message = f"{node.shown} cannot keep both bounds: at least `{least[key][1]}` and at most `{most[key][1]}`"
-            yield place, Diagnostic("contradicting-bounds", place.span, message, related=related)
+            yield found_at(place, "contradicting-bounds", message, related=related)
 
 
 _Limit = tuple[tuple[object, ...], tuple[float, str] | None, tuple[float, str] | None]
@@ -213,15 +207,10 @@ def _compared(verb: str, condition: Compare) -> Iterator[_Limit]:
             yield (verb, read.signal.name), value, None
 
 
-def _timeouts(node: ResolvedNode) -> Iterator[tuple[ResolvedNode, float]]:
-    """The Timeouts around a node in its tree, the tightest first."""
-    found = []
-    above = node.parent
-    while above is not None:
-        if above.flow == "timeout" and (limit := port_seconds(above)):
-            found.append((above, limit))
-        above = above.parent
-    yield from sorted(found, key=lambda each: each[1])
+def _tightest_timeout(node: ResolvedNode) -> tuple[ResolvedNode, float] | None:
+    """The Timeout around a node in its tree that ends first."""
+    found = [(each, limit) for each in node.ancestors() if each.flow == "timeout" and (limit := port_seconds(each))]
+    return min(found, key=lambda each: each[1], default=None)
 
 
 def _loops(node: ResolvedNode, top: ResolvedNode) -> list[tuple[ResolvedNode, int]]:

@@ -7,8 +7,8 @@ from math import ceil, inf, log
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found, highest
-from btq_lang.diagnostics.model import Diagnostic, Related
+from btq_lang.checks.demanded import Demanded, Found, found_at, highest
+from btq_lang.diagnostics.model import Related
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement
 from btq_lang.workspace.resolved import ResolvedNode
 
@@ -38,7 +38,7 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
         )
         related = tuple(Related(part.place, f"fails in up to {_percent(share)}") for part, share in parts if share)
         notes = ("the failures of several steps add up (the union bound)",) if len(related) > 1 else ()
-        yield place, Diagnostic("odds-beyond-children", place.span, message, related=related, notes=notes)
+        yield found_at(place, "odds-beyond-children", message, related=related, notes=notes)
 
 
 def window_too_small(requirement: Requirement) -> Iterator[Found]:
@@ -59,7 +59,7 @@ def window_too_small(requirement: Requirement) -> Iterator[Found]:
         f"{_percent(confidence)}: {reason}"
     )
     related = (Related(odds.place, "required probability"),)
-    yield window.place, Diagnostic("window-too-small", window.place.span, message, related=related)
+    yield found_at(window.place, "window-too-small", message, related=related)
 
 
 def _ensured(

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found
+from btq_lang.checks.demanded import Demanded, Found, found_at
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.checks.writers import all_entries, isolated, key_of
-from btq_lang.diagnostics.model import Diagnostic, Related
+from btq_lang.diagnostics.model import Related
 from btq_lang.requirements import nodes
 from btq_lang.requirements.reading import signals_in
 from btq_lang.workspace import inputs
@@ -44,20 +44,17 @@ def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
         if shown is None:
             continue
         names = " and ".join(f"`{key}`" for key in keys)
-        yield (
+        yield found_at(
             shown,
-            Diagnostic(
-                "guard-never-renewed",
-                shown.span,
-                f"no node writes {names} while {node.shown} runs, so the result is fixed when the node starts",
-                related=(
-                    *(Related(writer.place, "writes it, but not while the node runs") for writer in writers[:3]),
-                    Related(node.place, "guarded node"),
-                ),
-                notes=(
-                    "write it beside the node: below the same Parallel, or before it in a reactive control node, `R->`",
-                    "ignore this if the robot's program writes it; to check only at the start, write `needs`",
-                ),
+            "guard-never-renewed",
+            f"no node writes {names} while {node.shown} runs, so the result is fixed when the node starts",
+            related=(
+                *(Related(writer.place, "writes it, but not while the node runs") for writer in writers[:3]),
+                Related(node.place, "guarded node"),
+            ),
+            notes=(
+                "write it beside the node: below the same Parallel, or before it in a reactive control node, `R->`",
+                "ignore this if the robot's program writes it; to check only at the start, write `needs`",
             ),
         )
 

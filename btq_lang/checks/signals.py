@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import words
-from btq_lang.checks.demanded import Demanded, Found, Guard
+from btq_lang.checks.demanded import Demanded, Found, Guard, found_at
 from btq_lang.checks.view import View
 from btq_lang.checks.writers import all_entries, declared_port, isolated, written_keys
-from btq_lang.diagnostics.model import Diagnostic, Related
+from btq_lang.diagnostics.model import Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements import reader
 from btq_lang.requirements.nodes import has_nodes, mission
@@ -73,24 +73,19 @@ def _never_written(view: View, here: list[Signal], guards: Sequence[Guard]) -> I
             message = f"`{signal.name}` reads the root's `{key}`, but the tree `{writer.tree}` writes its own `{key}`"
             notes = (f"write `{{@{key}}}`, or pass the entry on to the tree: `{key} = {{{key}}}`",)
             related = (Related(writer.place, "written here"),)
-            yield signal.place, Diagnostic("signal-never-written", signal.place.span, message, related, notes)
+            yield found_at(signal.place, "signal-never-written", message, related, notes)
             continue
         if key in written:
             continue
         likely = view.ask(_near_keys, key)
         if not (likely or signal.name in guarding):
             continue
-        yield (
+        yield found_at(
             signal.place,
-            Diagnostic(
-                "signal-never-written",
-                signal.place.span,
-                f"no port and no script writes `{key}`, the entry of `{signal.name}`",
-                notes=(f"did you mean `{likely[0]}`?",)
-                if likely
-                else ("ignore this if the robot's program writes it",),
-                severity=None if likely else Severity.HINT,
-            ),
+            "signal-never-written",
+            f"no port and no script writes `{key}`, the entry of `{signal.name}`",
+            notes=(f"did you mean `{likely[0]}`?",) if likely else ("ignore this if the robot's program writes it",),
+            severity=None if likely else Severity.HINT,
         )
 
 
@@ -116,10 +111,7 @@ def _of_text(view: View, here: list[Signal]) -> Iterator[Found]:
             message = f"the signal `{signal.name}` is a number, but {port_of_node} writes a string"
             related = (Related(node.place, "written here"),)
             notes = ("the engine converts the string to a number; if that fails, the mission ends",)
-            yield (
-                signal.place,
-                Diagnostic("unit-mismatch", signal.place.span, message, related, notes, severity=Severity.WARNING),
-            )
+            yield found_at(signal.place, "unit-mismatch", message, related, notes, severity=Severity.WARNING)
             break
 
 
@@ -136,13 +128,10 @@ def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[Found]:
     for name, related in reported.items():
         signal = signals[name]
         place = signal.place if signal.place.path == view.path else related[0].place
-        yield (
+        yield found_at(
             place,
-            Diagnostic(
-                "signal-may-be-unset",
-                place.span,
-                f"`{name}` has no initial value: the mission ends if a guard reads it before anything writes it",
-                related=tuple(related[:3]),
-                notes=("add an initial value: `initially …`",),
-            ),
+            "signal-may-be-unset",
+            f"`{name}` has no initial value: the mission ends if a guard reads it before anything writes it",
+            related=tuple(related[:3]),
+            notes=("add an initial value: `initially …`",),
         )

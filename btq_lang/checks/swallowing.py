@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found, highest
-from btq_lang.diagnostics.model import Diagnostic, Related
+from btq_lang.checks.demanded import Demanded, Found, found_at, highest
+from btq_lang.diagnostics.model import Related
 from btq_lang.requirements.composition import port_count
 from btq_lang.requirements.nodes import callers, mission
 from btq_lang.workspace.node_names import wraps
@@ -32,15 +32,12 @@ def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
         if swallower is None:
             continue
         above, reason = swallower
-        yield (
+        yield found_at(
             place,
-            Diagnostic(
-                "swallowed-failure",
-                place.span,
-                f"when {node.shown} fails because of this, {above.shown} {reason}",
-                related=(Related(above.place, "the failure stops here"), Related(node.place, "failing node")),
-                notes=("to stop the mission instead, write `on violation halt`",),
-            ),
+            "swallowed-failure",
+            f"when {node.shown} fails because of this, {above.shown} {reason}",
+            related=(Related(above.place, "the failure stops here"), Related(node.place, "failing node")),
+            notes=("to stop the mission instead, write `on violation halt`",),
         )
 
 
