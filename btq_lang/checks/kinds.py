@@ -82,7 +82,7 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
             continue
         if known is not None and (not name.quoted or known.tag == name.text):
             fixes = _of_today(seen, name, known)
-            notes = (known.why, *_way_in(view, known))
+            notes = (known.why, *(way_in(view) if known.word in _TRANSLATED else ()))
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
         elif (meant := _quoted_alias(seen, name)) is not None and not _is_refused(view, seen, name):
             note = f"a quoted kind is the XML tag, and the engine's tag is {meant.tag}"
@@ -265,11 +265,6 @@ def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ..
     return ()
 
 
-def _way_in(view: View, known: KnownWord) -> tuple[str, ...]:
-    """How to turn a word of version 3 into one of version 4, if an import does."""
-    return way_in(view) if known.word in _TRANSLATED else ()
-
-
 def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:
     """The built-in that a word would mean without its quotes: `"Retry"` is not a tag of the engine."""
     return lookup(name.text) if name.quoted and seen.kind is None else None
@@ -291,7 +286,7 @@ def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]
     fixes = tuple(replace_fix(f"Replace `{name.text}` with `{meant}`", name.span, written(meant)) for meant in likely)
     notes: tuple[str, ...] = ()
     if not likely:
-        category, ports = view.look_up(lookups.custom_node, name.text)
+        category, ports, _ = view.look_up(lookups.custom_node, name.text)
         fixes = (_declared(view, seen, f"{category} {written(name.text)}", ports),)
         shortest = f"a line `{category} {written(name.text)}`"
         if view.is_xml:

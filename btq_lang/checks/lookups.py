@@ -433,21 +433,12 @@ def names_unknown_requirements(workspace: Workspace, viewpoint: str) -> bool:
 
 
 @of_viewpoint
-def custom_node(workspace: Workspace, viewpoint: str, name: str) -> tuple[str, tuple[LikelyPort, ...]]:
-    """The category and the ports that the uses of a custom node suggest."""
-    from btq_lang.workspace.custom_nodes import custom_node as found_in_uses  # few files have an unknown node
+def custom_node(workspace: Workspace, viewpoint: str, name: str) -> tuple[str, tuple[LikelyPort, ...], int]:
+    """The category and the ports that the uses of a custom node suggest, and their number."""
+    from btq_lang.workspace.custom_nodes import custom_node as found_in_uses  # few nodes are unknown or lack a value
 
     found = found_in_uses(workspace, viewpoint, name)
-    return found.category, found.ports
-
-
-@of_viewpoint
-def ports_in_use(workspace: Workspace, viewpoint: str, name: str) -> tuple[int, frozenset[str]]:
-    """How many nodes of an ID there are, and the ports that any of them has a value for."""
-    from btq_lang.workspace.custom_nodes import custom_node as found_in_uses  # few nodes lack a value
-
-    found = found_in_uses(workspace, viewpoint, name)
-    return found.uses, frozenset([port.name for port in found.ports])
+    return found.category, found.ports, found.uses
 
 
 @of_viewpoint

@@ -120,8 +120,9 @@ def unknown_attribute(view: View) -> Iterator[Diagnostic]:
             if is_port_name(key) or key in _OWN:
                 continue
             if not UNDERSCORES.holds(view.target):
-                is_refused = seen.category != "SubTree" and key != "_description"
-                yield from _taken_for_port(view, seen, pair.key) if is_refused else ()
+                if seen.category != "SubTree" and key != "_description":
+                    message = f"{view.target} takes `{key}` for a port, and refuses {seen.shown_kind}"
+                    yield Diagnostic("unknown-attribute", pair.key.span, message, severity=Severity.ERROR)
                 continue
             if key in _KEPT:
                 continue
@@ -141,11 +142,6 @@ def unknown_attribute(view: View) -> Iterator[Diagnostic]:
                 fixes = tuple(replace_fix(f"Replace `{key}` with `{name}`", pair.key.span, name) for name in likely)
                 message = f"the engine silently ignores `{key}`{did_you_mean(likely)}"
                 yield Diagnostic("unknown-attribute", pair.key.span, message, fixes=fixes)
-
-
-def _taken_for_port(view: View, seen: ResolvedNode, key: Word) -> Iterator[Diagnostic]:
-    message = f"{view.target} takes `{key.text}` for a port, and refuses {seen.shown_kind}"
-    yield Diagnostic("unknown-attribute", key.span, message, severity=Severity.ERROR)
 
 
 def duplicate_attribute(view: View) -> Iterator[Diagnostic]:
@@ -302,7 +298,8 @@ def _needed(view: View, seen: ResolvedNode, missing: list[KnownPort]) -> list[Kn
     origin = lookups.origin(view.store, definition[0])
     if origin is None or origin.nodes is not None:
         return missing
-    uses, given = view.look_up(lookups.ports_in_use, name)
+    _, used, uses = view.look_up(lookups.custom_node, name)
+    given = {port.name for port in used}
     return missing if uses == 1 else [port for port in missing if port.name in given]
 
 

@@ -14,7 +14,7 @@ from btq_lang.catalog.nodes import BUILTINS, NodeKind, inspects_children
 from btq_lang.catalog.versions import NO_EXPLICIT_CHILD, ONE_ASYNC_SEQUENCE
 from btq_lang.checks.results import result
 from btq_lang.checks.statuses import GOES_ON, RUNNING, SKIPPED
-from btq_lang.checks.view import View, called
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Node, Word, quote
@@ -122,7 +122,7 @@ def _is_async_sequence(kind: NodeKind) -> bool:
 
 
 def _never_gets_further(view: View, seen: ResolvedNode, first: Node, child: Node, surely: bool) -> Diagnostic:
-    other, this, shown = called(first), called(child), seen.shown_kind
+    other, this, shown = first.shown, child.shown, seen.shown_kind
     message = f"{this} never gets beyond its first tick: {other} restarts and halts it"
     if not surely:
         message = f"if {other} takes longer than one tick, it restarts whenever {this} is RUNNING, and halts it"
@@ -182,7 +182,7 @@ def _not_asked_again(view: View, seen: ResolvedNode, guard: ResolvedNode, branch
     return Diagnostic(
         "condition-without-recheck",
         kind.span,
-        f"while {called(branch)} runs, {called(guard.node)} is not checked again",
+        f"while {branch.shown} runs, {guard.shown} is not checked again",
         related=(
             Related(Place(guard.node.head.span), "checked once, and then not again until the Fallback has completed"),
             Related(Place(branch.head.span), "not interrupted"),

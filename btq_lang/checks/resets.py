@@ -12,7 +12,7 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks.ports import adding_fix
 from btq_lang.checks.results import result
 from btq_lang.checks.statuses import SUCCESS
-from btq_lang.checks.view import View, called
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.syntax.tree import Node
 from btq_lang.workspace.node_names import wraps
@@ -56,7 +56,7 @@ def last_success_lost(view: View) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "last-success-lost",
             seen.node.head.span,
-            f"{seen.shown} fails after its last child, {called(last)}, even if that succeeds",
+            f"{seen.shown} fails after its last child, {last.shown}, even if that succeeds",
             related=(Related(Place(last.head.span), "its success is lost"),),
             notes=(f"it succeeds with its last child only with `{port.name}`",),
             fixes=(replace_fix(title, value.span, "true"),) if value else adding_fix(view, seen.node, title, text),

@@ -11,7 +11,6 @@ from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Flow
-    from btq_lang.syntax.tree import Node
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
@@ -60,7 +59,9 @@ class SortedNodes:
     def __init__(self, nodes: tuple[ResolvedNode, ...]) -> None:
         self.all: Final = nodes
         self.given: Final = [seen for seen in nodes if seen.node.attributes]
-        self.marked: Final = [seen for seen in self.given if _is_marked(seen.node)]
+        self.marked: Final = [
+            seen for seen in self.given if any(not pair.key.raw[:1].isalpha() for pair in seen.node.attributes)
+        ]
         self.demanding: Final = [seen for seen in nodes if seen.node.clauses]
         self.named: Final = [seen for seen in nodes if seen.name is not None]
         self.categorized: Final = [seen for seen in nodes if seen.node.category is not None]
@@ -82,10 +83,6 @@ class SortedNodes:
     def of_flow(self, *flows: Flow) -> list[ResolvedNode]:
         """The nodes of these flows, flow by flow."""
         return [seen for flow in flows for seen in self.by_flow.get(flow, ())]
-
-
-def _is_marked(node: Node) -> bool:
-    return any(not pair.key.raw[:1].isalpha() for pair in node.attributes)
 
 
 NO_NODES: Final = SortedNodes(())

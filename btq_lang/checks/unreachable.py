@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks.results import UNKNOWN, result, results
 from btq_lang.checks.statuses import FAILURE, GOES_ON, SKIPPED, SUCCESS
-from btq_lang.checks.view import View, called
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, Tag
 from btq_lang.syntax.tree import Node, Verbatim
 from btq_lang.util.text import Span
@@ -102,4 +102,4 @@ def _unreachable(child: Node | Verbatim, reason: str, culprit: Node | None) -> D
 
 
 def _shown(child: Node | Verbatim) -> str:
-    return called(child) if isinstance(child, Node) else "this element"
+    return child.shown if isinstance(child, Node) else "this element"

@@ -392,12 +392,6 @@ def misspelt_clause(node: Node) -> str | None:
     return meant_clause(kind.raw)
 
 
-def called(node: Node) -> str:
-    """A node as a message names it among others: its kind and its instance name."""
-    name = node.name
-    return f"`{node.head.text}`" if name is None or name.text == node.head.text else f"`{node.head.text} {name.text}`"
-
-
 def _torn_places(store: Store[Workspace], viewpoint: str, facts: Facts) -> list[int]:
     """Where in an item something begins that could not be read."""
     entry = inputs.entry(store, viewpoint, facts)

@@ -7,13 +7,12 @@ that is in both missions is another one, or if it has changed sides with one of 
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal
 
 from btq_lang.diff.changes import Change, Detail, details
 from btq_lang.diff.contents import SUBTREE, TREE, VERBATIM, Part, Values
-from btq_lang.diff.matching import Forest, renamed_aspect
+from btq_lang.diff.matching import Forest, common, renamed_aspect
 
 
 def tree_changes(old: Forest, new: Forest, renamed: Mapping[tuple[str, str], str]) -> Iterator[Change]:
@@ -93,7 +92,8 @@ def _moved(old: Forest, new: Forest) -> frozenset[int]:
         else:
             groups.setdefault(after, []).append(other)
     for group in groups.values():
-        moved.update(set(group) - set(_increasing(group)))
+        kept = {group[at] for at, _ in common(group, sorted(group))}  # as many as possible have not changed sides
+        moved.update(set(group) - kept)
     return frozenset(moved)
 
 
@@ -104,27 +104,6 @@ def _nearest(forest: Forest) -> list[int]:
         if parent >= 0:
             nearest[index] = parent if forest.match[parent] >= 0 else nearest[parent]
     return nearest
-
-
-def _increasing(numbers: list[int]) -> list[int]:
-    """A longest increasing subsequence: as many as possible that have not changed sides."""
-    ends: list[int] = []  # the smallest end of a subsequence of each length
-    places: list[int] = []
-    before: list[int] = []
-    for at, number in enumerate(numbers):
-        length = bisect_left(ends, number)
-        if length == len(ends):
-            ends.append(number)
-            places.append(at)
-        else:
-            ends[length], places[length] = number, at
-        before.append(places[length - 1] if length else -1)
-    found = []
-    at = places[-1] if places else -1
-    while at >= 0:
-        found.append(numbers[at])
-        at = before[at]
-    return found[::-1]
 
 
 # ---- changed ----

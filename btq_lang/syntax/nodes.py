@@ -97,6 +97,11 @@ class Node:
         """Its kind and its instance name."""
         return self.head.text if self.name is None else f"{self.head.text} {self.name.text}"
 
+    @property
+    def shown(self) -> str:
+        """As a message names it among others: its kind and its instance name, if that is another one."""
+        return f"`{self.head.text}`" if self.name is None or self.name.text == self.head.text else f"`{self.called}`"
+
     def attribute(self, key: str) -> Word | None:
         """The value of the first attribute with this key."""
         for pair in self.attributes:

@@ -37,7 +37,7 @@ from __future__ import annotations
 import json
 from typing import TypeAlias
 
-from btq_lang.trace.overview import Overview, QualityRow, RequirementRow
+from btq_lang.trace.overview import Overview, QualityRow, RequirementRow, Total
 from btq_lang.util.record import fields_of
 from btq_lang.util.version import __version__
 
@@ -70,18 +70,7 @@ def render(overview: Overview) -> str:
             {"name": each.name, "at": _fields(each.at), "nodes": list(each.nodes), "without_quality": each.is_bare}
             for each in overview.trees
         ],
-        "totals": [
-            {
-                "characteristic": each.id or None,
-                "name": each.name,
-                "concerns": each.concerns,
-                "requirements": each.requirements,
-                "enforced": each.enforced,
-                "monitored": each.monitored,
-                "reviewed": each.reviewed,
-            }
-            for each in overview.totals
-        ],
+        "totals": [_total(each) for each in overview.totals],
         "gaps": {
             "hard_requirements_not_enforced": [each.key for each in overview.unenforced],
             "qualities_without_requirements": [each.key for each in overview.unmeasured],
@@ -123,6 +112,11 @@ def _requirement(each: RequirementRow, has_evidence: bool) -> Json:
 
 def _quality(each: QualityRow) -> Json:
     return {**_fields(each), "at": _fields(each.at)}
+
+
+def _total(each: Total) -> Json:
+    fields = _fields(each)
+    return {"characteristic": fields.pop("id") or None, **fields}
 
 
 def _fields(record: object) -> dict[str, Json]:

@@ -160,8 +160,7 @@ class ResolvedNode:
     @property
     def shown(self) -> str:
         """As a message names it among others: its kind and its instance name, if it has one."""
-        head = self.node.head.text
-        return f"`{head}`" if self.name is None or self.name.text == head else f"`{head} {self.name.text}`"
+        return self.node.shown
 
     # ---- what it means ----
 
