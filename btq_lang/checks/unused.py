@@ -9,7 +9,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Tag
-from btq_lang.syntax.tree import Context, Signal
+from btq_lang.syntax.tree import Context, Signal, Word
 from btq_lang.util.spelling import near
 
 if TYPE_CHECKING:
@@ -19,32 +19,23 @@ if TYPE_CHECKING:
 
 def unused_signal(view: View) -> Iterator[Diagnostic]:
     """A signal that no condition, no bound and no `uses` names."""
-    if isinstance(view.item, Signal) and _is_unused(view, Kind.SIGNAL):
-        yield from _unused(view.item, "unused-signal", "no clause uses the signal")
+    if isinstance(view.item, Signal):
+        yield from _unused(view, Kind.SIGNAL, view.item.name, "unused-signal", "no clause uses the signal")
 
 
 def unused_context(view: View) -> Iterator[Diagnostic]:
     """A context that no condition names."""
-    if isinstance(view.item, Context) and _is_unused(view, Kind.CONTEXT):
-        yield from _unused(view.item, "unused-context", "no condition uses the context")
+    if isinstance(view.item, Context):
+        yield from _unused(view, Kind.CONTEXT, view.item.name, "unused-context", "no condition uses the context")
 
 
-def _unused(item: Signal | Context, rule: str, message: str) -> Iterator[Diagnostic]:
-    if item.name is not None:
-        yield Diagnostic(rule, item.name.span, f"{message} `{item.name.text}`", tags=(Tag.UNNECESSARY,))
-
-
-def _is_unused(view: View, kind: Kind) -> bool:
-    if not view.has_trees or view.is_used_elsewhere:
-        return False  # a file of signals, or a library: their users may be anywhere
-    for symbol in view.facts.summary.symbols:
-        return (
-            view.defines_here(kind, symbol.name)
-            and not view.look_up(lookups.is_asked_for, symbol.name)
-            and not view.ask(_is_meant, symbol.name)
-            and view.is_read  # else its user may be on a line that could not be read
-        )
-    return False
+def _unused(view: View, kind: Kind, name: Word | None, rule: str, message: str) -> Iterator[Diagnostic]:
+    if name is None or not view.has_trees or view.is_used_elsewhere:
+        return  # a file of signals, or a library: their users may be anywhere
+    if not view.defines_here(kind, name.text) or view.look_up(lookups.is_asked_for, name.text):
+        return
+    if not view.ask(_is_meant, name.text) and view.is_read:  # else its user may be on a line that could not be read
+        yield Diagnostic(rule, name.span, f"{message} `{name.text}`", tags=(Tag.UNNECESSARY,))
 
 
 def _is_meant(store: Store[Workspace], viewpoint: str, name: str) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
-INTERVAL = 0.3
+INTERVAL = 0.3  # seconds between looks; more if looking itself takes long
 _REST, _LOOKS = 0.05, 20  # seconds between two looks at files that are changing, and the maximum number of looks
 _SHARE = 10  # looking takes at most one part in this many of the time
 
@@ -20,7 +20,6 @@ def watch(
     stamp: Callable[[str], Hashable],
     wait: Callable[[float], object],
     now: Callable[[], float],
-    interval: float = INTERVAL,
 ) -> Iterator[tuple[str, ...]]:
     """The paths that were added, removed or changed since the last time, sorted; for ever.
 
@@ -29,39 +28,36 @@ def watch(
         stamp: returns a value that changes when a file does; None for a file that does not exist.
         wait: waits for so many seconds; an exception from it (KeyboardInterrupt) ends the watching.
         now: a clock in seconds that only goes forward.
-        interval: seconds between looks; more if looking itself takes long.
     """
+
+    def stamps() -> dict[str, Hashable]:
+        return {path: found for path in files() if (found := stamp(path)) is not None}
+
     # Takes the first stamps now, not at the first iteration, so that changes from now on are reported.
-    return _changes(_stamps(files, stamp), files, stamp, wait, now, interval)
+    return _changes(stamps(), stamps, wait, now)
 
 
 def _changes(
     before: dict[str, Hashable],
-    files: Callable[[], Iterable[str]],
-    stamp: Callable[[str], Hashable],
+    stamps: Callable[[], dict[str, Hashable]],
     wait: Callable[[float], object],
     now: Callable[[], float],
-    interval: float,
 ) -> Iterator[tuple[str, ...]]:
-    pause = interval
+    pause = INTERVAL
     while True:
         wait(pause)
         begun = now()
-        after = _stamps(files, stamp)
-        pause = max(interval, (now() - begun) * _SHARE)
+        after = stamps()
+        pause = max(INTERVAL, (now() - begun) * _SHARE)
         if after == before:
             continue
         for _ in range(_LOOKS):
             seen = after
             wait(_REST)
-            after = _stamps(files, stamp)
+            after = stamps()
             if after == seen:
                 break
         changed = tuple(sorted(path for path in before.keys() | after.keys() if before.get(path) != after.get(path)))
         before = after
         if changed:  # else the files are as they were
             yield changed
-
-
-def _stamps(files: Callable[[], Iterable[str]], stamp: Callable[[str], Hashable]) -> dict[str, Hashable]:
-    return {path: found for path in files() if (found := stamp(path)) is not None}

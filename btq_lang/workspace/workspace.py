@@ -385,6 +385,8 @@ class Scope:
     Attributes:
         paths: of those files, included ones first.
         node_paths: of files whose models count, and nothing else in them.
+        complete: whether all includes were found and understood, and no string may have swallowed the rest of a file,
+            so that a name that is not here does not exist.
     """
 
     def __init__(
@@ -395,7 +397,7 @@ class Scope:
         self.node_paths = node_paths
         self._files = [workspace.files[path] for path in paths]
         self._of_models = [*self._files, *(workspace.files[path] for path in node_paths)]
-        self._complete = (
+        self.complete = (
             is_known
             and all(
                 (target := workspace.included_by(file.path, include)) is not None
@@ -408,12 +410,6 @@ class Scope:
         self._found: dict[Name, tuple[Definition, ...]] = {}
         self._names: dict[Kind, tuple[str, ...]] = {}
         self._repeated: frozenset[Name] | None = None
-
-    @property
-    def complete(self) -> bool:
-        """Whether all includes were found and understood, and no string may have swallowed the rest of a file, so that
-        a name that is not here does not exist."""
-        return self._complete
 
     def defines(self, kind: Kind, name: str) -> bool:
         """Whether a name is defined."""
