@@ -82,7 +82,8 @@ class Publisher:
             if kind == "S":
                 return [head, b"".join(struct.pack("<HB", *each) for each in self._published.items())]
             if kind == "B":
-                found = {name: self.boards[name] for name in parts[1].decode().split(";") if name in self.boards}
+                names = [*parts[1].decode().split(";"), "ROOT"]  # the root's, if there is one, is never asked for
+                found = {name: self.boards[name] for name in names if name in self.boards}
                 return [head, msgpack.packb(found or None)]
             if kind == "r":
                 self._began = self.clock() if parts[1] == b"start" else None

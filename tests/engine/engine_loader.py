@@ -11,7 +11,8 @@ import json
 import os
 import shutil
 import subprocess
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
@@ -88,11 +89,45 @@ class Answer:
 
 
 @dataclass(frozen=True)
+class Published:
+    """A tree that is published while it runs: it waits before each run, and at the end."""
+
+    process: subprocess.Popen[str]
+
+    def go_on(self, line: str = "") -> None:
+        """Let it begin the next run; after the last one, let it end."""
+        assert self.process.stdin is not None
+        self.process.stdin.write(f"{line}\n")
+
+    def answer(self) -> Answer:
+        """What happened, when it has ended."""
+        return _answer(_told(self.process.communicate()[0])[1])
+
+
+@dataclass(frozen=True)
 class Engine:
     """An installed BehaviorTree.CPP, as a program that runs jobs."""
 
     program: Path
     version: str
+    publishes: bool  # whether it was built with its Groot2Publisher
+
+    @contextmanager
+    def publishing(self, source: str | Path, port: int, **what: Any) -> Iterator[Published]:
+        """A tree that is published while it runs.
+
+        Args:
+            what: as of `job`.
+        """
+        line = json.dumps(job(source, **what) | {"publish": port})
+        pipe = subprocess.PIPE
+        with subprocess.Popen([self.program], stdin=pipe, stdout=pipe, text=True, bufsize=1) as process:
+            published = Published(process)
+            try:
+                published.go_on(line)
+                yield published
+            finally:
+                process.kill()
 
     def run(self, jobs: Iterable[Mapping[str, object]]) -> list[Answer]:
         """The answers to some jobs, see `job`, in their order."""
@@ -125,6 +160,7 @@ def job(
     halt: bool = False,
     every_tree: bool = False,
     seconds: int = 10,
+    runs: int = 1,
 ) -> dict[str, object]:
     """One file to load, as the loader reads it.
 
@@ -141,12 +177,13 @@ def job(
         halt: the tree is halted after the last tick.
         every_tree: every tree is instantiated, and not only the main one.
         seconds: after which the engine is said to never return.
+        runs: how often the tree is run.
     """
     asked: dict[str, object] = {"file": str(source)} if isinstance(source, Path) else {"text": source}
     asked["stubs"] = list(stubs_of(source) if stubs is None else stubs)
     asked["parts"] = {name: _activations(said) for name, said in (parts or {}).items()}
     asked |= {"blackboard": dict(blackboard or {}), "ticks": ticks, "tick_ms": tick_ms, "halt": halt}
-    return asked | {"every_tree": every_tree, "seconds": seconds}
+    return asked | {"every_tree": every_tree, "seconds": seconds, "runs": runs}
 
 
 def stubs_of(source: str | Path) -> list[dict[str, object]]:
@@ -194,7 +231,8 @@ def build_engine(prefix: str | None, folder: Path) -> Engine:
             raise NoEngine(_why_not(run.stderr))
         subprocess.run(["cmake", "--build", str(build)], check=True, capture_output=True, text=True)
     hello = subprocess.run([program], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=True)
-    return Engine(program, _told(hello.stdout)[0]["engine"])
+    about = _told(hello.stdout)[0]
+    return Engine(program, about["engine"], about["publishes"])
 
 
 def _why_not(complaint: str) -> str:

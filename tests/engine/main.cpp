@@ -5,6 +5,9 @@
 // Nothing here catches a crash of the engine: then answers are missing, and the caller knows which.
 #include <behaviortree_cpp/bt_factory.h>
 #include <behaviortree_cpp/contrib/json.hpp>
+#ifdef HAS_PUBLISHER
+#include <behaviortree_cpp/loggers/groot2_publisher.h>
+#endif
 
 #include <unistd.h>
 
@@ -20,6 +23,12 @@ using BT::NodeStatus;
 
 namespace
 {
+#ifdef HAS_PUBLISHER
+constexpr bool PUBLISHES = true;
+#else
+constexpr bool PUBLISHES = false;
+#endif
+
 NodeStatus statusNamed(const std::string& name)
 {
   return BT::convertFromString<NodeStatus>(name);
@@ -276,17 +285,28 @@ void tick(BT::Tree& tree, const Json& job, Json& answer)
   };
   std::vector<BT::TreeNode::StatusChangeSubscriber> subscribers;
   tree.applyVisitor([&](BT::TreeNode* node) { subscribers.push_back(node->subscribeToStatusChange(note)); });
+#ifdef HAS_PUBLISHER
+  std::unique_ptr<BT::Groot2Publisher> publisher;
+  if(job.contains("publish"))
+    publisher = std::make_unique<BT::Groot2Publisher>(tree, job.at("publish").get<unsigned>());
+#endif
+  // A published tree waits for a line before each run, and at the end, until somebody has seen what happened.
+  const auto wait = [&](std::string line = "") { return !job.contains("publish") || std::getline(std::cin, line); };
 
   NodeStatus status = NodeStatus::IDLE;
   const int limit = job.at("ticks");
-  while(ticks < limit)
+  for(int run = 0; run < job.value("runs", 1) && wait(); run++)
   {
-    ticks++;
-    status = tree.tickExactlyOnce();
-    if(status != NodeStatus::RUNNING)
-      break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(job.value("tick_ms", 0)));
+    while(ticks < limit)
+    {
+      ticks++;
+      status = tree.tickExactlyOnce();
+      if(status != NodeStatus::RUNNING)
+        break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(job.value("tick_ms", 0)));
+    }
   }
+  wait();
   if(job.value("halt", false))
   {
     tree.haltTree();
@@ -348,7 +368,7 @@ Json answerTo(const Json& job)
 
 int main()
 {
-  std::cout << '\x1e' << Json{ { "engine", BT::LibraryVersionString() } }.dump() << std::endl;
+  std::cout << '\x1e' << Json{ { "engine", BT::LibraryVersionString() }, { "publishes", PUBLISHES } }.dump() << std::endl;
   for(std::string line; std::getline(std::cin, line);)
   {
     const Json job = Json::parse(line);
