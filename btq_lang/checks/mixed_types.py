@@ -7,6 +7,7 @@ accepts texts or anything.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -210,6 +211,8 @@ def _severity(first: str, later: str) -> Severity | None:
     """How certain it is that two types differ: a type of the user's program may be an alias for the other."""
     if is_known_type(first) and is_known_type(later):
         return Severity.ERROR
+    if any(_VECTOR(one) and _MESSAGE(other) for one, other in ((first, later), (later, first))):
+        return Severity.WARNING  # a message of ROS is a class of its own
     if "<" in first + later or first.rpartition("::")[2].casefold() == later.rpartition("::")[2].casefold():
         return None
     return Severity.WARNING
@@ -234,4 +237,6 @@ def _port_type(view: View, seen: ResolvedNode, port: str) -> str:
     return plain_type(type_) if type_ not in _ANYTHING else ""
 
 
+_VECTOR: Final = re.compile(r"std::vector<.*>").fullmatch
+_MESSAGE: Final = re.compile(r"\w+::msg::\w+").fullmatch
 _ANYTHING: Final = frozenset(("", "BT::Any", "BT::AnyTypeAllowed", "Any", "AnyTypeAllowed", "any", "auto"))

@@ -12,7 +12,10 @@ from btq_lang.catalog.engine_changes import ENGINE_CHANGES
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
+from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.versions import ENTRIES_OF_SUBTREE, LAST_TREE_COUNTS, at_least, last_of
+from btq_lang.checks import lookups
+from btq_lang.checks.mixed_types import entry_with_two_types
 from btq_lang.checks.moved_nodes import changed
 from btq_lang.checks.results import result
 from btq_lang.checks.statuses import RUNNING, SKIPPED
@@ -62,9 +65,18 @@ def new_in_target(view: View, checks: tuple[Check, ...], found: list[Diagnostic]
     workspace = view.workspace.moved
     moved = View(workspace.store, view.viewpoint, view.facts)
     known = {(each.rule, each.span) for each in found if is_severe(each)}
-    for each in (each for check in checks for each in check(moved)):
+    of_engine = [each for check in checks for each in check(moved)]
+    for each in of_engine:
         if (each.rule, each.span) not in known and is_severe(each):
             yield of_target(each, workspace.project.target)
+    target = view.project.moves_to
+    if target is None or target not in FILES or view.look_up(lookups.distribution) is None:
+        return
+    known.update((each.rule, each.span) for each in of_engine)
+    moved = View(view.workspace.moved_nodes.store, view.viewpoint, view.facts)
+    for each in entry_with_two_types(moved):  # all else that changes is in a table
+        if (each.rule, each.span) not in known:
+            yield of_target(each, target.capitalize())
 
 
 def is_severe(found: Diagnostic) -> bool:

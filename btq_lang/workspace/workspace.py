@@ -18,7 +18,7 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nav2 import ENGINES, ports_of
+from btq_lang.catalog.nav2 import ENGINES, FILES, ports_of
 from btq_lang.syntax.tree import Entry, Include, Model, Qualities, Root, Word
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.config import Project, include_candidates
@@ -76,6 +76,20 @@ class Workspace:
         engines, written_for = (ENGINES.get(target, target),), self.project.engines
         project = replace(self.project, engines=engines, moves_to=None, written_for=written_for)
         return Workspace(self.files, project, self.factory)
+
+    @cached_property
+    def moved_nodes(self) -> Workspace:
+        """The same, with the nodes of Nav2 in the distribution that the project moves to."""
+        target = FILES.get(self.project.moves_to or "")
+
+        def those_of_target(paths: tuple[str, ...]) -> tuple[str, ...]:
+            return tuple(target if target is not None and path in FILES.values() else path for path in paths)
+
+        moved, factory = self.moved, self.factory
+        project = replace(moved.project, node_files=those_of_target(moved.project.node_files))
+        if factory is not None:
+            factory = replace(factory, node_files=those_of_target(factory.node_files))
+        return Workspace(self.files, project, factory)
 
     def let_go(self, paths: Iterable[str]) -> None:
         """Release all but text and names of some files; a caller that holds a definition in one must not look it up

@@ -128,6 +128,15 @@ def test_each_change_of_the_engine_is_on_the_page_of_one_step() -> None:
     assert named == [*versions.CHANGES]
 
 
+def test_each_change_of_nav2_is_on_the_page_of_its_step() -> None:
+    pages = moving_pages()
+    for change in CHANGES:
+        before = DISTRIBUTIONS[DISTRIBUTIONS.index(change.since) - 1]
+        nodes = "any node" if change.nodes == (ANY,) else ", ".join(f"`{node}`" for node in change.nodes)
+        on = [path for path, page in pages.items() if f"* {nodes}: {change.what}" in page]
+        assert on == [f"moving/{before}-{change.since}.md"], change
+
+
 def test_what_a_tree_of_humble_meets_on_the_way_to_lyrical() -> None:
     text = tree(
         "IsPathValid (path = {way})",
@@ -174,6 +183,35 @@ def test_on_the_way_back_only_what_is_not_there_counts() -> None:
     assert moved(tree("RoundRobin (wrap_around = true)", "    AlwaysSuccess"), "lyrical", "kilted") == [
         "3:21 error target-breaks «wrap_around» `RoundRobin` has no port `wrap_around` in Kilted"
     ]
+
+
+def test_an_entry_clashes_with_a_type_that_changes() -> None:
+    """A time to wait is a double from Jazzy on, and goals are a message from Kilted on: the engine refuses an entry
+    that a node of one's own takes for another type."""
+    own = (
+        "TreeNodesModel\n    Action Own\n"
+        '        input goals : "std::vector<geometry_msgs::msg::PoseStamped>"\n        output time : int\n\n'
+    )
+    nodes = (
+        "Own (goals = {goals} time = {time})",
+        "Wait (wait_duration = {time})",
+        "NavigateThroughPoses (goals = {goals})",
+    )
+    text = own + tree(*nodes)
+
+    def clashes(origin: str, target: str) -> list[str]:
+        return [line for line in moved(text, origin, target) if "has the type" in line]
+
+    assert clashes("iron", "jazzy") == [
+        "9:31 error target-breaks «{time}» `time` of `Own` creates `{time}` as int, but `wait_duration` of `Wait` has "
+        "the type double"
+    ]
+    assert clashes("jazzy", "kilted") == [
+        "10:39 warning target-differs «{goals}» `goals` of `Own` creates `{goals}` as "
+        "std::vector<geometry_msgs::msg::PoseStamped>, but `goals` of `NavigateThroughPoses` has the type "
+        "nav_msgs::msg::Goals"
+    ]
+    assert clashes("kilted", "lyrical") == clashes("jazzy", "jazzy") == []
 
 
 def test_an_include_of_humble_is_looked_for_elsewhere() -> None:
