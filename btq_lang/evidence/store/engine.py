@@ -31,7 +31,11 @@ def write_parquet(folder: str, common: Mapping[str, str]) -> None:
     cursor = _writer(os.getpid()).cursor()
     try:
         for table in ROWS:
-            cursor.execute(_copy(folder, table, common))
+            try:
+                cursor.execute(_copy(folder, table, common))
+            except duckdb.OutOfMemoryException:  # kilobytes of text in each row
+                cursor.execute("RESET memory_limit")
+                cursor.execute(_copy(folder, table, common))
     except duckdb.Error as error:
         raise NoEngine(" ".join(str(error).split())) from error
     finally:
@@ -93,8 +97,11 @@ def quoted(text: str) -> str:
 
 @lru_cache(1)
 def _writer(process: int) -> Any:
-    """A connection of this process: one that was made before a fork is not for both."""
-    return imported().connect(config={"threads": 1})
+    """A connection of this process: one that was made before a fork is not for both.
+
+    Its limit is what lets go of text that has been read; otherwise all of it stays.
+    """
+    return imported().connect(config={"threads": 1, "memory_limit": _MEMORY, "temp_directory": ""})
 
 
 def _copy(folder: str, table: str, common: Mapping[str, str]) -> str:
@@ -116,8 +123,12 @@ def _rows(folder: str, table: str) -> str:
     """The rows of a table, as they are in its text."""
     types = ", ".join(f"{quoted(name)}: {quoted(kind)}" for name, kind in ROWS[table].items())
     form = "header = false, auto_detect = false, delim = ',', quote = '\"', escape = '\"', nullstr = ''"
+    form += f", buffer_size = {_BUFFER}"
     return f"read_csv({quoted(file_of(folder, table))}, columns = {{{types}}}, {form}, parallel = false) AS {table}"
 
 
 SETS: Final = "[0-9a-f]*"
-_OPTIONS: Final = "FORMAT parquet, COMPRESSION zstd, PARQUET_VERSION v2"
+# The rows of a group are in memory together: fewer than DuckDB's 122 880 take less, and a few bytes more on the disk.
+_OPTIONS: Final = "FORMAT parquet, COMPRESSION zstd, PARQUET_VERSION v2, ROW_GROUP_SIZE 20480"
+_BUFFER: Final = 4_000_000  # bytes of text that are read at once
+_MEMORY: Final = "64MB"
