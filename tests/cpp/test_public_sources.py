@@ -5,12 +5,10 @@ Truth is a plain search for what is registered with a literal name; names that t
 
 from __future__ import annotations
 
-import os
 import re
-from pathlib import Path
-from subprocess import run
 
 import pytest
+from public_clones import texts_of
 
 from btq_lang.cpp.nodes import read_nodes
 
@@ -40,22 +38,9 @@ COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 def test_all_that_is_registered_is_seen(
     repository: str, commit: str, folders: tuple[str, ...], others: set[str], counts: tuple[int, int]
 ) -> None:
-    texts = sources(repository, commit, folders)
+    texts = texts_of(repository, commit, (".cpp", ".hpp", ".h", ".cc"), folders)
     found = read_nodes(texts)
     named = {name for text in texts.values() for name in REGISTERED.findall(COMMENT.sub("", text))}
     assert {node.name for node in found.nodes} == named | others
     assert others.isdisjoint(named)
     assert (len(found.nodes), sum(len(node.ports) for node in found.nodes)) == counts
-
-
-def sources(repository: str, commit: str, folders: tuple[str, ...]) -> dict[str, str]:
-    """The C++ of a commit, by path, in the clone below the folder that BTQ_CLONES names."""
-    clone = Path(os.environ.get("BTQ_CLONES", "")) / repository / "repo"
-    if not os.environ.get("BTQ_CLONES") or not clone.is_dir():
-        pytest.skip(f"no clone of {repository}: set BTQ_CLONES to a folder with one in `{repository}/repo`")
-
-    def git(*words: str) -> str:
-        return run(["git", "-C", str(clone), *words], capture_output=True, check=True).stdout.decode("utf-8", "replace")
-
-    names = git("ls-tree", "-r", "--name-only", commit, *folders).splitlines()
-    return {each: git("show", f"{commit}:{each}") for each in names if each.endswith((".cpp", ".hpp", ".h", ".cc"))}
