@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from chromium import CHROMIUM
 from installed import ARTIFACTS, FAILED, STORE, missing, there
 from workbench import FLAGS
 
@@ -58,7 +59,7 @@ def browser(driver: None) -> Iterator[Browser]:
     """Chromium without a window."""
     from playwright.sync_api import sync_playwright
 
-    chromium = there(shutil.which("chromium"), "Chromium", "from_apt")
+    chromium = there(CHROMIUM, "Chromium", "from_apt")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=str(chromium), args=FLAGS)
         yield browser

@@ -47,9 +47,11 @@ attempt() { # name, command …: what it prints is shown only if it fails
 
 from_apt() {
     set -e
-    command -v chromium >/dev/null && command -v nvim >/dev/null && return
+    command -v chromium-headless-shell >/dev/null && command -v nvim >/dev/null && return
     as_root apt-get update -qq || true # what is there of the lists may do
-    as_root apt-get install -y -qq --no-install-recommends chromium neovim fonts-dejavu-core
+    local browser=chromium-headless-shell # without what a window needs
+    apt-cache show $browser >/dev/null 2>&1 || browser=chromium
+    as_root apt-get install -y -qq --no-install-recommends $browser neovim fonts-dejavu-core
 }
 
 more_from_apt() {

@@ -3,6 +3,7 @@ ones as well, which it then types over, looks where Enter has put the cursor, an
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 LEVEL = 4  # blanks that Tab and Backspace write and delete where a line begins
@@ -12,14 +13,14 @@ def type_text(text: str, press: Callable[[str], None], blanks: Callable[[], int]
     """Type a text.
 
     Args:
-        press: gives a key to the editor: a character, Enter, Tab or Backspace.
+        press: gives a key to the editor: Enter, Tab, Backspace, or what its character is; a word's at once.
         blanks: looks how many blanks the line of the cursor begins with.
         think: is what goes before Enter, Tab, a blank, and a quote that closes.
     """
     lines = text.split("\n")
     for number, line in enumerate(lines):
         body = line.lstrip(" ")
-        keys = list(body)
+        keys = re.findall(r"\w+|.", body)
         if number:
             think()
             press("Enter")

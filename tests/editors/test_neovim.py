@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from chromium import CHROMIUM
 from forked_server import relay
 from installed import ROOT, there
 
@@ -517,7 +517,7 @@ end
 
 def test_how_a_mission_looks(neovim: Neovim, request: pytest.FixtureRequest, artifacts: Path, tmp_path: Path) -> None:
     """Neovim's own page of the buffer, every form of the language in it, in both themes; screenshots are kept."""
-    chromium = there(shutil.which("chromium"), "Chromium", "from_apt")
+    chromium = there(CHROMIUM, "Chromium", "from_apt")
     text = (ROOT / "tests" / "every_form.btq").read_text(encoding="utf-8")
     neovim.run({"every_form.btq": text}, LOOK, lsp=False)
     for theme in ("light", "dark"):

@@ -11,6 +11,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 
 import pytest
+from chromium import CHROMIUM
 from installed import ROOT, STORE, has_failed, there
 from workbench import Windows, Workbench, workbench
 
@@ -37,7 +38,7 @@ ENVIRONMENT = {
 def windows(
     vsix: Path, node: Path, driver: None, artifacts: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Windows]:
-    there(shutil.which("chromium"), "Chromium", "from_apt")
+    there(CHROMIUM, "Chromium", "from_apt")
     there(STORE / "vscode/node_modules/code-server/out/node/entry.js", "VS Code", "vscode")
 
     def window() -> AbstractContextManager[Workbench]:
