@@ -249,8 +249,6 @@ def test_a_bad_reply_is_told(damage: Callable[[list[bytes]], list[bytes]], told:
         ("S", b"\1\0\1", "expected 3 bytes for each of 3 nodes, found 3 in all"),
         ("r", b"soon", "expected the time at which the recording began, found b'soon'"),
         ("t", b"\0" * 10, "expected 9 bytes for each transition, found 10 in all"),
-        ("B", b"\xc1", "the blackboard is not MessagePack"),
-        ("B", b"\1", "expected a map of blackboards"),
     ],
 )
 def test_bad_content_is_told(kind: str, content: bytes, told: str) -> None:
@@ -265,6 +263,35 @@ def test_bad_content_is_told(kind: str, content: bytes, told: str) -> None:
     line.robot.answer = damaged  # type: ignore[method-assign,assignment]
     events = [*line.step(), *line.step("1R 2R")]
     assert [each.text for each in events if isinstance(each, Told)] == [f"{told}; waiting for one at tcp://robot:1667"]
+
+
+@pytest.mark.parametrize(
+    ("reply_of", "told"),
+    [
+        (lambda head: [head, b"\xc1"], "the blackboard is not MessagePack"),
+        (lambda head: [head, b"\1"], "expected a map of blackboards"),
+        (lambda head: [b"error", b"no ROOT"], "the publisher refused a request: no ROOT"),
+    ],
+)
+def test_a_blackboard_that_cannot_be_read_ends_only_the_samples(
+    reply_of: Callable[[bytes], list[bytes]], told: str
+) -> None:
+    line = Line(entries=("battery",))
+    assert line.robot is not None
+    line.robot.boards["Main"] = {"battery": 80.0}
+    line.step()
+    assert line.step() == [Sampled(START + 100_000, {"battery": 80.0})]
+    answer = line.robot.answer
+    line.robot.answer = (
+        lambda parts: (  # type: ignore[method-assign]
+            reply_of(answer(parts)[0]) if parts[0][1:2] == b"B" else answer(parts)
+        )
+    )
+    assert line.step() == [
+        Told(f"{told}; signals have no samples from now on"),
+        Sampled(START + 150_000, {"battery": None}),
+    ]
+    assert ms(line.step("1R 2R")) == "150:1R 150:2R"
 
 
 def test_a_log_judged_live_has_the_verdicts_of_its_file(

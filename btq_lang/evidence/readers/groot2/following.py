@@ -82,7 +82,7 @@ class Following:
         self._publisher = b""  # its ID
         self._is_there = False
         self._tree: LoggedTree | None = None
-        self._boards: Sequence[str] = ()
+        self._boards: Sequence[str] = ()  # none if they cannot be read
         self._started = 0  # when the recording began, on the robot's clock
         self._ahead = 0  # how far that is ahead of ours
         self._asked = 0  # when transitions were last asked for
@@ -149,7 +149,7 @@ class Following:
         rows = [(self._started + time, uid, status) for time, uid, status in messages.transitions(found.content)]
         since, self._asked = self._asked, asked
         yield from self._new(rows, since) if rows else self._quiet(since)
-        if self._entries and self._is_there:
+        if self._entries and self._boards:
             yield from self._samples()
         self.pause = 0.0 if len(rows) >= messages.MOST_KEPT // 4 else _PAUSE
 
@@ -210,8 +210,13 @@ class Following:
 
     def _samples(self) -> Iterator[Event]:
         asked = self._clock()
-        content = self._ask(messages.BLACKBOARD, ";".join(self._boards)).content
-        found = messages.blackboard(content, self._boards)
+        found: Mapping[str, SampleValue] = {}
+        try:
+            content = self._ask(messages.BLACKBOARD, ";".join(self._boards)).content
+            found = messages.blackboard(content, self._boards)
+        except BadReply as error:  # the verdicts that need no samples do not suffer
+            self._boards = ()
+            yield Told(f"{error}; signals have no samples from now on")
         values: dict[str, SampleValue | None] = {key: found.get(key) for key in self._entries if key in found}
         values |= {key: None for key, value in self._values.items() if value is not None and key not in found}
         changed = {key: value for key, value in values.items() if not _is_same(value, self._values.get(key))}

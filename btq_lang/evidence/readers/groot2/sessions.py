@@ -13,7 +13,7 @@ from threading import Thread
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import Series, Session
-from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Sampled
+from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Sampled, Told
 from btq_lang.evidence.readers.groot2.publisher import Publisher
 from btq_lang.evidence.wording import timestamp
 
@@ -37,12 +37,11 @@ def sessions(
 
 def sessions_of(events: Iterator[Event], tell: Callable[[str], None]) -> Iterator[Session]:
     """The sessions that the events of a `Following` make; each must be read before the next is requested."""
-    began: list[Began] = []
     for event in events:
-        began = [event] if isinstance(event, Began) else began
+        began = [event] if isinstance(event, Began) else []
         while began:
             yield _session(began.pop(), events, began, tell)
-        if not isinstance(event, Began | Came | Sampled | Lost):
+        if isinstance(event, Told):
             tell(event.text)
 
 
