@@ -10,6 +10,8 @@ from collections.abc import Collection, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.catalog.nav2.nodes import NODES
+from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.explain_run import RunExplainer, ago, part
 from btq_lang.evidence.observed import signals_in
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class Origin(Record):
-    """Where a failure began: a node that failed although its last child did not, or that has no child.
+    """Where a failure began: a node that failed although no child of it made it fail, or that has no child.
 
     Attributes:
         child: the child that ended last; 0 for none.
@@ -54,7 +56,9 @@ class Explainer:
         self._signals: Final = signals
         self._below: Final[dict[int, Sums]] = {uid: {} for uid in judged}  # since the last end of each judged node
         self._above: Final = {uid: [each for each in tree.above(uid) if each in judged] for uid in tree.nodes}
-        self._last: Final[dict[int, tuple[int, Outcome, Origin | None]]] = {}  # of open nodes: their last child
+        self._going_on: Final = {uid for uid, node in tree.nodes.items() if node.kind in _GOES_ON}
+        # Of open nodes: the child that ended last, or the first that failed of a node that then goes on.
+        self._last: Final[dict[int, tuple[int, Outcome, Origin | None]]] = {}
         self._ended: Final[dict[int, tuple[Activation, Sums, Origin | None]]] = {}  # the last of each judged node
         self._leaves: Final[dict[int, Activation]] = {}  # the last activation of each leaf
         self._failed: Activation | None = None  # the run's last leaf that took time and failed
@@ -79,7 +83,8 @@ class Explainer:
             if outcome == "F" and activation.end > activation.begin:
                 self._failed = activation
         parent = self._tree.parent[uid]
-        if parent and (outcome != "H" or parent not in self._last):  # halting a child does not cause the end
+        # Halting a child does not cause the end.
+        if parent and (parent not in self._last or (outcome != "H" and not self._keeps_failure(parent))):
             self._last[parent] = uid, outcome, origin
         for above in self._above[uid]:
             sums = self._below[above].setdefault(uid, [0, 0, 0])
@@ -125,15 +130,26 @@ class Explainer:
         if origin.uid == activation.uid:
             text = f"it ran {duration(activation.seconds)}"
             if origin.outcome is not None:
-                text = f"its last child {nodes[origin.child].path} {_CAME_TO[origin.outcome]}"
+                text = f"its last child {self._came_to(origin, origin.outcome)}"
             return Link("origin", path, text, activation.seconds, 1, 1)
         number, failed, time = sums.get(origin.uid, (1, 1, 0))
         text = f"it began at {path}"
         if origin.outcome is not None:
-            text += f", whose last child {nodes[origin.child].path} {_CAME_TO[origin.outcome]}"
+            text += f", whose last child {self._came_to(origin, origin.outcome)}"
         elif number > 1:
             text += f", {failed} of its {number} starts failed"
         return Link("origin", path, text, time / 1e6, number, failed)
+
+    def _keeps_failure(self, uid: int) -> bool:
+        return uid in self._going_on and self._last[uid][1] == "F"
+
+    def _came_to(self, origin: Origin, outcome: Outcome) -> str:
+        """How the last child ended, and which port of the node would have made it the result."""
+        nodes = self._tree.nodes
+        text = f"{nodes[origin.child].path} {_CAME_TO[outcome]}"
+        kind = NODES.get(nodes[origin.uid].kind) if outcome == "S" else None
+        port = kind.port_for("wraps") if kind is not None else None
+        return f"{text}, which is lost without `{port.name}`" if port is not None else text
 
     def _levels(self, signal: Signal | None, unit: Unit | None, activation: Activation) -> Link:
         """The level of a signal at the start and at the end of an activation that used some of it."""
@@ -172,4 +188,8 @@ class Explainer:
 
 
 _NO_CHILD: Final[tuple[int, Outcome | None, Origin | None]] = (0, None, None)
+# They run other children after one has failed, whose results then do not matter.
+_GOES_ON: Final = frozenset(
+    [kind.tag for kind in BUILTINS.values() if kind.flow in ("parallel", "parallel-all", "try")]
+)
 _CAME_TO: Final = {"S": "succeeded", "H": "was halted", "O": "was still running"}

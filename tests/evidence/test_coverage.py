@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
 from evidence_logs import START, Verify, btlog, rows
 
 RETRY = """
@@ -111,6 +112,13 @@ def test_what_a_node_halts_as_it_ends_is_not_where_its_failure_began(verify: Ver
     assert [each["failures_began"] for each in mission_["nodes"]] == [0, 0, 0, 0]
     (violation,) = judged_errand(verify, mission, "0 1R 2R 3S 4R 10 3F 4I 2F 1S 1I")
     assert violation["chain"][0]["text"] == "it began at Drive, 1 of its 2 starts failed"
+
+
+@pytest.mark.parametrize("node", ["TryCatch", "All||"])
+def test_the_success_of_a_child_does_not_hide_the_failure_of_one_before(verify: Verify, node: str) -> None:
+    mission = RETRY.replace("-> Errand", f"{node} Errand")
+    (violation,) = judged_errand(verify, mission, "0 1R 2R 3R 4R 10 3F 30 4S 2F 2I 3I 4I 31 2R 3R 40 3S 2S 1S 1I")
+    assert violation["chain"][0]["text"] == "it began at Drive"
 
 
 def judged_errand(verify: Verify, mission: str, runs: str) -> list[dict[str, Any]]:

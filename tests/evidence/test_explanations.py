@@ -88,7 +88,8 @@ LINES = [
     (
         "nav_noidle",
         "mission succeeds",
-        "NavigateRecovery: failed; it began at RecoveryActions, whose last child BackUp::38 succeeded"
+        "NavigateRecovery: failed; it began at RecoveryActions, whose last child BackUp::38 succeeded,"
+        " which is lost without `wrap_around`"
         " (run 40 of nav_noidle.btlog, 1.03 s after its start at 2026-11-24 04:28:35.075 UTC)",
     ),
 ]
