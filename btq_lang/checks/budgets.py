@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, found_at, highest, seconds, summed
 from btq_lang.diagnostics.model import Related
-from btq_lang.requirements.composition import Budget, port_seconds
+from btq_lang.requirements.budget_parts import Budget, port_seconds
 from btq_lang.requirements.durations import Range, Term, together
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, found_at, highest, lowest, seconds
 from btq_lang.diagnostics.model import Place, Related
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.requirements.composition import port_count, port_seconds
+from btq_lang.requirements.budget_parts import port_count, port_seconds
 from btq_lang.requirements.model import Claim, Compare, Read, Requirement, Table, Target, Value
 from btq_lang.syntax.tree import Goal
 from btq_lang.syntax.tree import Requirement as WrittenRequirement

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, found_at, highest
 from btq_lang.diagnostics.model import Related
-from btq_lang.requirements.composition import port_count
+from btq_lang.requirements.budget_parts import port_count
 from btq_lang.requirements.nodes import callers, mission
 from btq_lang.workspace.node_names import wraps
 from btq_lang.workspace.resolved import ResolvedNode

@@ -14,7 +14,8 @@ from typing import Final
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements import nodes
 from btq_lang.requirements.attach import applied_in
-from btq_lang.requirements.composition import Budget, compose, port_count, port_seconds, unknown
+from btq_lang.requirements.budget_parts import Budget, port_count, port_seconds, unknown
+from btq_lang.requirements.composition import compose
 from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
 from btq_lang.requirements.model import Applied, Bounded, Claim, Limit, Table, Target, Value
 from btq_lang.util.record import Record, replace

@@ -1,0 +1,154 @@
+"""How long decorators of the engine take, given how long their child takes.
+
+What holds for every rule: `composition`.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING
+
+from btq_lang.requirements.budget_parts import Budget, end_after, likelihood, port_count, port_of, port_seconds
+from btq_lang.requirements.durations import ANY, ZERO, Range, cut, hull, plus, times, without_end
+from btq_lang.util.record import replace
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.resolved import ResolvedNode
+
+
+def pass_on(node: ResolvedNode, child: Budget) -> Budget:
+    return child
+
+
+def invert(node: ResolvedNode, child: Budget) -> Budget:
+    return replace(child, success=child.failure, failure=child.success)
+
+
+def force_success(node: ResolvedNode, child: Budget) -> Budget:
+    return replace(child, success=child.completes, failure=None)
+
+
+def force_failure(node: ResolvedNode, child: Budget) -> Budget:
+    return replace(child, success=None, failure=child.completes)
+
+
+def retry(node: ResolvedNode, child: Budget) -> Budget:
+    count = port_count(node, "count")
+    go, end, skip, reason = _again(child.failure, child.success, child.skip, count)
+    return Budget(
+        end, go, skip, True, likelihood([child.probability], count), reason, _has_no_end(child, child.failure, count)
+    )
+
+
+def repeat(node: ResolvedNode, child: Budget) -> Budget:
+    count = port_count(node, "count")
+    go, end, skip, reason = _again(child.success, child.failure, child.skip, count)
+    return Budget(
+        go, end, skip, True, likelihood([child.probability], count), reason, _has_no_end(child, child.success, count)
+    )
+
+
+def _has_no_end(child: Budget, go: Range | None, count: int | None) -> bool:
+    return child.endless or (go is not None and count in (-1, None))
+
+
+def _again(
+    go: Range | None, end: Range | None, skip: Range | None, count: int | None
+) -> tuple[Range | None, Range | None, Range | None, str]:
+    """Repeats while the child goes on, `count` times at most: the ranges of having gone on so often, of ending before,
+    and of being skipped; a skip keeps the count, so that the next activation has fewer repetitions left."""
+    if count == 0 or (count is not None and count < -1):
+        return ZERO, None, ZERO, ""
+    if count is None or count == -1:
+        reason = "has no limit" if count == -1 else "reads from the blackboard how often it runs its child"
+        if count == -1:
+            return None, end_after(go, end, inf), end_after(go, skip, inf), reason
+        return without_end(hull(go, ZERO)), end_after(go, end, inf), hull(end_after(go, skip, inf), ZERO), reason
+    all_of_it = times(count, go)
+    if skip is not None and all_of_it is not None and go is not None:
+        all_of_it = replace(all_of_it, low=go.low)
+    return all_of_it, end_after(go, end, count - 1), end_after(go, skip, count - 1), ""
+
+
+def timeout(node: ResolvedNode, child: Budget) -> Budget:
+    """It can interrupt only what returns RUNNING."""
+    limit = port_seconds(node)
+    longest = child.running
+    if limit == 0 or not child.waits:
+        return child
+    if limit is None:
+        return replace(child, failure=hull(child.failure, longest))
+    runs_out = Range(limit, limit, tuple(replace(term, seconds=limit) for term in longest.terms[:1]))
+    return replace(
+        child,
+        success=cut(child.success, limit),
+        failure=hull(cut(child.failure, limit), runs_out if longest.high > limit else None),
+        skip=cut(child.skip, limit),
+        endless=False,
+    )
+
+
+def delay(node: ResolvedNode, child: Budget) -> Budget:
+    seconds = port_seconds(node)
+    wait = ANY if seconds is None else Range(seconds, seconds)
+    reason = "" if seconds is not None else "reads from the blackboard how long it waits"
+    return replace(
+        child,
+        success=plus(wait, child.success),
+        failure=plus(wait, child.failure),
+        skip=plus(wait, child.skip),
+        waits=True,
+        reason=reason,
+    )
+
+
+def until_failure(node: ResolvedNode, child: Budget) -> Budget:
+    again = child.success is not None or child.skip is not None
+    failure = without_end(child.failure) if again else child.failure
+    likely = child.probability if child.probability == 1.0 or not again else 0.0
+    reason = "repeats its child until it fails" if again else ""
+    return Budget(None, failure, None, True, likely, reason, child.endless or again)
+
+
+def once(node: ResolvedNode, child: Budget) -> Budget:
+    """After the first run it is skipped, or repeats its result at once."""
+    return replace(
+        child,
+        success=hull(child.success, ZERO) if child.success is not None else None,
+        failure=hull(child.failure, ZERO) if child.failure is not None else None,
+        skip=hull(child.skip, ZERO),
+    )
+
+
+def precondition(node: ResolvedNode, child: Budget) -> Budget:
+    """4.6 evaluates the script at every tick, later versions when the child starts."""
+    word, default = port_of(node, "otherwise")
+    status = word.text if word is not None else default
+    running = child.running
+    if status not in ("SUCCESS", "FAILURE", "SKIPPED"):
+        return Budget(running, running, running, True, child.probability, endless=child.endless)
+    key = {"SUCCESS": "success", "FAILURE": "failure", "SKIPPED": "skip"}[status]
+    return replace(child, **{key: hull(getattr(child, key), running)})
+
+
+def for_each(node: ResolvedNode, child: Budget) -> Budget:
+    if child.running.high == 0.0:
+        return Budget(ZERO, ZERO, ZERO, True, child.probability)
+    reason = "runs its child for each item of a queue of unknown length"
+    return Budget(ANY, ANY, ANY, True, 0.0 if child.probability < 1.0 else 1.0, reason, True)
+
+
+def skip_unless_updated(node: ResolvedNode, child: Budget) -> Budget:
+    return replace(child, skip=hull(child.skip, ZERO))
+
+
+def wait_until_updated(node: ResolvedNode, child: Budget) -> Budget:
+    return replace(
+        child,
+        success=without_end(child.success),
+        failure=without_end(child.failure),
+        skip=without_end(child.skip),
+        waits=True,
+        reason="waits until an entry is written",
+        endless=True,
+    )
