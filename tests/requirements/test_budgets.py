@@ -199,6 +199,45 @@ def test_skips(tree: str, success: object, failure: object, skip: object) -> Non
     assert said(tree) == (success, failure, skip)
 
 
+@pytest.mark.parametrize(
+    ("tree", "success", "failure", "skip"),
+    [
+        # While a later child runs, the earlier ones are ticked again, and may fail.
+        ("PipelineSequence\n    A\n    B", (4, 7), (0, 7), None),
+        ("PipelineSequence\n    A\n    ForceSuccess\n        B", (4, 7), (0, 7), None),
+        ("PipelineSequence\n    A\n    Condition C", (1, 2), (1, 2), None),
+        ("PipelineSequence\n    A\n    Condition C\n    B", (4, 7), (0, 7), None),
+        ("PipelineSequence\n    ForceSuccess\n        A\n    ForceSuccess\n        B", (4, 7), None, None),
+        ("PipelineSequence\n    A (_skipIf = x)\n    B (_skipIf = x)", (0, 7), (0, 7), (0, 7)),
+        ("PipelineSequence\n    A (_skipIf = x)\n    Condition C (_skipIf = x)", (0, 2), (0, 2), (0, 0)),
+        ("PipelineSequence\n    A (_skipIf = x)\n    B", (3, 7), (0, 7), None),
+        # It begins with any child, and ends with any.
+        ("RoundRobin\n    A\n    B", (1, 7), (0, 7), None),
+        ("RoundRobin\n    B\n    A", (1, 7), (0, 7), None),
+        ("RoundRobin\n    ForceFailure\n        A\n    B", (3, 7), (0, 7), None),
+        ("RoundRobin\n    ForceFailure\n        A\n    ForceFailure\n        B", None, (0, 7), None),
+        ("RoundRobin\n    A (_skipIf = x)\n    B", (1, 7), (0, 7), None),
+        ("RoundRobin\n    A (_skipIf = x)\n    B (_skipIf = x)", (1, 7), (0, 7), (0, 7)),
+        ("RoundRobin (wrap_around = true)\n    A (_skipIf = x)\n    B", (1, 7), (0, 7), None),
+        # A skip that takes time may come again and again, as long as the first child follows the last.
+        ("RoundRobin\n    A (_while = x)\n    B", (1, 7), (0, 7), None),
+        ("RoundRobin (wrap_around = true)\n    A (_while = x)\n    B", (0, inf), (0, inf), (0, inf)),
+        ("RoundRobin (wrap_around = {w})\n    A (_while = x)\n    B", (0, inf), (0, inf), (0, inf)),
+    ],
+)
+def test_what_nodes_of_nav2_make_of_their_children(tree: str, success: object, failure: object, skip: object) -> None:
+    assert said(tree) == (success, failure, skip)
+
+
+def test_why_one_that_takes_turns_has_no_bound() -> None:
+    budgets, root = budget("RoundRobin (wrap_around = true)\n    A (_while = x)\n    B")
+    found = budgets.of(root)
+    assert (found.reason, found.endless, found.waits) == ("ticks a skipped child without limit", True, True)
+    budgets, root = budget("RoundRobin\n    A (_while = x)\n    B")
+    found = budgets.of(root)
+    assert (found.reason, found.endless, found.waits) == ("", False, True)
+
+
 def test_what_the_longest_is_made_of() -> None:
     budgets, root = budget("->\n    A\n    Repeat (num_cycles = 3)\n        B\n    Condition C")
     longest = budgets.of(root).anything
