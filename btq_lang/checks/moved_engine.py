@@ -15,8 +15,10 @@ from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.versions import ENTRIES_OF_SUBTREE, LAST_TREE_COUNTS, at_least, last_of
 from btq_lang.checks import lookups
+from btq_lang.checks.entries import mentions
 from btq_lang.checks.mixed_types import entry_with_two_types
 from btq_lang.checks.moved_nodes import changed
+from btq_lang.checks.pointers import pointed_at
 from btq_lang.checks.results import result
 from btq_lang.checks.statuses import RUNNING, SKIPPED
 from btq_lang.checks.view import View
@@ -137,9 +139,18 @@ def _skipped_in_the_end(view: View, seen: ResolvedNode) -> bool:
     return all(ever & SKIPPED for ever in found) and any(ever & RUNNING for ever in found)
 
 
+def _queue_of_script(view: View, seen: ResolvedNode) -> bool:
+    """Whether a script of the tree writes the queue."""
+    value = seen.node.attribute("queue")
+    name = pointed_at("queue", value.text) if value is not None else None
+    written = [each.name for each in view.ask(mentions, view.path, view.facts) if each.in_script and each.writes]
+    return name in written
+
+
 _WHEN: Final[Mapping[str, Callable[[View, ResolvedNode], bool]]] = {
     "runs on": _runs_on,
     "completes at once": _completes_at_once,
     "restarts": _restarts,
     "skipped in the end": _skipped_in_the_end,
+    "queue of a script": _queue_of_script,
 }

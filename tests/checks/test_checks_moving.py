@@ -75,6 +75,7 @@ SAMPLES_OF_ENGINE = {
     "restarts": ("R->", "    Drive", "    Dock"),
     "completes at once": ("{node}", "    AlwaysSuccess"),
     "runs on": ("{node} ({port})", "    Drive"),
+    "queue of a script": ("->", "    Script (code = \"q := '1;2'\")", "    {node} ({port})", "        Drive"),
     "skipped in the end": ("{node}", "    Drive (_while = ready)"),
 }
 
@@ -101,7 +102,7 @@ def row_id(row: Change) -> str:
 
 @pytest.mark.parametrize("row", ENGINE_CHANGES, ids=row_id)
 def test_each_change_of_the_engine_is_found_where_it_is_between(row: Change) -> None:
-    value = next((each for each in ("0", "1;2", "5abc", "5") if row.port and row.matches(each)), "")
+    value = next((each for each in ("0", "1;2", "{q}", "5abc", "5") if row.port and row.matches(each)), "")
     text = engine_tree(row, value)
     before = max((each for each in LINES if not at_least(last_of(each), row.since)), key=numbers, default="3.8")
     if row.after:
@@ -117,6 +118,18 @@ def test_each_change_of_the_engine_is_found_where_it_is_between(row: Change) -> 
     assert [line for line in moved_engine(text, after, before) if row.what in line] == []
     if row.until:
         assert [line for line in moved_engine(text, before, row.until) if row.what in line] == []
+
+
+def test_a_delay_that_waits_no_more_is_said_once() -> None:
+    text = "BehaviorTree Main\n    Delay (delay_msec = 5 s)\n        Drive\n"
+    assert [line[:50] for line in moved_engine(text, "4.6", "4.8")] == [
+        "2:5 warning target-differs «Delay» from 4.8.3 on `"
+    ]
+
+
+def test_a_list_that_no_script_writes_is_what_it_was() -> None:
+    loop = "BehaviorTree Main\n    ->\n        Script (code = \"other := '1;2'\")\n        LoopInt (queue = {q})\n"
+    assert moved_engine(f"{loop}            Drive\n", "4.8", "4.10") == []
 
 
 def test_each_change_of_the_engine_is_on_the_page_of_one_step() -> None:

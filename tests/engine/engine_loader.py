@@ -1,5 +1,7 @@
 """Runs files through an installed BehaviorTree.CPP: builds `main.cpp` against it, hands it jobs, reads its answers.
 
+A version before 4.6 gets `old_main.cpp`, which knows of a job its XML, its ticks, its actions and their statuses.
+
 One invariant: an engine that crashes or never returns is one `Answer` (`crashed`), and the jobs behind it are run.
 It does not know what a right answer is.
 """
@@ -9,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -21,6 +24,7 @@ from lxml import etree
 
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.catalog.versions import at_least, is_before_4
 
 SOURCES = Path(__file__).parent
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
@@ -129,8 +133,14 @@ class Engine:
             finally:
                 process.kill()
 
+    @property
+    def is_old(self) -> bool:
+        return not at_least(self.version, "4.6")
+
     def run(self, jobs: Iterable[Mapping[str, object]]) -> list[Answer]:
         """The answers to some jobs, see `job`, in their order."""
+        if self.is_old:
+            return [self._run_old(job) for job in jobs]
         waiting = [json.dumps(job) for job in jobs]
         answers: list[Answer] = []
         while waiting:
@@ -147,6 +157,16 @@ class Engine:
     def run_one(self, source: str | Path, **what: Any) -> Answer:
         """The answer to one job, its arguments as of `job`."""
         return self.run([job(source, **what)])[0]
+
+    def _run_old(self, job: Mapping[str, Any]) -> Answer:
+        lines = [f"ticks {job['ticks']} {job['tick_ms']}", *(f"stub {stub['ID']}" for stub in job["stubs"])]
+        for name, activations in job["parts"].items():
+            lines.append(
+                f"part {name} " + " / ".join(" ".join(each["status"] for each in steps) for steps in activations)
+            )
+        text = "\n".join((*lines, "", job["text"]))
+        run = subprocess.run([self.program], input=text, capture_output=True, text=True, timeout=job["seconds"])
+        return _answer(_told(run.stdout)[0])
 
 
 def job(
@@ -208,6 +228,7 @@ def build_engine(prefix: str | None, folder: Path) -> Engine:
     """The loader, built against the engine in a prefix, or where CMake looks by itself.
 
     Args:
+        prefix: its name ends in the version of an engine before 4.6.
         folder: where it is built; what is there is used again while sources and prefix are the same.
 
     Raises:
@@ -216,13 +237,19 @@ def build_engine(prefix: str | None, folder: Path) -> Engine:
     """
     if not shutil.which("cmake"):
         raise NoEngine("no cmake on PATH")
-    sources = b"".join((SOURCES / name).read_bytes() for name in ("CMakeLists.txt", "main.cpp"))
+    # An old engine does not say what it is.
+    named = re.search(r"\d+(\.\d+)+$", prefix or "")
+    old = named[0] if named and not at_least(named[0], "4.6") else None
+    main = "old_main.cpp" if old else "main.cpp"
+    sources = b"".join((SOURCES / name).read_bytes() for name in ("CMakeLists.txt", main))
     # What CMake finds by itself depends on where a sourced ROS points it.
     found_by = prefix or ":".join(os.environ.get(name, "") for name in ("CMAKE_PREFIX_PATH", "AMENT_PREFIX_PATH"))
     build = folder / hashlib.sha256(sources + found_by.encode()).hexdigest()[:16]
     program = build / "loader"
     if not program.exists():
-        configure = ["cmake", "-S", str(SOURCES), "-B", str(build)]
+        configure = ["cmake", "-S", str(SOURCES), "-B", str(build), f"-DMAIN={main}"]
+        if old and is_before_4(old):
+            configure.append("-DPACKAGE=behaviortree_cpp_v3")
         run = subprocess.run(
             configure + ([f"-DCMAKE_PREFIX_PATH={prefix}"] if prefix else []), capture_output=True, text=True
         )
@@ -230,6 +257,8 @@ def build_engine(prefix: str | None, folder: Path) -> Engine:
             shutil.rmtree(build, ignore_errors=True)  # what CMake did not find it would not look for again
             raise NoEngine(_why_not(run.stderr))
         subprocess.run(["cmake", "--build", str(build)], check=True, capture_output=True, text=True)
+    if old:
+        return Engine(program, old, publishes=False)
     hello = subprocess.run([program], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=True)
     about = _told(hello.stdout)[0]
     return Engine(program, about["engine"], about["publishes"])
