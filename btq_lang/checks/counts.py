@@ -1,6 +1,6 @@
 """Counts and times that make a node ineffective.
 
-Source: the tick functions of RepeatNode, RetryNode and TimeoutNode in 4.6.2, 4.8.4 and 4.10.0.
+Source: the tick functions of RepeatNode, RetryNode, TimeoutNode and DelayNode in 4.6.2, 4.8.4 and 4.10.0.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.versions import at_least, last_of
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import QUANTITY
@@ -20,7 +21,9 @@ if TYPE_CHECKING:
 
 
 def count_of_nothing(view: View) -> Iterator[Diagnostic]:
-    """A Repeat or a Retry that never runs its child, a Timeout that never ends."""
+    """A Repeat or a Retry that never runs its child, a Timeout that never ends, a Delay that does not wait."""
+    if view.is_pinned and not view.project.written_for:  # what moves on meets the change itself
+        yield from _delays(view)
     for seen in view.seen.of_flow("repeat", "retry", "timeout"):
         if seen.kind is None:
             continue
@@ -34,6 +37,19 @@ def count_of_nothing(view: View) -> Iterator[Diagnostic]:
                 yield _timeout(seen.kind, value)
         elif number < 1 and number != -1:
             yield _loop(seen, value, number)
+
+
+def _delays(view: View) -> Iterator[Diagnostic]:
+    """Each Delay, if a release of a line that the project names does not wait in it."""
+    delays = view.seen.of_flow("delay")
+    if not delays:
+        return
+    from btq_lang.catalog.engine_changes import NO_DELAY  # few files have a Delay and are for one line
+
+    if any(at_least(last_of(line), NO_DELAY.since) and not at_least(line, NO_DELAY.until) for line in view.engines):
+        for seen in delays:
+            message = f"{seen.shown_kind} {NO_DELAY.what}"
+            yield Diagnostic("count-of-nothing", seen.node.head.span, message, notes=(NO_DELAY.instead,))
 
 
 def _loop(seen: ResolvedNode, value: Word, number: float) -> Diagnostic:

@@ -1,8 +1,8 @@
 """How long a node takes, given how long its children take: a rule for each flow.
 
-One invariant: every run of the engine is within the ranges, if the children are within theirs.  Three things are left
-out: the time between two ticks, that the variable of a switch changes while a case runs, and how long a node holds its
-child back that its parent has not reset.  Requirements are for `budgets`.
+One invariant: every run of the engine is within the ranges, if the children are within theirs.  Four things are left
+out: the time between two ticks, that the variable of a switch changes while a case runs, how long a node holds its
+child back that its parent has not reset, and that 4.8.3 and 4.8.4 wait in no Delay.  Requirements are for `budgets`.
 """
 
 from __future__ import annotations

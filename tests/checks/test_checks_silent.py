@@ -5,6 +5,9 @@ from __future__ import annotations
 import pytest
 from check_asserts import findings, fixes
 
+from btq_lang.catalog.versions import VERSIONS
+from btq_lang.workspace.config import Project
+
 MODELS = """Action Plan
     output path : Path
     output cost : double
@@ -49,6 +52,16 @@ def test_a_negative_count_is_probably_meant_for_no_end() -> None:
     text = tree("Repeat (num_cycles = -2)", "    Action Work")
     assert fixes(text, COUNT) == [("Write `-1` for endless", False, text.replace("-2", "-1"))]
     assert fixes(text.replace("-2", "0"), COUNT) == []
+
+
+@pytest.mark.parametrize(
+    ("engines", "is_found"),
+    [(("4.8",), True), (("4.6", "4.8"), True), (("4.7",), False), (("4.9", "4.10"), False), (VERSIONS, False)],
+)
+def test_a_delay_in_the_releases_that_do_not_wait(engines: tuple[str, ...], is_found: bool) -> None:
+    found = findings(tree("Delay (delay_msec = 5 s)", "    Action Work"), COUNT, project=Project(engines=engines))
+    what = "3 warning «Delay» `Delay` does not wait: 4.8.3 and 4.8.4 do not read `delay_msec`"
+    assert found == ([what] if is_found else [])
 
 
 # ---- literal-for-output ----
