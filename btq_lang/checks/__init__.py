@@ -185,6 +185,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         resets.last_success_lost,
         unread.default_instead,
         unread.error_code_not_collected,
+        unread.foreign_error_code,
         moving.moving_on,
         measures.unresolved,
         demands.demands,

@@ -1,4 +1,4 @@
-"""Values that a node never reads, and outputs that nothing reads, of the nodes of Nav2.
+"""Values that a node of Nav2 never reads or looks for, and outputs of them that nothing reads.
 
 Sources: the tables of `catalog/nav2`.
 """
@@ -13,7 +13,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
-from btq_lang.checks.entries import blackboards
+from btq_lang.checks.entries import blackboards, mentions
 from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.diagnostics.model import Diagnostic
@@ -73,6 +73,42 @@ def error_code_not_collected(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("error-code-not-collected", pair.value.span, message, notes=(note,))
 
 
+def foreign_error_code(view: View) -> Iterator[Diagnostic]:
+    """A condition that looks for the error codes of other actions than those that write its entry."""
+    distribution = view.look_up(lookups.distribution)
+    if distribution is None:
+        return
+    from btq_lang.catalog.nav2.navigator import HELPED  # only for Nav2
+
+    for seen, node, tree in _of_nav2(view, distribution):
+        value = seen.node.attribute("error_code") if node in HELPED else None
+        name = pointed_at("error_code", value.text) if value is not None else None
+        if value is None or name is None:
+            continue
+        actions = _actions_with_codes_in(view, distribution, tree, name)
+        if actions and not actions.intersection(HELPED[node]):
+            has, wanted = (" and ".join(f"`{each}`" for each in of) for of in (sorted(actions), HELPED[node]))
+            message = (
+                f"{seen.shown_kind} never succeeds: it looks for codes of {wanted}, and `{name}` has those of {has}"
+            )
+            notes = [f"`{other}` looks for these" for other, of in HELPED.items() if actions.intersection(of)]
+            yield Diagnostic("foreign-error-code", value.span, message, notes=tuple(notes))
+
+
+def _actions_with_codes_in(view: View, distribution: str, tree: str, name: str) -> set[str]:
+    """The actions whose error codes an entry has; empty if anything else may write it, or a node of another tree."""
+    boards = view.ask(blackboards)
+    named = [each for each in view.ask(mentions, view.path, view.facts) if boards.is_one(tree, each.name, name)]
+    writers = [each.node for each in named if each.writes]
+    # Before the next goal bt_navigator sets those that it collects to 0.
+    resets = [each for each, way in view.look_up(lookups.outside_entries) if way != "input" and each == name]
+    writes = sum(each.writes for each in boards.of(tree, name))
+    if boards.is_given(tree, name) or writes > len(writers) + len(resets):
+        return set()
+    found = [_of_distribution(view, seen, distribution) for seen in writers if seen.node.attribute("error_code_id")]
+    return {each for each in found if each is not None} if len(found) == len(writers) and None not in found else set()
+
+
 def _is_read(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether anything reads an entry, or the tree is given it."""
     boards = store.ask(blackboards, viewpoint)
@@ -82,11 +118,17 @@ def _is_read(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> b
 def _of_nav2(view: View, distribution: str) -> Iterator[tuple[ResolvedNode, str, str]]:
     """The nodes of Nav2 that have attributes, each with its ID and the name of its tree."""
     for seen in view.seen.given:
-        if seen.of_model is None or seen.id is None or seen.tree is None:
-            continue
-        model = view.declaration(Kind.MODEL, seen.id.text)
-        if model is not None and model.path == FILES[distribution]:
-            yield seen, seen.id.text, seen.tree
+        name = _of_distribution(view, seen, distribution)
+        if name is not None and seen.tree is not None:
+            yield seen, name, seen.tree
+
+
+def _of_distribution(view: View, seen: ResolvedNode, distribution: str) -> str | None:
+    """The ID of a node of Nav2; None for another one."""
+    if seen.of_model is None or seen.id is None:
+        return None
+    model = view.declaration(Kind.MODEL, seen.id.text)
+    return seen.id.text if model is not None and model.path == FILES[distribution] else None
 
 
 def _default(view: View, seen: ResolvedNode, pair: Pair, value: Word, what: str) -> Diagnostic:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from check_asserts import assert_fixes_mend, assert_sound, show
 
 from btq_lang.btcpp.opening import file_of
@@ -260,6 +261,56 @@ def test_an_error_code_that_nobody_reads() -> None:
         '    AreErrorCodesPresent (error_code = {code} error_codes_to_check = "1")',
     )
     assert found(read, "jazzy") == []
+
+
+OF_PLANNER = "`ComputePathToPose` and `ComputePathThroughPoses`"
+
+
+@pytest.mark.parametrize(
+    ("writers", "condition", "wanted", "has"),
+    [
+        (("ComputeRoute",), "Planner", OF_PLANNER, "`ComputeRoute`"),
+        (("ComputeRoute", "Spin"), "Planner", OF_PLANNER, "`ComputeRoute` and `Spin`"),
+        (("ComputePathToPose",), "Route", "`ComputeRoute` and `ComputeAndTrackRoute`", "`ComputePathToPose`"),
+        (("ComputeRoute", "ComputePathToPose"), "Planner", OF_PLANNER, ""),
+        (("ComputePathThroughPoses",), "Planner", OF_PLANNER, ""),
+        (("ComputeRoute", "Action Own"), "Planner", OF_PLANNER, ""),  # its numbers are not known
+        ((), "Planner", OF_PLANNER, ""),
+    ],
+)
+def test_a_condition_that_looks_for_codes_of_others(
+    writers: tuple[str, ...], condition: str, wanted: str, has: str
+) -> None:
+    condition = f"WouldA{condition}RecoveryHelp"
+    nodes = [f"    {each} (error_code_id = {{code}})" for each in writers]
+    text = tree("?", *nodes, f"    {condition} (error_code = {{code}})")
+    for distribution in ("kilted", "lyrical"):
+        lines = [line for line in found(text, distribution) if "foreign-error-code" in line]
+        assert [line.partition("«")[2] for line in lines] == (
+            [f"{{code}}» `{condition}` never succeeds: it looks for codes of {wanted}, and `code` has those of {has}"]
+            if has
+            else []
+        )
+
+
+def test_codes_that_another_tree_writes_too_are_not_known() -> None:
+    text = tree(
+        "?",
+        "    ComputeRoute (error_code_id = {code})",
+        "    SubTree Part (code = {code})",
+        "    WouldAPlannerRecoveryHelp (error_code = {code})",
+    )
+    part = "BehaviorTree Part\n    Action Own (error_code_id = {code})\n"
+    assert [line for line in found(text + part, "kilted") if "foreign-error-code" in line] == []
+
+
+def test_codes_that_bt_navigator_resets_are_still_of_others() -> None:
+    text = tree(
+        "?",
+        "    FollowPath (path = {path} error_code_id = {follow_path_error_code})",
+        "    WouldAPlannerRecoveryHelp (error_code = {follow_path_error_code})",
+    )
+    assert [line.split()[2] for line in found(text, "lyrical")] == ["foreign-error-code"]
 
 
 # ---- other rules ----

@@ -55,6 +55,13 @@ ERROR_CODES: Final[Mapping[str, tuple[str, ...]]] = {
     "l": (*_PREFIXES, "follow_object"),
 }
 
+# The actions whose error codes a condition looks for, which no other action has.
+HELPED: Final[Mapping[str, tuple[str, ...]]] = {
+    "WouldAControllerRecoveryHelp": ("FollowPath",),
+    "WouldAPlannerRecoveryHelp": ("ComputePathToPose", "ComputePathThroughPoses"),
+    "WouldARouteRecoveryHelp": ("ComputeRoute", "ComputeAndTrackRoute"),
+    "WouldASmootherRecoveryHelp": ("SmoothPath",),
+}
 # The outputs of nodes that it collects through their entries, and the parameter that names these.
 COLLECTED: Final = frozenset(("error_code_id", "error_msg"))
 COLLECTING: Final[Mapping[str, str]] = {
