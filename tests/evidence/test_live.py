@@ -115,6 +115,15 @@ def test_verdicts_are_printed_as_they_fall_and_then_the_table(live: Live) -> Non
     assert {*robot.asked} == {"T", "S", "r", "t"}  # no blackboard without signals, and no hooks
 
 
+def test_the_page_shows_what_is_printed(live: Live) -> None:
+    page = Path(__file__).parents[2] / "docs" / "evidence.md"
+    _, shown = re.findall(r"^```text\n(.*?)^```$", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    first, second = "0 1R 2R 80 2S 3R 90 3S 1S 2I 3I 1I", "0 1R 2R 150 2F 1F 2I 1I"
+    with Robot(MAIN_XML) as robot:
+        printed = live.watch(robot, lambda: robot.play(first) or robot.play(second))
+    assert plain(printed, robot)[:5] == plain(shown, robot)
+
+
 def test_a_run_that_is_open_is_left_out(live: Live) -> None:
     with Robot(MAIN_XML) as robot:
         robot.play("1R 2R")

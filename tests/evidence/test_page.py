@@ -39,7 +39,7 @@ def night(folder: Path, xml: str) -> None:
 
 def test_the_table_of_the_page(verify: Verify) -> None:
     (mission,) = re.findall(r"^```btq\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
-    (shown,) = re.findall(r"^```text\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+    shown, _ = re.findall(r"^```text\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
     (verify.folder / "charge.btq").write_text(mission, encoding="utf-8")
     xml = write(export(Workspace.of({"charge.btq": mission}), "charge.btq").document)
     night(verify.folder, as_logged(xml))
