@@ -32,6 +32,9 @@ import missions
 import report
 from btcpp_xml import built
 from report import ENVIRONMENT, Goal
+from robot_log import FETCH, fetching
+
+from evidence_logs import btlog  # isort: skip
 
 from btq_lang.btcpp.document import write
 
@@ -40,6 +43,7 @@ EDIT = {NODES_A_FILE: 16, LARGE: 50}  # nodes of a file of many trees, and the m
 QUESTION, ALL_TOKENS, TOKEN_DELTA = 20, 150, 20  # milliseconds
 XML_NODES, XML_EDIT = 2_000, 50  # nodes of an XML file of many trees, and the milliseconds to its diagnostics
 MEMORY = 60  # MB above pygls alone
+LOGGED, COPIES = 1_000_000, 112  # transitions of a log, of 9 bytes each, and how many such logs there are
 MANY, NODES_OF_MANY = 1_000, 50
 ONE_TREE = {1_000: 60, 5_000: 250, 40_000: 2_000}  # nodes below one node, and the milliseconds that a key may take
 
@@ -75,6 +79,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "tree": lambda: one_tree(options, slowness),
         "xml": lambda: typing_xml(options, slowness),
         "many": lambda: many_files(options.spelling, slowness),
+        "logs": lambda: typing_beside_logs(options),
     }
     for part, measure in parts.items():
         if options.only in (None, part):
@@ -271,6 +276,45 @@ def many_files(spelling: missions.Spelling, slowness: float) -> tuple[list[Serie
         Goal(f"{MANY} files: all, s of processor, converted, <= 10", cpu, cpu <= 10),
         Goal(f"{MANY} files: reports of progress >= 3", reports, reports >= 3),
     ]
+
+
+def typing_beside_logs(options: argparse.Namespace) -> tuple[list[Series], list[Goal]]:
+    """What an author types in a mission: without logs, with logs that are judged, and while a gigabyte of them is."""
+    measured: list[Series] = []
+    with tempfile.TemporaryDirectory() as name:
+        for folder, transitions, copies in ((None, 0, 0), ("judged", LOGGED // 10, 1), ("judging", LOGGED, COPIES)):
+            root = Path(name) / (folder or "none")
+            (root / "logs").mkdir(parents=True)
+            (root / "main.btq").write_text(_LEAF.sub("", FETCH), encoding="utf-8")
+            if folder is not None:
+                (root / "btq.toml").write_text('[evidence]\nlogs = ["logs"]\n', encoding="utf-8")
+                robot = fetching()
+                (root / "logs" / "0.btlog").write_bytes(btlog(robot.xml, robot.rows(transitions)))
+            for copy in range(1, copies):
+                os.link(root / "logs" / "0.btlog", root / "logs" / f"{copy}.btlog")
+            size = sum(path.stat().st_size for path in (root / "logs").iterdir()) / 1e6
+            what = f"{size:.0f} MB of logs that are being judged" if folder == "judging" else f"{size:.0f} MB of logs"
+            edits = Series(f"edit to diagnostics, {what}")
+            server = Server((*BTQ[:2], f"import os; os.environ['XDG_CACHE_HOME'] = {str(root)!r}; {BTQ[2]}"), root)
+            document = server.open(root / "main.btq")
+            server.wait_for(is_about(root / "main.btq"))
+            if folder is not None:
+                server.wait_for(is_progress if folder == "judging" else is_end_of_progress)
+            draw = random.Random(options.seed)
+            for _ in range(options.rounds):
+                for edit in strokes(document, draw):
+                    with server.measuring(edits):
+                        server.change(document, edit)
+            server.end()
+            measured.append(edits)
+    without, *with_logs = (statistics.median(one.cpu) for one in measured)
+    return measured, [
+        Goal(f"{one.name}: processor in times of that without, <= 1.2", median / without, median / without <= 1.2)
+        for one, median in zip(measured[1:], with_logs, strict=True)
+    ]
+
+
+_LEAF = re.compile(r"(?<=        )(?:Action|Condition) ")  # in a tree, where the author types without them
 
 
 # ---- typing ---------------------------------------------------------------------------------------------------------
@@ -544,7 +588,9 @@ def as_text(measured: Sequence[Series], goals: Sequence[Goal], slowness: float) 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = report.options(__doc__)
     parser.add_argument(
-        "--only", choices=("start", "edits", "large", "tree", "xml", "many"), help="measure one part, and the start"
+        "--only",
+        choices=("start", "edits", "large", "tree", "xml", "many", "logs"),
+        help="measure one part, and the start",
     )
     parser.add_argument(
         "--rounds", type=int, default=20, help="how often something is typed, some 30 edits (default 20)"

@@ -302,6 +302,17 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         metavar="ADDRESS",
         help="judge a running robot through its Groot2Publisher, until Ctrl+C, as in tcp://127.0.0.1:1667",
     )
+    parser.add_argument(
+        "--summary",
+        metavar="FILE",
+        help="for editors: write the verdicts as JSON with all that was measured, and progress to standard output",
+    )
+    parser.add_argument(
+        "--run",
+        type=int,
+        metavar="N",
+        help="for editors: print the run with this number in a log, as JSON",
+    )
     kept = parser.add_argument_group("keeping verdicts")
     store = kept.add_mutually_exclusive_group()
     store.add_argument(

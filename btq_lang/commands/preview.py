@@ -67,12 +67,14 @@ def _no_file(path: str) -> str | None:
 
 
 def _follow(mission: _Mission, preview: Preview, ended: Event) -> None:
-    """Follow an editor's messages on standard input, a JSON object a line: the `line` of its cursor, and its `text`."""
+    """Follow an editor's messages on standard input, a JSON object a line: the `line` of its cursor, its `text`, and a
+    `run` of the logs to show.
+    """
     try:
         for line_read in sys.stdin.buffer:
             try:
                 message = json.loads(line_read)
-                text, line = message.get("text"), message.get("line")
+                text, line, run = message.get("text"), message.get("line"), message.get("run")
             except (ValueError, AttributeError):
                 print(f"btq preview: expected a JSON object, found {line_read!r}", file=sys.stderr)
                 continue
@@ -81,6 +83,8 @@ def _follow(mission: _Mission, preview: Preview, ended: Event) -> None:
                 preview.changed()
             if isinstance(line, int):
                 preview.mark_line(line)
+            if isinstance(run, dict):
+                preview.show_run(json.dumps(run))
     finally:
         ended.set()
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from btq_lang.commands.output import form_of, is_coloured, terminal_width, write_output
 from btq_lang.commands.verdict_events import write_events
 from btq_lang.commands.verdict_formats import FORMATS, write
+from btq_lang.commands.verdict_summary import write_summary
 from btq_lang.evidence.notes import foreign_runs
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
 
@@ -50,6 +51,8 @@ def print_report(options: Namespace, report: Report, missions: Sequence[Candidat
     Args:
         missions: as of `write`.
     """
+    if options.summary is not None:
+        return write_summary(options.summary, report)
     to_terminal = options.output is None and sys.stdout.isatty()
     text = write(
         report,

@@ -17,6 +17,8 @@ from btq_lang.commands.stored import opened, reads_store, store_problem, summari
 from btq_lang.commands.verdict_events import events_problem, overwrites
 from btq_lang.commands.verdict_formats import FORMATS
 from btq_lang.commands.verdict_report import failed, finish
+from btq_lang.commands.verdict_run import print_run
+from btq_lang.commands.verdict_summary import progress_to_editor
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.signal_sources import signal_sources
@@ -47,6 +49,8 @@ def run(options: Namespace) -> int:
     logs, missions, samples = _given(options, problems)
     if options.events is not None and (problem := overwrites(options.events, [*options.logs, *logs])):
         problems.append(problem)
+    if options.run is not None and not problems:
+        return print_run(logs, missions, options.run)
     roots = (each.workspace.project.root for each in missions if each.workspace.project.evidence)
     home = find_project(next(roots, "."))
     sources, of_files = signal_sources(home.project, shown(home.path or home.project.root), missions, problems)
@@ -54,6 +58,7 @@ def run(options: Namespace) -> int:
     if not problems:
         form = form_of(options, FORMATS)
         with Progress(len(logs), "read") as progress:
+            to_editor = progress_to_editor(len(logs)) if options.summary is not None else None
             found = judged(
                 logs,
                 missions,
@@ -62,9 +67,10 @@ def run(options: Namespace) -> int:
                 of_files,
                 options.mission,
                 with_timelines=form == "html",
+                with_measures=options.summary is not None,
                 jobs=options.jobs,
                 keeping=keeping,
-                progress=lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"),
+                progress=to_editor or (lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged")),
             )
         return finish(options, found, missions, logs)
     return failed(problems)

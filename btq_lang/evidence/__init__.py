@@ -13,7 +13,9 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     verbs/         a module a verb: the judgement of an activation or a run
     limits.py, over_run.py   shared by verbs: measures compared with bounds, and when events happened
     scopes.py      which activations count
+    outline.py   the clauses of a mission and where they are, so that a later text is known again
     clause.py, evaluate.py   a clause, and all clauses of a mission, judged while a log is read
+    edges.py, margins.py, again.py   the counts for every bound, and a clause judged again with an edited one
     tally.py, recent.py, odds.py   judgements counted, over all runs or the last ones, and confidence limits
     explain.py, explain_run.py   what led to a violation
     distribution.py, timeline.py   a histogram of values and a timeline of a run, for the page
@@ -26,7 +28,8 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     watching.py    a running robot: verdicts as they fall
     verifying.py, notes.py, signal_sources.py   all of it in one call, and notes beside the verdicts
     events.py      the violations as messages of a bag
-    table.py, json_document.py, csv_rows.py, junit.py, markdown.py   the writers; `trace/` draws the HTML page
+    table.py, json_document.py, csv_rows.py, junit.py, markdown.py   the writers
+    written_verdicts.py   reads what json_document.py has written; `trace/` draws the HTML page
 """
 
 from __future__ import annotations
@@ -56,6 +59,7 @@ def verify(
     of_files: Mapping[str, Series] | None = None,
     *,
     with_timelines: bool = False,
+    with_measures: bool = False,
     jobs: int = 1,
     keeping: Keeping | None = None,
     progress: Callable[[int, int], None] = lambda files, runs: None,
@@ -70,6 +74,7 @@ def verify(
         of_files: the samples of those sources that are files.
         progress: called with how many logs have been read, and how many runs have been judged.
         with_timelines: include the run of the worst violation of each clause.
+        with_measures: include what is needed to judge clauses with other bounds.
         keeping: where what is found in each log is kept; None: nowhere.
         jobs: how many processes judge logs; the report is the same.
     """
@@ -77,7 +82,8 @@ def verify(
     from btq_lang.evidence.readers import samples_of_bags
 
     of_bags, remarks, bags = samples_of_bags(logs, sources)
-    means = Means(missions, samples, sources, of_files or {}, of_bags, remarks, shown, with_timelines, keeping)
+    of = samples, sources, of_files or {}, of_bags
+    means = Means(missions, *of, remarks, shown, with_timelines, keeping, with_measures=with_measures)
     judging = Judging(means)
     wanted = [log for log in logs if log not in bags]
     if jobs > 1 and len(wanted) > 1:

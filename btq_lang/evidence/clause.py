@@ -5,12 +5,14 @@ One invariant: a clause that cannot be judged is unknown with the reason, and ne
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.btcpp.around import LIMITING, WATCHING
 from btq_lang.catalog.verbs import VERBS, words
+from btq_lang.evidence.edges import WHILE_IT_RUNS, edge_of, key_of
 from btq_lang.evidence.history import History, Nearby, near
+from btq_lang.evidence.margins import Margins
 from btq_lang.evidence.model import (
     BEGUN_BEFORE,
     CLOCK_SET_BACK,
@@ -27,7 +29,7 @@ from btq_lang.evidence.scopes import in_scope, within
 from btq_lang.evidence.signals import Signals, Unknown
 from btq_lang.evidence.tally import Run, Tally
 from btq_lang.evidence.verbs import Judgement, judges_of
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Link
+from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Link, Measures
 from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import Mission, Running, Span, Target, Total, Value
 from btq_lang.util.record import Record, replace
@@ -36,8 +38,9 @@ if TYPE_CHECKING:
     from btq_lang.evidence.guards import Guard, Refusal
     from btq_lang.evidence.identity import Joined
     from btq_lang.evidence.odds import Limits
+    from btq_lang.evidence.outline import Demand
     from btq_lang.evidence.verdicts import Verdict
-    from btq_lang.requirements.model import Applied, Claim, Event, Requirement, Subject
+    from btq_lang.requirements.model import Claim, Event, Subject
 
 
 class _Place(Record):
@@ -63,6 +66,7 @@ class ClauseFindings(Record):
     """
 
     tally: Tally | Recent
+    margins: Margins | None
     paths: tuple[str, ...]
     missing: str
     has_run: bool
@@ -77,14 +81,15 @@ class JudgedClause:
         explain_run: the same for a clause judged over a run, from its judgement, the run and the other nodes.
     """
 
-    def __init__(
-        self, requirement: Requirement, claim: Claim, applied: Applied | None, limits: Limits = "one look"
-    ) -> None:
+    def __init__(self, demand: Demand, limits: Limits = "one look", with_measures: bool = False) -> None:
         """
         Args:
             limits: which limits of probabilities decide, except in a window.
+            with_measures: keep what is needed to judge it with another bound.
         """
+        requirement, claim, applied = demand.requirement, demand.claim, demand.applied
         subject = applied.subject if applied is not None else None
+        self.demand: Final = demand
         self.requirement: Final = requirement
         self.claim: Final = claim
         odds, confidence, window = requirement.odds, requirement.confidence, requirement.window
@@ -92,6 +97,10 @@ class JudgedClause:
         self._subject: Final = subject
         self._judge, self._judge_run = judges_of(claim, subject)
         self.judged: Final = replace(within(claim, requirement.scopes), subject=subject)
+        self._edge: Final = edge_of(self.judged, subject, requirement) if with_measures else None
+        self._extremes: Final = self._edge.extremes if self._edge is not None else ()
+        self._margins: Final = Margins(self._tally.counts_runs) if isinstance(self._tally, Tally) else None
+        self._with_measures: Final = with_measures
         self._events: Final = _events(claim, subject)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [each.target for part in parts for each in parts_in(part) if isinstance(each, Running)]
@@ -150,6 +159,7 @@ class JudgedClause:
             return
         self._waits = self._waits or activation.started[1] != activation.ended[1]
         if guard is not None and self._is_own(guard):
+            self._lose_margins()
             sentence = f"stopped by its own guard after {duration(activation.seconds)}"
             self._count(Judgement(False, activation.end, sentence), activation, path)
         elif self._judge is not None and self._running:
@@ -164,6 +174,7 @@ class JudgedClause:
         own = self.claim.verb == refusal.verb and self.requirement.name == refusal.requirement
         if own or (VERBS[self.claim.verb].limits == "success" and VERBS[refusal.verb].operand == "condition"):
             self._has_run = True
+            self._lose_margins()
             judgement = Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}")
             self._add(judgement, path, refusal.time, refusal.time, self.explain(judgement, path))
 
@@ -182,7 +193,16 @@ class JudgedClause:
         if root.timing in CUT_BY_GAP and self._nodes:
             lost = Judgement(None, root.end, ROWS_LOST)
             self._add(lost, next(iter(self._paths)), root.end, root.end, ())
+            if self._margins is not None:
+                self._margins.add(_UNKNOWN, _UNKNOWN, None)
         self._tally.end_run(run)
+        if self._margins is not None:
+            self._margins.end_run(run.number)
+
+    def _lose_margins(self) -> None:
+        """Note that with another bound a guard would have done something else."""
+        if self._margins is not None:
+            self._margins.is_exact = False
 
     def _judge_over(self, root: Activation) -> None:
         """Count what is judged over the run, in order of time for all uses of a subtree together: a window may keep
@@ -193,6 +213,10 @@ class JudgedClause:
         for place in self._places:
             over = self._over(root, place)
             judged += [(_clocked(each, root), place, over) for each in self._judge_run(self.judged, over)]
+            if self._extremes:
+                self._measure(
+                    [[_clocked(one, root) for one in self._judge_run(each, over)] for each in self._extremes], root
+                )
         if len(judged) > 1:
             judged.sort(key=lambda each: each[0].at if each[0] is not None else 0)
         for found, place, over in judged:
@@ -214,14 +238,46 @@ class JudgedClause:
         counts = in_scope(self.requirement.scopes, self.claim.verb, observed)
         if counts is False:
             return
-        judgement = self._judge(self.judged, activation, observed)
+        judgement = self._judged_as(self.judged, activation, observed, counts)
+        self._count(judgement if root is None else _clocked(judgement, root), activation, path)
+        if self._extremes:
+            found = [self._judged_as(each, activation, observed, counts) for each in self._extremes]
+            self._measure([[one if root is None else _clocked(one, root)] for one in found], activation)
+
+    def _judged_as(
+        self, claim: Claim, activation: Activation, observed: Observed, counts: bool | Unknown
+    ) -> Judgement | None:
+        """The judgement of an activation that counts, or may count, by a claim."""
+        assert self._judge is not None, "the clause is judged by its activations"
+        judgement = self._judge(claim, activation, observed)
         if activation.outcome == "O" and judgement is not None and judgement.holds:
             # Also for `needs`, although nothing can violate it any more: with one rule for all clauses, the counts of
             # two clauses at one node differ by what happened, not by where the log ends.
             judgement = None
         if judgement is not None and isinstance(counts, Unknown):
-            judgement = Judgement(None, judgement.at, counts.why)
-        self._count(judgement if root is None else _clocked(judgement, root), activation, path)
+            judgement = Judgement(None, judgement.at, counts.why, judgement.measure)
+        return judgement
+
+    def _measure(self, extremes: Sequence[Sequence[Judgement | None]], of: Activation) -> None:
+        """Note with which bounds the judgements of an activation, or of a run, are what.
+
+        Args:
+            extremes: those with a bound that every measure keeps, and with one that none does.
+        """
+        assert self._margins is not None, "a window has no edge"
+        assert self._edge is not None, "its bound may be moved"
+        within, beyond = extremes
+        is_first_decisive = self.claim.verb in WHILE_IT_RUNS
+        if len(within) != len(beyond) or (is_first_decisive and of.timing != "exact"):
+            self._margins.is_exact = False
+            return
+        for kept, broken in zip(within, beyond, strict=True):
+            measures = [each.measure if each is not None else None for each in (kept, broken)]
+            if is_first_decisive:
+                del measures[1]
+            si = next((each.si for each in measures if each is not None), None)
+            value = self._edge.across(si) if si is not None else None
+            self._margins.add(_kind(kept, of), _kind(broken, of), value)
 
     def _over(self, root: Activation, place: _Place) -> OverRun:
         assert self._history is not None, "the clause is joined with a log"
@@ -314,7 +370,8 @@ class JudgedClause:
 
     def findings(self) -> ClauseFindings:
         """What a verdict needs of the logs so far."""
-        return ClauseFindings(self._tally, tuple(self._paths), self._not_judged or self._missing, self._has_run)
+        missing = self._not_judged or self._missing
+        return ClauseFindings(self._tally, self._margins, tuple(self._paths), missing, self._has_run)
 
     def add(self, findings: ClauseFindings, runs: int) -> None:
         """Add what was found in later logs.
@@ -323,6 +380,8 @@ class JudgedClause:
             runs: how many runs were before them.
         """
         self._tally.add_all(findings.tally, runs)  # type: ignore[arg-type]  # one clause has tallies of one class
+        if self._margins is not None and findings.margins is not None:
+            self._margins.add_all(findings.margins, runs)
         self._paths.update(dict.fromkeys(findings.paths))
         self._missing = self._missing or findings.missing
         self._has_run = self._has_run or findings.has_run
@@ -361,6 +420,20 @@ class JudgedClause:
             violations=tuple(tally.violations),
             why=why,
             histogram=tally.distribution.histogram(goal if isinstance(goal, Value) else None),
+            measures=self._measures() if self._with_measures else None,
+        )
+
+    def _measures(self) -> Measures:
+        edge, odds = self._edge, self.requirement.odds
+        is_exact = edge is not None and self._margins is not None and self._margins.is_exact
+        return Measures(
+            key=key_of(self.requirement, self.claim, edge),
+            place=self.demand.place,
+            bound=edge.value.si if edge is not None else None,
+            odds=(odds.relation, odds.probability) if odds is not None else None,
+            missing=self._not_judged or self._missing,
+            has_run=self._has_run,
+            margins=self._margins if is_exact else None,
         )
 
     @property
@@ -370,6 +443,13 @@ class JudgedClause:
         of_all = (*requirement.scopes, requirement.odds, requirement.window)
         parts = [self.claim.text, *(each.text for each in of_all if each is not None)]
         return " ".join([*parts, f"goal {requirement.goal.text}"] if requirement.goal is not None else parts)
+
+
+def _kind(judgement: Judgement | None, of: Activation) -> int | None:
+    """What a judgement is, as an index of `Counts`; None: it does not count."""
+    if judgement is None:
+        return _CUT_OFF if of.outcome == "O" else None
+    return _UNKNOWN if judgement.holds is None else _KEPT if judgement.holds else _VIOLATED
 
 
 def verdict_of(tally: Tally, missing: str, has_run: bool) -> tuple[Verdict, str]:
@@ -410,6 +490,7 @@ def _clocked(judgement: Judgement | None, root: Activation) -> Judgement | None:
     return Judgement(None, judgement.at, CLOCK_SET_BACK)
 
 
+_KEPT, _VIOLATED, _UNKNOWN, _CUT_OFF = range(4)
 # The kinds of guards that halt a node for each verb; other guards around it belong to other clauses.
 _STOPPED_BY: Final = {
     LIMITING: words(enforced="limit"),

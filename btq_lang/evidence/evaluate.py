@@ -17,6 +17,7 @@ from btq_lang.evidence.guards import Guards
 from btq_lang.evidence.history import History, Nearby
 from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.observed import Observed
+from btq_lang.evidence.outline import demands, outline
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signals import Signals
 from btq_lang.evidence.tally import Run
@@ -87,30 +88,21 @@ class MissionEvaluation:
         ran: Callable[[int], None] = lambda number: None,
         listeners: Sequence[Listener] = (),
         limits: Limits = "one look",
+        with_measures: bool = False,
     ) -> None:
         """
         Args:
             with_timelines: keep the runs that broke clauses worst.
             ran: called with the number of each run after it is judged.
             limits: which limits of probabilities decide.
+            with_measures: keep what is needed to judge clauses with other bounds.
         """
         self._ran: Final = ran
         self.listeners: Final = [*listeners]
         self.mission: Final = mission
         found = mission.requirements
-        clauses = [
-            JudgedClause(applied.requirement, claim, applied, limits)
-            for applied in found.applied
-            for claim in applied.requirement.claims
-            if not applied.requirement.is_verified_by_people
-        ]
-        used = {(clause.requirement.name, clause.claim.text) for clause in clauses}
-        clauses += [
-            JudgedClause(requirement, claim, None, limits)
-            for requirement in found.all.values()
-            for claim in requirement.claims
-            if not requirement.is_verified_by_people and (requirement.name, claim.text) not in used
-        ]
+        clauses = [JudgedClause(each, limits, with_measures) for each in demands(found)]
+        self._with_measures: Final = with_measures
         self._clauses: Final = clauses
         self._sources: Final[list[Source]] = []
         self._outcomes: Final[dict[Outcome, int]] = dict.fromkeys(OUTCOMES, 0)
@@ -276,6 +268,7 @@ class MissionEvaluation:
             retries=self._coverage.retries.summary(),
             recoveries=self._coverage.recoveries.summary(),
             by_people=tuple(each.name for each in found.all.values() if each.claims and each.is_verified_by_people),
+            outline=outline(found) if self._with_measures else "",
         )
 
     def _verdict(self, clause: JudgedClause, open_run: Run | None) -> ClauseVerdict:

@@ -11,7 +11,7 @@ from btq_lang.util.record import fields_of
 from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Source
+    from btq_lang.evidence.verdicts import ClauseVerdict, Measures, MissionVerdicts, Report, RequirementVerdict, Source
 
     Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
@@ -57,6 +57,7 @@ def _mission(mission: MissionVerdicts) -> Json:
         "name": mission.name,
         "file": shown(mission.file),
         "runs": mission.runs,
+        **({"outline": mission.outline} if mission.outline else {}),
         "outcomes": dict(mission.outcomes),
         "retries": _fields(mission.retries),
         "recoveries": _fields(mission.recoveries),
@@ -101,7 +102,13 @@ def _clause(clause: ClauseVerdict) -> Json:
             }
             for each in clause.violations
         ],
+        **({"measures": _measures(clause.measures)} if clause.measures is not None else {}),
     }
+
+
+def _measures(measures: Measures) -> Json:
+    margins = measures.margins.written() if measures.margins is not None else None
+    return {**_fields(measures), "margins": margins}
 
 
 def _fields(record: object, but: Container[str] = ()) -> dict[str, Json]:

@@ -38,6 +38,7 @@ class Means(Record):
         shown: gives a path as people read it.
         keeping: where what is found is kept; None: nowhere.
         limits: which limits of probabilities decide.
+        with_measures: as of `MissionEvaluation`.
     """
 
     missions: Sequence[Candidate]
@@ -50,6 +51,7 @@ class Means(Record):
     with_timelines: bool
     keeping: Keeping | None
     limits: Limits = "one look"
+    with_measures: bool = False
 
 
 class Running(Protocol):
@@ -135,7 +137,9 @@ def _judged(
                 if key not in evaluations:
                     robot = session.robot or (means.keeping.robot_of(log) if means.keeping is not None else "")
                     parts = [rows.part(mission.name, robot)] if rows is not None else []
-                    evaluation = MissionEvaluation(mission, means.with_timelines, ran, parts, means.limits)
+                    evaluation = MissionEvaluation(
+                        mission, means.with_timelines, ran, parts, means.limits, means.with_measures
+                    )
                     evaluations[key] = evaluation
                     if running is not None:
                         running.judged_by(evaluation)
@@ -184,4 +188,4 @@ class Judging:
 
 
 def _empty(mission: Candidate, means: Means) -> MissionEvaluation:
-    return MissionEvaluation(mission, means.with_timelines, limits=means.limits)
+    return MissionEvaluation(mission, means.with_timelines, limits=means.limits, with_measures=means.with_measures)

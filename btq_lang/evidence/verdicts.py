@@ -12,6 +12,7 @@ from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.catalog.units import Unit
+    from btq_lang.evidence.margins import Margins
     from btq_lang.evidence.model import Outcome
     from btq_lang.evidence.odds import Limits
     from btq_lang.workspace.resolved import ResolvedNode
@@ -133,6 +134,27 @@ class Timeline(Record):
     left_out: int
 
 
+class Measures(Record):
+    """What is needed to judge a clause again after its bound or its odds have been edited.
+
+    Attributes:
+        key, place: what it demands apart from them, and where: as of `edges.key_of` and `outline.Demand`.
+        bound: in SI; None: it has none that can be moved.
+        odds: the relation and the probability that the requirement asks for.
+        missing: why it cannot be judged at all its nodes; empty if it can.
+        has_run: whether one of its nodes has.
+        margins: the counts by the bound; None: unknown.
+    """
+
+    key: str
+    place: str
+    bound: float | None
+    odds: tuple[str, float] | None
+    missing: str
+    has_run: bool
+    margins: Margins | None
+
+
 class ClauseVerdict(Record):
     """A clause at a written node.
 
@@ -152,6 +174,7 @@ class ClauseVerdict(Record):
         why: why the verdict is unknown or never exercised, or why parts of an undecided one are unknown; else empty.
         histogram: of the measures; None without any.
         timeline: the run of the worst violation; None without any.
+        measures: to judge it again; None: not kept.
     """
 
     text: str
@@ -172,6 +195,7 @@ class ClauseVerdict(Record):
     why: str
     histogram: Histogram | None
     timeline: Timeline | None = None
+    measures: Measures | None = None
 
 
 class RequirementVerdict(Record):
@@ -261,6 +285,7 @@ class MissionVerdicts(Record):
         retries: by Retry nodes and Nav2's RecoveryNodes.
         recoveries: by RecoveryNodes between two tries.
         by_people: the requirements verified by review, test or analysis, which are not judged.
+        outline: of its trees; empty without measures.
     """
 
     name: str
@@ -273,6 +298,7 @@ class MissionVerdicts(Record):
     retries: Repeats
     recoveries: Repeats
     by_people: tuple[str, ...]
+    outline: str = ""
 
     @property
     def runs(self) -> int:

@@ -119,6 +119,7 @@ def judged(
     requested: Sequence[str],
     *,
     with_timelines: bool = False,
+    with_measures: bool = False,
     jobs: int = 1,
     keeping: Keeping | None = None,
     progress: Callable[[int, int], None] = lambda files, runs: None,
@@ -128,7 +129,7 @@ def judged(
     Args:
         samples: the file that they are from, and the samples by signal or entry.
         requested: the missions as the command line names them; none: all that are known.
-        sources, of_files, with_timelines, jobs, keeping, progress: as in `verify`.
+        sources, of_files, with_timelines, with_measures, jobs, keeping, progress: as in `verify`.
     """
     file, series = samples
     report = verify(
@@ -139,6 +140,7 @@ def judged(
         sources,
         of_files,
         with_timelines=with_timelines,
+        with_measures=with_measures,
         jobs=jobs,
         keeping=keeping,
         progress=progress,

@@ -6,7 +6,8 @@ import json
 from typing import Any
 
 from btq_lang.evidence.json_document import FORMAT, VERSION
-from btq_lang.evidence.verdicts import ClauseVerdict, Link, RequirementVerdict, Violation, Worst
+from btq_lang.evidence.margins import Margins
+from btq_lang.evidence.verdicts import ClauseVerdict, Link, Measures, RequirementVerdict, Violation, Worst
 from btq_lang.evidence.wording import time_of
 from btq_lang.util.record import Record
 
@@ -15,16 +16,32 @@ class NotVerdicts(ValueError):
     """A text that is not such a document."""
 
 
+class WrittenSource(Record):
+    """A log: its runs, the number of the first, when the last one ended, empty without any, and whether all nodes were
+    found in the mission.
+    """
+
+    file: str
+    runs: int
+    first_run: int
+    end: str
+    is_whole: bool
+
+
 class WrittenMission(Record):
     """The verdicts of a mission.
 
     Attributes:
         file: of the mission, as the document names it; empty in documents of older versions.
+        outline: as in `MissionVerdicts`.
+        sources: the logs, in the order of their runs.
     """
 
     name: str
     file: str
     runs: int
+    outline: str
+    sources: tuple[WrittenSource, ...]
     requirements: tuple[RequirementVerdict, ...]
 
 
@@ -43,6 +60,8 @@ def read_verdicts(text: str) -> tuple[WrittenMission, ...]:
                 each["name"],
                 each.get("file", ""),
                 each["runs"],
+                each.get("outline", ""),
+                tuple(map(_source, (one for one in found["sources"] if one["mission"] == each["name"]))),
                 tuple(map(_requirement, (one for one in found["requirements"] if one["mission"] == each["name"]))),
             )
             for each in found["missions"]
@@ -56,6 +75,11 @@ def _requirement(found: dict[str, Any]) -> RequirementVerdict:
     return RequirementVerdict(found["id"], found["title"], found["verdict"], tuple(map(_clause, found["clauses"])))
 
 
+def _source(found: dict[str, Any]) -> WrittenSource:
+    is_whole = found["joined"] == found["nodes"]
+    return WrittenSource(found["file"], found["runs"], found["first_run"], found["end"] or "", is_whole)
+
+
 def _clause(found: dict[str, Any]) -> ClauseVerdict:
     fields = {name: found[name] for name in ClauseVerdict.__match_args__ if name in found}
     interval = found["interval"]
@@ -66,8 +90,15 @@ def _clause(found: dict[str, Any]) -> ClauseVerdict:
         "limits": found["limits"] or "one look",
         "violations": tuple(map(_violation, found["violations"])),
         "histogram": None,
+        "measures": _measures(found["measures"]) if "measures" in found else None,
     }
     return ClauseVerdict(**fields)
+
+
+def _measures(found: dict[str, Any]) -> Measures:
+    odds, margins = found["odds"], found["margins"]
+    read = {"odds": tuple(odds) if odds else None, "margins": Margins.read(margins) if margins else None}
+    return Measures(**{**found, **read})
 
 
 def _violation(found: dict[str, Any]) -> Violation:

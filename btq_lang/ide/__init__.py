@@ -15,6 +15,7 @@ all features and the checks that they use takes a third of that time.
     rename.py, moves.py    edits in every file that names a thing
     actions.py             with refactor, block, short_form and unused
     on_type.py, structure.py, outline.py, hints.py   edits while typing, folding, outline, inlay hints and lenses
+    verdicts.py            what logs show of requirements, for lenses, hover and diagnostics
     semantic_tokens.py     with colours, stretches, appearance and legend; xml_colours: the same of scripts in XML
     readiness.py           computes results before they are requested
 """

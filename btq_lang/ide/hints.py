@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.diagnostics.model import Place
 from btq_lang.ide import describe
 from btq_lang.ide.built_xml import said_in_xml
 from btq_lang.ide.clause_enforcement import missions_of
@@ -21,6 +23,9 @@ from btq_lang.workspace.inputs import everything
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.references import What
 from btq_lang.workspace.workspace import Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.ide.verdicts import Evidence
 
 _COUNTED = {Kind.REQUIREMENT: What.REQUIREMENT, Kind.TREE: What.TREE}
 _MOST_MISSIONS = 4  # resolving one takes long, and a library may be in hundreds
@@ -68,14 +73,18 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
     return tuple(found)
 
 
-def code_lenses(workspace: Workspace, path: str, side: str | None = None) -> tuple[Lens, ...]:
-    """How many places use a requirement, how many nodes it names itself, how many nodes call a tree; the main tree.
+def code_lenses(
+    workspace: Workspace, path: str, side: str | None = None, evidence: Evidence | None = None
+) -> tuple[Lens, ...]:
+    """How many places use a requirement, how many nodes it names itself, how many nodes call a tree; the main tree; and
+    what logs show of a requirement.
 
     As a reader counts: a requirement that is defined at a node is used there, and has a lens only if there are more
     uses; the `Root` that names the main tree does not call it.
 
     Args:
         side: the text of the side file of an XML file, if it has one.
+        evidence: what logs show of the project's requirements, if there are any.
     """
     found: list[Lens] = []
     for place in workspace.defined_in(path):
@@ -110,7 +119,22 @@ def code_lenses(workspace: Workspace, path: str, side: str | None = None) -> tup
             titles = [*(titles if uses or not nodes else ()), *holds]
         if uses or nodes or not is_in_place:
             found.append(Lens(place.span, ", ".join(titles), tuple(dict.fromkeys((*uses, *nodes)))))
-    return (*found, *_built(workspace, path, side))
+    return (*found, *_seen(workspace, path, evidence), *_built(workspace, path, side))
+
+
+def _seen(workspace: Workspace, path: str, evidence: Evidence | None) -> Iterator[Lens]:
+    """The worst verdict on each requirement."""
+    if evidence is None:
+        return
+    from btq_lang.ide.verdicts import verdict_titles  # few projects have logs
+
+    for span, title, nodes in verdict_titles(workspace, path, evidence):
+        starts = [(each.path or path, each.span.shifted(_start(workspace, each, path))) for each in nodes]
+        yield Lens(span, title, tuple(starts))
+
+
+def _start(workspace: Workspace, place: Place, path: str) -> int:
+    return workspace.files[place.path or path].start_of(place.anchor) if place.anchor is not None else 0
 
 
 def _built(workspace: Workspace, path: str, side: str | None) -> Iterator[Lens]:

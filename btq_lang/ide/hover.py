@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import phrase_at
 from btq_lang.ide import describe
@@ -18,6 +20,9 @@ from btq_lang.workspace.file import File
 from btq_lang.workspace.references import What
 from btq_lang.workspace.workspace import Workspace
 
+if TYPE_CHECKING:
+    from btq_lang.ide.verdicts import Evidence
+
 
 class Hover(Record):
     """What to show for a word, in Markdown."""
@@ -26,20 +31,29 @@ class Hover(Record):
     markdown: str
 
 
-def hover(workspace: Workspace, path: str, offset: int, side: str | None = None) -> Hover | None:
+def hover(
+    workspace: Workspace, path: str, offset: int, side: str | None = None, evidence: Evidence | None = None
+) -> Hover | None:
     """The hover at a place: a node with its ports and semantics, a requirement with its text and its nodes, a quality
     with its definition, an entry with its readers and writers, a quantity in SI units, a rule's page, a word of the
     language.
 
     Args:
         side: the text of the side file of an XML file, if it has one.
+        evidence: what logs show of the project's requirements, if there are any.
     """
     found = at(workspace, path, offset)
     if found is None:
         return _word_of_the_language(workspace.files[path], offset)
-    markdown = _explained(workspace, found, subject(workspace, found)) or ""
+    wanted = subject(workspace, found)
+    markdown = _explained(workspace, found, wanted) or ""
+    seen = ""
+    if evidence is not None and wanted.what is What.REQUIREMENT:
+        from btq_lang.ide.verdicts import verdict_table  # few projects have logs
+
+        seen = verdict_table(workspace, path, wanted, evidence)
     said = _built(workspace, found, side) if found.mention.what in (What.NODE, What.TREE) else ""
-    both = "\n\n".join(filter(None, (markdown, said)))
+    both = "\n\n".join(filter(None, (markdown, seen, said)))
     return Hover(found.span, both) if both else None
 
 

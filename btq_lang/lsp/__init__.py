@@ -7,6 +7,7 @@ offsets and paths, call `ide`, and convert the result back.  Features are implem
     protocol.py messages serialised by hand, for speed
     session.py the open files, and whose diagnostics an edit may have changed
     editor.py one client: its session, its capabilities, and what is published when
+    logs.py            the process that judges a project's logs, and its summary
     failures.py exceptions in handlers
     lifecycle.py, documents.py, commands.py, progress.py … the handlers, three to five lines each
 """
@@ -22,6 +23,7 @@ from btq_lang.lsp import (
     hints,
     layout,
     lifecycle,
+    logs,
     navigation,
     structure,
 )
@@ -30,5 +32,17 @@ from btq_lang.lsp.editor import Server
 
 def register(server: Server) -> None:
     """Register all handlers with pygls."""
-    for group in (lifecycle, documents, navigation, explaining, structure, colours, layout, acting, hints, commands):
+    for group in (
+        lifecycle,
+        documents,
+        navigation,
+        explaining,
+        structure,
+        colours,
+        layout,
+        acting,
+        hints,
+        commands,
+        logs,
+    ):
         group.register(server)

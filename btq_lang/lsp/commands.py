@@ -66,9 +66,11 @@ def register(server: Server) -> None:
     def overview(document: types.TextDocumentIdentifier) -> str:
         """The page that `btq trace --format html` writes for a document in its current state, saved or not."""
         workspace, path = mission(document, reads=True)
-        from btq_lang.trace.missions import trace_table  # as above
+        from btq_lang.trace.missions import trace_tables  # as above
 
-        return trace_table(workspace, path).write("html")
+        evidence = session.evidence(workspace)
+        verdicts_of = evidence.verdicts_of if evidence is not None else None
+        return trace_tables([(workspace, (path,))], verdicts_of=verdicts_of).write("html")
 
     @server.command(BUILD)
     def build(document: types.TextDocumentIdentifier) -> dict[str, object]:

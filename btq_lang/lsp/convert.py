@@ -149,7 +149,7 @@ class Converter:
         written: list[str] = []
         for reported, starts in found.of_items:
             begins = [files[at].item_places[id(item)] for at, item in reported.items]
-            ends = [files[at].source_lines.ends(span, encoding) for at, span in reported.fixed]
+            ends = [files[at].source_lines.ends(span, encoding) for at, span in reported.fixed if at in files]
             where = self._spellings, begins, ends
             if reported.written is not None and reported.written[0] == where:
                 written.append(reported.written[1])
@@ -190,7 +190,9 @@ class Converter:
                     numbers += ends(place.span, encoding)
                     related.append((uri, each.message))
                 else:
-                    numbers += files[place.path].source_lines.ends(place.span, encoding)
+                    # The place in a log is its start: a log has no lines.
+                    is_text = place.path in files
+                    numbers += files[place.path].source_lines.ends(place.span, encoding) if is_text else (0, 0, 0, 0)
                     related.append((self.uri(place.path), each.message))
             written.append(_template(one.rule, one.message, one.notes, one.severity, one.tags, tuple(related)))
         return ", ".join(written) % tuple(numbers)

@@ -96,6 +96,8 @@ class Server(LanguageServer):
         self.scanned = asyncio.Event()  # the folders have been read; before, the set of files is unknown
         self._is_settled = False  # the first objects are frozen for the garbage collector
         self._failures: set[object] = set()  # the places of logged failures
+        self.on_scanned: Callable[[], None] = lambda: None  # called when the folders have been read
+        self.on_end: Callable[[], None] = lambda: None  # called when the server ends
         self.protocol.log_failure = self.log_failure
         self._watching: asyncio.Task[None] | None = None
         self.is_outdated: Callable[[], bool] = lambda: False  # whether an edit waits to be handled
@@ -114,6 +116,7 @@ class Server(LanguageServer):
         except (KeyboardInterrupt, SystemExit):
             pass
         finally:
+            self.on_end()
             self.shutdown()  # type: ignore[no-untyped-call]  # pygls has no types there
 
     def report_server_error(self, error: Exception, source: Any) -> None:
@@ -435,6 +438,10 @@ class Server(LanguageServer):
     def reload(self) -> None:
         """Read folders and projects again, and publish changes."""
         self.check_soon(self.session.reload())
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Make the editor ask again for what it shows in texts."""
         for what, refresh in (
             ("semantic_tokens", self.workspace_semantic_tokens_refresh),
             ("inlay_hint", self.workspace_inlay_hint_refresh),

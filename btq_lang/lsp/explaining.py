@@ -21,7 +21,9 @@ def register(server: Server) -> None:
         answer = server.ask(
             params.text_document,
             params.position,
-            lambda workspace, path, offset: features.explain(workspace, path, offset, side),
+            lambda workspace, path, offset: features.explain(
+                workspace, path, offset, side, session.evidence(workspace)
+            ),
             reads=True,
         )
         return convert.hover(answer[0], answer[1], answer[2]) if answer and answer[2] else None

@@ -84,7 +84,7 @@ def register(server: Server) -> None:
             return []
         workspace, path = place
         found = []
-        for lens in features.code_lenses(workspace, path, session.side_file(path)):
+        for lens in features.code_lenses(workspace, path, session.side_file(path), session.evidence(workspace)):
             range_ = convert.range(workspace, path, lens.span)
             uses = [convert.location(workspace, *use) for use in lens.places]
             if not uses:

@@ -38,6 +38,7 @@ def register(server: Server) -> None:
             await _first_check(server)
         finally:
             server.scanned.set()
+        server.on_scanned()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
     async def did_change_configuration(params: types.DidChangeConfigurationParams) -> None:

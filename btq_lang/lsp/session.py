@@ -15,12 +15,13 @@ from weakref import ReferenceType, ref
 from btq_lang.diagnostics.rules import RULES, Severity
 from btq_lang.util.record import replace
 from btq_lang.util.text import LineIndex
-from btq_lang.workspace.findings import Findings
+from btq_lang.workspace.findings import Findings, Reported
 from btq_lang.workspace.overrides import Override
 
 if TYPE_CHECKING:  # imported on use: the server must start fast
     from btq_lang.commands.files import Files
     from btq_lang.diagnostics.model import Diagnostic
+    from btq_lang.ide.verdicts import Evidence
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.file import File
     from btq_lang.workspace.item_index import Name
@@ -50,6 +51,7 @@ class Session:
         self.projects: dict[str, tuple[str, tuple[LoadProblem, ...]]] = {}
         self.parameters: dict[str, tuple[Workspace, Findings]] = {}
         self.check_seconds: dict[str, float] = {}
+        self._evidence: dict[str, Evidence] = {}  # by the folder of the project
         self._files: Files | None = None
         self._read_for: tuple[tuple[str, ...], dict[str, object]] | None = None  # which folders and settings
         self._workspaces: list[Workspace] = []  # their caches are for open files
@@ -344,15 +346,38 @@ class Session:
             begin = perf_counter()
             for workspace in workspaces:
                 keep(workspace, path)
-            of_each = [findings(workspace.store, path) for workspace in workspaces]
+            of_each = [findings(each.store, path, self._seen(each, path)) for each in workspaces]
             found = (
                 of_each[0] if len(of_each) == 1 else self._merged(workspaces, [each.diagnostics for each in of_each])
             )
             self.check_seconds[path] = perf_counter() - begin
         else:  # placed: offsets that count from items would keep these alive
-            found = self._merged(workspaces, [check(workspace, path) for workspace in workspaces])
+            of_closed = [
+                findings(each.store, path, seen).diagnostics if (seen := self._seen(each, path)) else check(each, path)
+                for each in workspaces
+            ]
+            found = self._merged(workspaces, of_closed)
         self._checked[path] = tuple(map(ref, workspaces)), found
         return found
+
+    def _seen(self, workspace: Workspace, path: str) -> tuple[Reported, ...]:
+        """What logs show of the requirements at the nodes of a file."""
+        evidence = self.evidence(workspace)
+        if evidence is None:
+            return ()
+        from btq_lang.ide.verdicts import verdict_findings  # few projects have logs
+
+        return verdict_findings(workspace, path, evidence)
+
+    def evidence(self, workspace: Workspace) -> Evidence | None:
+        """What logs show of a project's requirements, if it names logs and these have been judged."""
+        project = workspace.project
+        return self._evidence.get(project.root) if project.evidence is not None and project.evidence.logs else None
+
+    def show(self, root: str, evidence: Evidence) -> None:
+        """Use what logs show of the requirements of the project in a folder."""
+        self._evidence[root] = evidence
+        self._checked.clear()
 
     def _merged(self, workspaces: Iterable[Workspace], found: Iterable[tuple[Diagnostic, ...]]) -> Findings:
         """What is found in one file in each of its factories."""

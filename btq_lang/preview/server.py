@@ -42,7 +42,7 @@ class Preview:
         go: Callable[[str], dict[str, object]],
     ) -> None:
         self._changed = Condition()
-        self._now = (0, 0)  # number of changes, and the cursor's line; 0: unknown
+        self._now = (0, 0, "")  # number of changes, the cursor's line; 0: unknown; and the run that is shown
         handler = type("Handler", (_Handler,), {"preview": self, "draw_": staticmethod(draw), "go_": staticmethod(go)})
         self._server = ThreadingHTTPServer((ADDRESS, port), handler)
         self._server.daemon_threads = True
@@ -56,17 +56,25 @@ class Preview:
     def changed(self) -> None:
         """Make every page request its picture again."""
         with self._changed:
-            self._now = (self._now[0] + 1, self._now[1])
+            self._now = (self._now[0] + 1, *self._now[1:])
             self._changed.notify_all()
 
     def mark_line(self, line: int) -> None:
         """Make every page mark the node at the line, counted from 1."""
         with self._changed:
-            self._now = (self._now[0], line)
+            self._now = (self._now[0], line, self._now[2])
             self._changed.notify_all()
 
-    def wait(self, seen: tuple[int, int]) -> tuple[int, int]:
-        """Wait until the number of changes or the cursor's line differs from those seen, or a timeout; returns both."""
+    def show_run(self, run: str) -> None:
+        """Make every page show a run of the logs; `run`: as JSON."""
+        with self._changed:
+            self._now = (*self._now[:2], run)
+            self._changed.notify_all()
+
+    def wait(self, seen: tuple[int, int, str]) -> tuple[int, int, str]:
+        """Wait until the number of changes, the cursor's line or the run differs from those seen, or a timeout; returns
+        all three.
+        """
         with self._changed:
             self._changed.wait_for(lambda: self._now != seen, _ALIVE)
             return self._now
@@ -133,15 +141,16 @@ class _Handler(BaseHTTPRequestHandler):
         self.send_header("Content-Type", "text/event-stream")
         self.send_header("Cache-Control", "no-store")
         self.end_headers()
-        changes, line = -1, 0
+        changes, line, run = -1, 0, ""
         try:
             while True:
-                now = self.preview.wait((changes, line))
+                now = self.preview.wait((changes, line, run))
                 events = b"data: changed\n\n" if now[0] != changes else b""
                 events += b"event: here\ndata: %d\n\n" % now[1] if now[1] != line else b""
+                events += b"event: run\ndata: %s\n\n" % now[2].encode() if now[2] != run else b""
                 self.wfile.write(events or b": still here\n\n")
                 self.wfile.flush()
-                changes, line = now
+                changes, line, run = now
         except OSError:
             return
 

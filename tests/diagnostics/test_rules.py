@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from check_asserts import MARKER, announced, assert_marked
 from nav2_robot import findings_in, make_robot
+from rule_logs import RULES_OF_LOGS, assert_marked_by_log
 from rule_pages import BLOCK, PAGES, blocks
 
 from btq_lang.diagnostics.rules import RULES, page
@@ -36,7 +37,9 @@ def test_a_page_shows_its_rule_at_work_and_a_clean_file(rule: str) -> None:
 @pytest.mark.parametrize(("rule", "language", "block"), blocks())
 def test_the_examples_of_a_page(rule: str, language: str, block: str, tmp_path: Path) -> None:
     """The announced diagnostics and no others; each of their fixes mends, a safe one adds nothing."""
-    if language == "yaml":
+    if rule in RULES_OF_LOGS:
+        assert_marked_by_log(page(rule), block, tmp_path)
+    elif language == "yaml":
         make_robot(tmp_path)
         found = Counter(
             (

@@ -193,6 +193,9 @@ _TABLE = (
         "error-code-not-collected", _H, "an error code in an entry that neither a node nor the result of a goal reads"
     ),
     Rule("foreign-error-code", _W, "a condition that looks for the error codes of other actions than its entry has"),
+    # What logs show, in editors.
+    Rule("requirement-violated", _W, "a requirement that robots have violated, by the logs of the project"),
+    Rule("never-exercised", _H, "a requirement about something that no run in the logs of the project did"),
     Rule("target-breaks", _E, "what the engine or the distribution of `--target` refuses"),
     Rule("target-differs", _W, "what means something else in the engine or the distribution of `--target`"),
     Rule("yaml-syntax", _E, "a parameter file that is not YAML"),

@@ -126,7 +126,7 @@ class Part:
 
     def _judged(self, clause: _Clause, of_runs: bool, judgement: Judgement, begin: int, end: int, path: str) -> None:
         verdict = UNKNOWN if judgement.holds is None else SATISFIED if judgement.holds else VIOLATED
-        measure = judgement.measure
+        measure = judgement.measure if judgement.holds is not None else None
         numbers = (None, None) if measure is None else (measure.si, measure.bound.si)
         if measure is not None and clause.unit is None and measure.unit is not None:
             clause.unit = measure.unit.symbol

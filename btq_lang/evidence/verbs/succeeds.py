@@ -30,7 +30,7 @@ def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement
         return Judgement(None, activation.end, found.why)
     if found.excess > 0:
         if activation.timing == "latest":
-            return Judgement(None, activation.end, UNKNOWN_END)
+            return Judgement(None, activation.end, UNKNOWN_END, found)
         how = "succeeded after {}" if activation.outcome == "S" else "had not succeeded after {}"
         return Judgement(False, activation.end, sentence.replace("{}", how), found)
     if activation.outcome == "S":

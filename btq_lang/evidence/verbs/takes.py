@@ -35,7 +35,7 @@ def judged(limit: Limit, found: Measure | Unknown, activation: Activation, sente
     if holds is None:
         return None
     if not holds and activation.timing == "latest":
-        return Judgement(None, activation.end, UNKNOWN_END)
+        return Judgement(None, activation.end, UNKNOWN_END, found)
     return Judgement(holds, activation.end, sentence, found)
 
 

@@ -47,9 +47,9 @@ def _judged(claim: Claim, run: OverRun, period: Activation, starts: Sequence[Act
     if holds is None and (period.outcome == "O" or found.excess > 0):
         return None
     if holds is False and period.timing == "latest":
-        return Judgement(None, period.end, UNKNOWN_END)
+        return Judgement(None, period.end, UNKNOWN_END, found)
     at = period.end
-    if holds is False and found.is_upper:
+    if holds is False and found.is_upper and starts:
         bound = found.bound.si
         at = starts[max(floor(bound) if claim.limit.relation != "<" else ceil(bound) - 1, 0)].begin
     sentence = VERBS["tries"].said.replace("{}", counted(number, "time"))

@@ -32,9 +32,10 @@ endif
 
 if has('nvim')
   command! -buffer -bang BtqPreview lua require('btq.preview').run('<bang>' == '!')
+  command! -buffer -nargs=? BtqRun lua require('btq.run').run(tonumber('<args>'))
 endif
 
 let b:undo_ftplugin = 'setlocal commentstring< comments< formatoptions< expandtab< shiftwidth< softtabstop<'
       \ . ' iskeyword< suffixesadd< include< makeprg< errorformat<'
       \ . (has('nvim-0.11') ? ' completeopt<' : '')
-      \ . (has('nvim') ? ' | delcommand -buffer BtqPreview' : '')
+      \ . (has('nvim') ? ' | delcommand -buffer BtqPreview | delcommand -buffer BtqRun' : '')

@@ -79,6 +79,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     }),
     vscode.commands.registerCommand("btq.build", () => tasks.run("build")),
     vscode.commands.registerCommand("btq.showTree", () => tree.show()),
+    vscode.commands.registerCommand("btq.showRun", orSay(() => tree.showRun())),
     vscode.commands.registerCommand("btq.saveTree", orSay(() => tree.save())),
     vscode.commands.registerCommand("btq.showXml", () => xml.show()),
     vscode.commands.registerCommand("btq.convert", orSay(() => convert(ask, log))),

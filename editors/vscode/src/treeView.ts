@@ -17,6 +17,11 @@ interface Picture {
 /** The names of the nodes that are folded, and whether notes are; the key of a node; a picture. */
 type FromPage = { readonly draw: string[] } | { readonly go: string } | { readonly save: string };
 
+interface Run {
+  readonly run: number;
+  readonly said: string;
+}
+
 /** The tab of a page beside a mission: the mission's own icon. */
 export function iconPath({ extensionUri }: vscode.ExtensionContext): { light: vscode.Uri; dark: vscode.Uri } {
   const icon = (theme: string): vscode.Uri => vscode.Uri.joinPath(extensionUri, "images", `file-${theme}.svg`);
@@ -28,6 +33,9 @@ export class TreeView {
   private document: vscode.TextDocument | undefined;
   private picture: Picture | undefined;
   private folded: string[] = [];
+  /** Whether the page has had its first picture. */
+  private drawn = Promise.resolve();
+  private hasDrawn: () => void = () => undefined;
   private timer: NodeJS.Timeout | undefined;
 
   constructor(
@@ -58,6 +66,7 @@ export class TreeView {
     if (document !== this.document) this.folded = [];
     this.document = document;
     if (!this.panel) {
+      this.drawn = new Promise((resolve) => (this.hasDrawn = resolve));
       const place = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
       this.panel = vscode.window.createWebviewPanel("btq.tree", "Tree", place, {
         enableScripts: true,
@@ -73,6 +82,27 @@ export class TreeView {
       await this.draw();
     }
     this.panel.title = `Tree of ${document.uri.path.split("/").pop()}`;
+  }
+
+  /** Show a run of the logs in the picture: the last, the worst of a requirement, or any, as the user chooses. */
+  async showRun(): Promise<void> {
+    const document = vscode.window.activeTextEditor?.document ?? this.document;
+    if (!isOurs(document)) {
+      void vscode.window.showInformationMessage("Open a mission first: a run is shown in its tree.");
+      return;
+    }
+    const uri = document.uri.toString();
+    const found = (await this.ask("btq.server.runs", { uri })) as readonly Run[];
+    const items = found.map(({ run, said }) => ({ label: `Run ${run}`, description: said, run }));
+    const other = { label: "Another run…", description: "by its number", run: 0 };
+    const chosen = await vscode.window.showQuickPick([...items, other], { title: "Show Run" });
+    const typed = chosen?.run === 0 ? await vscode.window.showInputBox({ title: "The number of the run" }) : chosen?.run;
+    if (typed === undefined) return;
+    const run = await this.ask("btq.server.run", { uri }, Number(typed));
+    if (document !== this.document || !this.panel) await this.show();
+    await this.drawn;
+    await this.panel?.webview.postMessage({ run });
+    this.panel?.reveal(undefined, false); // its keys step through the run
   }
 
   /** Write the picture to a file: as it is shown, or of the active editor's mission if that is another. */
@@ -111,6 +141,7 @@ export class TreeView {
       await this.panel?.webview.postMessage({ svg: this.picture.svg, title: document.uri.path.split("/").pop() });
       const editor = vscode.window.visibleTextEditors.find((one) => one.document === document);
       if (editor) this.mark(editor.selection.active);
+      this.hasDrawn();
     } catch (error) {
       await this.panel.webview.postMessage({ trouble: error instanceof Error ? error.message : String(error) });
     }

@@ -43,6 +43,16 @@ function M.run(stop)
   M.follow(buffer, job)
 end
 
+--- Tell the program of a buffer something; without one it is started.
+function M.send(buffer, message)
+  if not jobs[buffer] then
+    M.run(false)
+  end
+  if jobs[buffer] then
+    vim.fn.chansend(jobs[buffer], vim.fn.json_encode(message) .. '\n')
+  end
+end
+
 --- Tell the program of the buffer's text and of the cursor, now and whenever they change.
 function M.follow(buffer, job)
   local line, typed = nil, 0

@@ -1,0 +1,100 @@
+"""Judges a clause again after its bound or its odds have been edited, by what was kept of its judgements."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from btq_lang.evidence.clause import verdict_of
+from btq_lang.evidence.edges import edge_of, key_of
+from btq_lang.evidence.outline import Demand, demands
+from btq_lang.evidence.tally import Tally
+from btq_lang.evidence.verdicts import ClauseVerdict, Worst
+from btq_lang.evidence.wording import measured
+from btq_lang.util.record import Record, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from btq_lang.evidence.edges import Edge
+    from btq_lang.evidence.margins import Counts
+    from btq_lang.evidence.verdicts import Measures, RequirementVerdict
+    from btq_lang.requirements.resolved import Requirements
+
+
+class Shown(Record):
+    """What logs show of a clause of the present text.
+
+    Attributes:
+        verdict: None: the logs were not judged by this clause, but by an earlier one.
+        least: with the bound inside of a step of the margins, how many are violated at least; else how many are.
+    """
+
+    demand: Demand
+    verdict: ClauseVerdict | None
+    least: int = 0
+
+
+def shown_now(found: Requirements, judged: Iterable[RequirementVerdict]) -> Iterator[Shown]:
+    """The clauses of the present text, each with its verdict.
+
+    Args:
+        judged: the verdicts with measures on an earlier text, or the same.
+    """
+    known: dict[tuple[str, str, str], list[ClauseVerdict]] = {}
+    for requirement in judged:
+        for clause in requirement.clauses:
+            if clause.measures is not None:
+                key = requirement.id, clause.measures.key, clause.measures.place
+                known.setdefault(key, []).append(clause)
+    for demand in demands(found):
+        subject = demand.applied.subject if demand.applied is not None else None
+        edge = edge_of(demand.claim, subject, demand.requirement)
+        clauses = known.get((demand.requirement.name, key_of(demand.requirement, demand.claim, edge), demand.place))
+        # Several of a requirement with arguments may be at one node: they are in one order.
+        yield _again(demand, clauses.pop(0), edge) if clauses else Shown(demand, None)
+
+
+def _again(demand: Demand, clause: ClauseVerdict, edge: Edge | None) -> Shown:
+    measures = clause.measures
+    assert measures is not None, "only clauses with measures are looked up"
+    odds, confidence = demand.requirement.odds, demand.requirement.confidence
+    is_same_bound = (edge.value.si if edge is not None else None) == measures.bound
+    now = (odds.relation, odds.probability) if odds is not None else None
+    if is_same_bound and (now, confidence) == (measures.odds, clause.confidence):
+        return Shown(demand, clause, clause.violated)
+    if demand.requirement.window is not None or (not is_same_bound and measures.margins is None):
+        return Shown(demand, None)
+    if is_same_bound or edge is None or measures.margins is None:
+        return Shown(demand, _with_counts(demand, clause, measures, None), clause.violated)
+    least, most = measures.margins.counts(edge.value.si, edge)
+    worst = measures.margins.worst(edge.value.si, edge)
+    text = measured(worst[0], edge.value.unit, edge.value.si) if worst is not None else ""
+    clause = replace(clause, worst=Worst(worst[0], text, worst[1]) if worst is not None else None)
+    verdicts = [_with_counts(demand, clause, measures, counts) for counts in (least, most)]
+    if verdicts[0].verdict != verdicts[1].verdict:
+        return Shown(demand, None)
+    return Shown(demand, verdicts[1], least.violated)
+
+
+def _with_counts(demand: Demand, clause: ClauseVerdict, measures: Measures, counts: Counts | None) -> ClauseVerdict:
+    """The clause as its requirement demands it now, with other counts."""
+    requirement = demand.requirement
+    tally = Tally(requirement.odds, requirement.confidence, clause.limits)
+    counted = clause.counted - clause.violated, clause.violated, clause.unknown, clause.cut_off
+    kept, tally.violated, tally.unknown, tally.cut_off = counts if counts is not None else counted
+    tally.counted = kept + tally.violated
+    tally.why = clause.why
+    verdict, why = verdict_of(tally, measures.missing, measures.has_run)
+    return replace(
+        clause,
+        verdict=verdict,
+        counted=tally.counted,
+        violated=tally.violated,
+        unknown=tally.unknown,
+        cut_off=tally.cut_off,
+        interval=tally.interval(),
+        confidence=requirement.confidence,
+        more=tally.more(),
+        violations=clause.violations if counts is None else (),
+        why=why,
+    )

@@ -1,0 +1,97 @@
+"""The bound of a clause as something that may be moved: an editor judges a changed one by what was measured.
+
+One invariant: only a bound for which every judgement is decided by one measure, whatever the bound, has an edge: a
+constant on one side, not of a sum, and not of a count whose starts may be unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.catalog.verbs import VERBS, words
+from btq_lang.requirements.model import Aggregate, Compare, Limit, Read, Total, Value
+from btq_lang.util.record import Record, replace
+
+if TYPE_CHECKING:
+    from btq_lang.requirements.model import Claim, Requirement, Subject
+
+
+class Edge(Record):
+    """The bound of a clause.
+
+    Attributes:
+        value: the bound.
+        is_upper: it bounds the measure from above.
+        is_strict: a measure equal to it violates it.
+        moved: gives the claim with another value in its place.
+    """
+
+    value: Value
+    is_upper: bool
+    is_strict: bool
+    moved: Callable[[Value], Claim]
+
+    def across(self, si: float) -> float:
+        """A number that is larger the further a value is on the wrong side."""
+        return si if self.is_upper else -si
+
+    @property
+    def extremes(self) -> tuple[Claim, Claim]:
+        """The claim with a bound that every measure keeps, and with one that none keeps."""
+        far = (_FAR, -_FAR) if self.is_upper else (-_FAR, _FAR)
+        within, beyond = (self.moved(replace(self.value, si=si)) for si in far)
+        return within, beyond
+
+
+def edge_of(claim: Claim, subject: Subject | None, requirement: Requirement) -> Edge | None:
+    """The bound of a claim at a subject; None if it has none that may be moved."""
+    if requirement.window is not None or isinstance(subject, Total):
+        return None  # a window holds other judgements for another bound; of a sum parts may be unknown
+    if claim.limit is not None:
+        if VERBS[claim.verb].operand == "count" and requirement.scopes:
+            return None  # starts may be unknown
+        return _edge_of_limit(claim, claim.limit)
+    return _edge_of_condition(claim)
+
+
+def key_of(requirement: Requirement, claim: Claim, edge: Edge | None) -> str:
+    """What a clause demands apart from its bound and its odds: judgements of equal keys count the same."""
+    text = claim.text.replace(edge.value.text, "…", 1) if edge is not None else claim.text
+    parts = [text, *(scope.text for scope in requirement.scopes)]
+    parts += [requirement.window.text] if requirement.window is not None else []
+    of_runs = requirement.odds is not None and requirement.odds.experiments == "runs"
+    return " ".join([*parts, "of runs"] if of_runs else parts)
+
+
+def _edge_of_limit(claim: Claim, limit: Limit) -> Edge | None:
+    if not isinstance(limit.value, Value) or limit.upper is not None:
+        return None
+    is_upper, is_strict = limit.relation in ("<=", "<"), limit.relation in ("<", ">")
+    return Edge(limit.value, is_upper, is_strict, lambda value: replace(claim, limit=replace(limit, value=value)))
+
+
+def _edge_of_condition(claim: Claim) -> Edge | None:
+    condition = claim.condition
+    if not isinstance(condition, Compare) or len(condition.operators) != 1:
+        return None
+    (sign,), (left, right) = condition.operators, condition.operands
+    is_mirrored = isinstance(left, Value)
+    value, measured = (left, right) if is_mirrored else (right, left)
+    if sign not in _MIRRORED or not isinstance(value, Value) or not isinstance(measured, Read | Aggregate):
+        return None
+    sign = _MIRRORED[sign] if is_mirrored else sign
+    if claim.verb == "never":
+        sign = _OPPOSITE[sign]
+
+    def moved(other: Value) -> Claim:
+        operands = (other, measured) if is_mirrored else (measured, other)
+        return replace(claim, condition=replace(condition, operands=operands))
+
+    return Edge(value, sign in ("<=", "<"), sign in ("<", ">"), moved)
+
+
+_FAR: Final = 1e15  # further than any measure, and exact when a number of starts is added
+_MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+_OPPOSITE: Final = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
+WHILE_IT_RUNS: Final = words(enforced="guard") & words(operands=("condition",))  # the first violation decides

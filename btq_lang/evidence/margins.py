@@ -1,0 +1,212 @@
+"""How many judgements of a clause come to what, for every bound it may have.
+
+A judgement changes at one value of the bound, that of its measure; so the counts are a sum of steps.  Values are given
+as `Edge.across`: a bound that is smaller than a step's value is broken there.
+
+One invariant: counts are exact for every bound that is not inside a step, and the number of steps is limited: when
+there are too many, neighbours become one, which then begins and ends at different values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.edges import Edge
+
+
+class Counts(NamedTuple):
+    """How many judgements there are of each kind."""
+
+    kept: int
+    violated: int
+    unknown: int
+    cut_off: int
+
+
+class Step(NamedTuple):
+    """A step of the counts.
+
+    Attributes:
+        low, high: the values between which they change.
+        change: what is added to the counts if the bound is smaller.
+    """
+
+    low: float
+    high: float
+    change: Counts
+
+
+class Margins:
+    """The counts of a clause by its bound.
+
+    Attributes:
+        is_exact: otherwise they are unknown: a judgement did not depend on one measure.
+    """
+
+    def __init__(self, of_runs: bool) -> None:
+        """
+        Args:
+            of_runs: runs are counted, each as its judgements together.
+        """
+        self.is_exact = True
+        self._of_runs: Final = of_runs
+        self._base = Counts(0, 0, 0, 0)  # with a bound that all keep
+        self._steps: list[Step] = []
+        self._open: Final[list[tuple[int, int, float]]] = []  # of the open run: kinds within and beyond, and the value
+        self._worst: tuple[float, int] | None = None  # of those that keep some bound, with its run
+        self._furthest: tuple[float, int] | None = None  # of those that break some bound
+
+    def add(self, within: int | None, beyond: int | None, value: float | None) -> None:
+        """Count a judgement in the open run.
+
+        Args:
+            within, beyond: what it is with a bound that it keeps, and with one that it breaks, as indices of `Counts`;
+                None: it does not count.
+            value: where it changes; None: unknown.
+        """
+        if value is None and within != beyond:
+            self.is_exact = False
+        else:
+            self._open.append((_index(within), _index(beyond), value if value is not None else _NEVER))
+
+    def end_run(self, run: int) -> None:
+        """Close the open run, which has this number."""
+        for within, beyond, value in self._open:
+            if value != _NEVER and within == _KEPT:
+                self._worst = max(self._worst or (value, run), (value, run), key=_value)
+            if value != _NEVER and beyond == _VIOLATED:
+                self._furthest = max(self._furthest or (value, run), (value, run), key=_value)
+        if self._of_runs and self._open:
+            self._end_whole_run()
+        else:
+            for within, beyond, value in self._open:
+                self._base = _sum(self._base, _UNITS[within])
+                if within != beyond:
+                    self._steps.append(Step(value, value, _difference(_UNITS[beyond], _UNITS[within])))
+        self._open.clear()
+        if len(self._steps) > 4 * MOST_STEPS:
+            self._steps = _compacted(self._steps)
+
+    def _end_whole_run(self) -> None:
+        """Count the run once, by all its judgements; those that are cut off count by themselves."""
+        now = [0] * (len(_UNITS))
+        for within, _, _ in self._open:
+            now[within] += 1
+        before = _of_run(now)
+        self._base = _sum(self._base, before)
+        for within, beyond, value in sorted(self._open, key=_where, reverse=True):
+            if value == _NEVER:
+                break
+            now[within] -= 1
+            now[beyond] += 1
+            after = _of_run(now)
+            if after != before:
+                self._steps.append(Step(value, value, _difference(after, before)))
+                before = after
+
+    def add_all(self, other: Margins, runs: int) -> None:
+        """Add those of later logs; `runs`: how many runs were before them."""
+        self.is_exact = self.is_exact and other.is_exact
+        self._base = _sum(self._base, other._base)
+        self._steps = _compacted([*self._steps, *other._steps])
+        for name in ("_worst", "_furthest"):
+            mine, theirs = getattr(self, name), getattr(other, name)
+            moved = (theirs[0], theirs[1] + runs) if theirs is not None else None
+            if moved is not None and (mine is None or moved[0] > mine[0]):
+                setattr(self, name, moved)
+
+    def counts(self, bound: float, edge: Edge) -> tuple[Counts, Counts]:
+        """The counts with another bound: if what is inside of a step is kept, and if it is not."""
+        least = most = self._base
+        at = edge.across(bound)
+        for step in self._steps:
+            if step.low > at or (edge.is_strict and step.low == at):
+                least, most = _sum(least, step.change), _sum(most, step.change)
+            elif step.high > at or (edge.is_strict and step.high == at):
+                most = _sum(most, step.change)
+        return least, most
+
+    def worst(self, bound: float, edge: Edge) -> tuple[float, int] | None:
+        """The measure furthest on the wrong side with another bound, in SI, and its run."""
+        at = edge.across(bound)
+        found = [each for each in (self._worst,) if each is not None]
+        if self._furthest is not None and (self._furthest[0] > at or (edge.is_strict and self._furthest[0] == at)):
+            found.append(self._furthest)
+        value, run = max(found, key=_value, default=(None, 0))
+        return (edge.across(value), run) if value is not None else None
+
+    # ---- as JSON ----
+
+    def written(self) -> dict[str, Any]:
+        """The margins for a document: `base`: the counts with a bound that all keep; `steps`: low, high and change."""
+        steps = [[step.low, step.high, *step.change] for step in _compacted(self._steps)]
+        return {"base": list(self._base), "steps": steps, "worst": self._worst, "furthest": self._furthest}
+
+    @classmethod
+    def read(cls, found: dict[str, Any]) -> Margins:
+        """The margins that `written` gave."""
+        made = cls(of_runs=False)
+        made._base = Counts(*found["base"])
+        made._steps = [Step(low, high, Counts(*change)) for low, high, *change in found["steps"]]
+        made._worst, made._furthest = (tuple(each) if each else None for each in (found["worst"], found["furthest"]))
+        return made
+
+
+def _of_run(counts: list[int]) -> Counts:
+    """What a run is, if it has so many judgements of each kind."""
+    of_run = _VIOLATED if counts[_VIOLATED] else _UNKNOWN if counts[_UNKNOWN] else _KEPT if counts[_KEPT] else _NOTHING
+    return _sum(_UNITS[of_run], Counts(0, 0, 0, counts[_CUT_OFF]))
+
+
+def _compacted(steps: Iterable[Step]) -> list[Step]:
+    """The same in order of the values, equal values as one step, and no more steps than are kept."""
+    found: list[Step] = []
+    for step in sorted(steps):
+        if found and step.low <= found[-1].high:
+            last = found[-1]
+            found[-1] = Step(last.low, max(last.high, step.high), _sum(last.change, step.change))
+        else:
+            found.append(step)
+    if len(found) <= MOST_STEPS:
+        return found
+    heaviest = 2 * sum(map(_weight, found)) / MOST_STEPS  # any two neighbours that are left weigh more
+    merged = found[:1]
+    for step in found[1:]:
+        last = merged[-1]
+        if _weight(last) + _weight(step) <= heaviest:
+            merged[-1] = Step(last.low, step.high, _sum(last.change, step.change))
+        else:
+            merged.append(step)
+    return merged
+
+
+def _weight(step: Step) -> int:
+    return max(sum(map(abs, step.change)), 1)
+
+
+def _sum(one: Counts, other: Counts) -> Counts:
+    return Counts(one[0] + other[0], one[1] + other[1], one[2] + other[2], one[3] + other[3])
+
+
+def _difference(one: Counts, other: Counts) -> Counts:
+    return Counts(one[0] - other[0], one[1] - other[1], one[2] - other[2], one[3] - other[3])
+
+
+def _index(kind: int | None) -> int:
+    return _NOTHING if kind is None else kind
+
+
+def _value(found: tuple[float, int]) -> float:
+    return found[0]
+
+
+def _where(judgement: tuple[int, int, float]) -> float:
+    return judgement[2]
+
+
+MOST_STEPS: Final = 1000
+_KEPT, _VIOLATED, _UNKNOWN, _CUT_OFF, _NOTHING = range(5)
+_UNITS: Final = (Counts(1, 0, 0, 0), Counts(0, 1, 0, 0), Counts(0, 0, 1, 0), Counts(0, 0, 0, 1), Counts(0, 0, 0, 0))
+_NEVER: Final = float("-inf")  # the value of a judgement that no bound changes

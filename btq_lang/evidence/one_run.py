@@ -1,0 +1,103 @@
+"""One run of a log, step by step, for an editor that draws it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from btq_lang.evidence.model import ROOT, Activation
+from btq_lang.evidence.named_runs import joined_sessions
+from btq_lang.evidence.outline import outline
+from btq_lang.evidence.readers import read
+from btq_lang.evidence.runs import activations
+from btq_lang.evidence.verdicts import OUTCOMES
+from btq_lang.evidence.wording import timestamp
+from btq_lang.util.record import Record
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.identity import Candidate
+
+
+class Step(Record):
+    """Something that happened to a node.
+
+    Attributes:
+        at: seconds since the run began.
+        node: its number among the mission's written nodes, in the order of their text.
+        path: of the node in the engine.
+        state: `running`, or the outcome of the activation that ended.
+        seconds: how long that took; None while it runs.
+    """
+
+    at: float
+    node: int
+    path: str
+    state: str
+    seconds: float | None
+
+
+class OneRun(Record):
+    """A run.
+
+    Attributes:
+        start: when it began, in ISO 8601.
+        outline: of the mission, as in `outline.py`.
+        left_out: how many activations are omitted.
+    """
+
+    start: str
+    outcome: str
+    outline: str
+    steps: tuple[Step, ...]
+    left_out: int
+
+
+def one_run(log: str, mission: Candidate, number: int) -> OneRun | None:
+    """A run of a mission; None if the log has fewer.
+
+    Args:
+        number: counted from 1 among the mission's runs in the log.
+
+    Raises:
+        NotALog, OSError: the log cannot be read.
+    """
+    for _, session, joined in joined_sessions(read(log), [mission], log):
+        if isinstance(joined, str):
+            continue
+        written = joined.written()
+        found: list[Activation] = []
+        left_out = 0
+        for activation in activations(session):
+            if number == 1 and activation.uid in written:
+                left_out += len(found) >= _MOST
+                found += [activation] if len(found) < _MOST else []
+            if activation.uid == ROOT:
+                number -= 1
+                if number == 0:
+                    paths = {uid: joined.tree.nodes[uid].path for uid in written}
+                    steps = _steps(found, activation.begin, written, paths)
+                    of = timestamp(activation.begin), OUTCOMES[activation.outcome]
+                    return OneRun(*of, outline(mission.requirements), steps, left_out)
+    return None
+
+
+def _steps(found: Sequence[Activation], start: int, written: dict[int, int], paths: dict[int, str]) -> tuple[Step, ...]:
+    """The beginnings and the ends of activations in the order of the log's rows; parents begin before their children,
+    and end after them.
+    """
+    events = [(each.started, each.uid, False, each) for each in found if each.started != each.ended]
+    events += [(each.ended, -each.uid, True, each) for each in found]
+    events.sort(key=lambda event: event[:3])
+    return tuple(
+        Step(
+            (at[0] - start) / 1e6,
+            written[each.uid],
+            paths[each.uid],
+            OUTCOMES[each.outcome] if is_end else "running",
+            each.seconds if is_end else None,
+        )
+        for at, _, is_end, each in events
+    )
+
+
+_MOST = 5000

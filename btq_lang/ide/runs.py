@@ -1,0 +1,101 @@
+"""Which runs of the logs an editor may show, and a run on the picture of a text.
+
+One invariant: a run is drawn only on the trees that it is of: after an edit of them it belongs to an earlier text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from btq_lang.evidence.outline import outline
+from btq_lang.evidence.verdicts import VIOLATED
+from btq_lang.evidence.wording import duration
+from btq_lang.graph.missions import keyed
+from btq_lang.ide.clause_enforcement import missions_of
+from btq_lang.requirements.resolve import requirements
+from btq_lang.util.record import Record
+from btq_lang.workspace.workspace import Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.ide.verdicts import Evidence
+
+
+class LoggedRun(Record):
+    """Where a run is.
+
+    Attributes:
+        mission: the path of its mission.
+        log: as the summary names it.
+        number: among all runs.
+        number_in_log: among those of the log.
+    """
+
+    mission: str
+    log: str
+    number: int
+    number_in_log: int
+
+
+def runs_to_show(workspace: Workspace, path: str, evidence: Evidence) -> list[tuple[int, str]]:
+    """The runs that people look for, each with what it is: the last one, and the worst of each violated clause."""
+    mission = _mission(workspace, path, evidence)
+    if mission is None:
+        return []
+    written = evidence.missions[mission]
+    last = max((each for each in written.sources if each.runs), key=lambda each: each.end)
+    found = {last.first_run + last.runs - 1: ["the last one"]}
+    for requirement in written.requirements:
+        for clause in requirement.clauses:
+            if clause.verdict == VIOLATED and clause.violations:
+                worst = clause.worst
+                run = worst.run if worst is not None and worst.run is not None else clause.violations[0].run
+                said = f"the worst of {requirement.id}" + (f", {worst.text}" if worst is not None else "")
+                found.setdefault(run, []).append(said)
+    return [(run, "; ".join(dict.fromkeys(words))) for run, words in found.items()]
+
+
+def logged_run(workspace: Workspace, path: str, evidence: Evidence, number: int) -> LoggedRun | None:
+    """Where a run is; None: there is no such run."""
+    mission = _mission(workspace, path, evidence)
+    for source in evidence.missions[mission].sources if mission is not None else ():
+        if source.first_run <= number < source.first_run + source.runs:
+            assert mission is not None, "it has sources"
+            return LoggedRun(mission, source.file, number, number - source.first_run + 1)
+    return None
+
+
+def run_on_picture(workspace: Workspace, path: str, run: LoggedRun, found: Mapping[str, Any]) -> dict[str, Any] | None:
+    """A run for the page that draws a file's trees: each step with the key of its node, if that is drawn; None if the
+    trees have changed since.
+
+    Args:
+        found: the run as `btq verify --run` prints it.
+    """
+    of_mission = requirements(workspace, run.mission)
+    if outline(of_mission) != found["outline"]:
+        return None
+    numbers = {id(node.node): number for number, node in enumerate(of_mission.nodes.all)}
+    keys = {numbers[id(node.node)]: key for key, node in keyed(workspace, path) if id(node.node) in numbers}
+    steps = [
+        {
+            "key": keys.get(step["node"]),
+            "state": step["state"],
+            "time": duration(step["seconds"]) if step["seconds"] is not None else "",
+            "said": f"{duration(step['at'])}: {step['path']} {_said(step)}",
+        }
+        for step in found["steps"]
+    ]
+    title = f"Run {run.number} of {run.log.rpartition('/')[2]}: {found['outcome']}"
+    return {"title": title, "steps": steps, "leftOut": found["left_out"]}
+
+
+def _said(step: Mapping[str, Any]) -> str:
+    if step["seconds"] is None:
+        return "starts"
+    return f"{step['state']}, {duration(step['seconds'])}" if step["seconds"] else str(step["state"])
+
+
+def _mission(workspace: Workspace, path: str, evidence: Evidence) -> str | None:
+    """The first mission of a file that there are runs of."""
+    return next((each for each in missions_of(workspace, path) if each in evidence.missions), None)

@@ -1,0 +1,228 @@
+"""What logs show of the requirements of a text: above them, in a hover, and as diagnostics at their nodes.
+
+One invariant: nothing is read here.  The verdicts come from a summary of `btq verify`; those of clauses whose bound or
+odds have been edited since are judged again by what was measured, and those on other trees are called earlier ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
+from weakref import ReferenceType, ref
+
+from btq_lang.diagnostics.model import Diagnostic, Place, Related
+from btq_lang.diagnostics.rules import RULES
+from btq_lang.evidence.again import Shown, shown_now
+from btq_lang.evidence.outline import Demand, outline
+from btq_lang.evidence.sentences import explained, result, worst_violation
+from btq_lang.evidence.verdicts import (
+    NEVER,
+    SATISFIED,
+    UNDECIDED,
+    UNKNOWN,
+    VIOLATED,
+    WORST_FIRST,
+    ClauseVerdict,
+    RequirementVerdict,
+)
+from btq_lang.evidence.written_verdicts import WrittenMission
+from btq_lang.ide.clause_enforcement import missions_of
+from btq_lang.ide.meaning import Subject, definition
+from btq_lang.render.gfm import code, escaped, table
+from btq_lang.requirements.resolve import requirements
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span, counted
+from btq_lang.workspace.config import configured
+from btq_lang.workspace.findings import Reported
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.workspace import Workspace
+
+
+class Judged(Record):
+    """A mission of the present text with the verdicts of logs.
+
+    Attributes:
+        shown: its clauses.
+        is_earlier: the logs were judged by, or are of, other trees.
+    """
+
+    written: WrittenMission
+    shown: tuple[Shown, ...]
+    is_earlier: bool
+
+
+class Evidence:
+    """The verdicts of a project's logs.
+
+    Attributes:
+        root: the folder that paths of logs are relative to.
+        missions: by the paths of their files.
+        reported: the diagnostics of the last text of each file.
+    """
+
+    def __init__(self, root: str, missions: Mapping[str, WrittenMission]) -> None:
+        self.root: Final = root
+        self.missions: Final = missions
+        self.reported: Final[dict[str, tuple[Reported, ...]]] = {}
+        self._known: dict[str, tuple[ReferenceType[Workspace], Judged]] = {}  # of the last text
+
+    def verdicts_of(self, mission: str) -> Sequence[RequirementVerdict]:
+        """The verdicts on a mission as it was when the logs were judged."""
+        written = self.missions.get(mission)
+        return written.requirements if written is not None else ()
+
+    def on(self, workspace: Workspace, mission: str) -> Judged | None:
+        """The verdicts on a mission; None: there are no runs of it."""
+        written = self.missions.get(mission)
+        if written is None:
+            return None
+        known = self._known.get(mission)
+        if known is not None and known[0]() is workspace:
+            return known[1]
+        found = requirements(workspace, mission)
+        is_whole = all(source.is_whole for source in written.sources)
+        is_earlier = not is_whole or outline(found) != written.outline
+        judged = Judged(written, tuple(shown_now(found, written.requirements)), is_earlier)
+        self._known[mission] = ref(workspace), judged
+        return judged
+
+
+def verdict_titles(
+    workspace: Workspace, path: str, evidence: Evidence
+) -> Iterator[tuple[Span, str, tuple[Place, ...]]]:
+    """For each requirement in a file that logs show something of: the place of its name, its worst verdict in a few
+    words, and its nodes.
+    """
+    found: dict[Place, list[tuple[Shown, Judged]]] = {}
+    for judged in _on_missions(workspace, path, evidence):
+        for shown in judged.shown:
+            if shown.demand.requirement.place.path == path:
+                found.setdefault(shown.demand.requirement.place, []).append((shown, judged))
+    for place, clauses in found.items():
+        shown, judged = min(clauses, key=lambda each: _rank(each[0]))
+        nodes = [node.place for each, _ in clauses for node in _nodes(each.demand)]
+        span = place.span.shifted(workspace.files[path].start_of(place.anchor)) if place.anchor else place.span
+        yield span, _title(shown, judged), tuple(dict.fromkeys(nodes))
+
+
+def verdict_table(workspace: Workspace, path: str, wanted: Subject, evidence: Evidence) -> str:
+    """What logs show of a requirement, in Markdown; empty without any."""
+    place = definition(workspace, path, wanted)
+    lines: list[str] = []
+    for judged in _on_missions(workspace, path, evidence):
+        rows = [
+            each
+            for each in judged.shown
+            if place is not None
+            and (each.demand.requirement.name, each.demand.requirement.place.path) == (wanted.name, place.path)
+        ]
+        if rows:
+            runs, logs = judged.written.runs, judged.written.sources
+            seen = f"{counted(runs, 'run')} in {logs[0].file if len(logs) == 1 else counted(len(logs), 'log')}"
+            lines += ["", f"**{escaped(seen)}**{_EARLIER if judged.is_earlier else ''}", ""]
+            rows.sort(key=_rank)
+            lines += table(("Verdict", "Clause", "Result"), map(_row, rows[:_ROWS]))
+            lines += ["", f"and {len(rows) - _ROWS} more"] if len(rows) > _ROWS else []
+    return "\n".join(lines).strip()
+
+
+def verdict_findings(workspace: Workspace, path: str, evidence: Evidence) -> tuple[Reported, ...]:
+    """Violated requirements and such that were never exercised, at their nodes in a file."""
+    found: dict[int, tuple[ResolvedNode, dict[tuple[str, str], Diagnostic]]] = {}
+    for judged in _on_missions(workspace, path, evidence):
+        for shown in judged.shown:
+            node = next(iter(_nodes(shown.demand)), None)
+            if node is not None and node.path == path and (diagnostic := _finding(shown, node, judged, evidence.root)):
+                of_item = found.setdefault(id(node.item), (node, {}))[1]
+                of_item.setdefault((diagnostic.message, str(diagnostic.span)), diagnostic)
+    before = evidence.reported.get(path, ())
+    reported: list[Reported] = []
+    for node, of_item in found.values():
+        now = Reported(configured(workspace.project, path, of_item.values()), (path, node.item))
+        reported.append(next((each for each in before if each == now), now))  # it has its text for the editor
+    evidence.reported[path] = tuple(reported)
+    return evidence.reported[path]
+
+
+def is_outdated(workspace: Workspace, mission: str, evidence: Evidence) -> bool:
+    """Whether the summary does not say what the logs show of the present text."""
+    judged = evidence.on(workspace, mission)
+    if judged is None:
+        return False
+    was_edited = judged.written.outline != outline(requirements(workspace, mission))
+    return was_edited or any(each.verdict is None for each in judged.shown)
+
+
+def _on_missions(workspace: Workspace, path: str, evidence: Evidence) -> Iterator[Judged]:
+    for mission in missions_of(workspace, path)[:_MOST_MISSIONS]:
+        if (judged := evidence.on(workspace, mission)) is not None:
+            yield judged
+
+
+def _finding(shown: Shown, node: ResolvedNode, judged: Judged, root: str) -> Diagnostic | None:
+    verdict = shown.verdict
+    if verdict is None or verdict.verdict not in _RULES:
+        return None
+    name = shown.demand.requirement.name
+    said = f"`{name}` is violated: {_result(shown, verdict)}" if verdict.verdict == VIOLATED else ""
+    message = said or f"`{name}` was never exercised in {counted(judged.written.runs, 'run')}: {verdict.why}"
+    related = [Related(shown.demand.requirement.place, f"`{name}` demands: {shown.demand.claim.text}")]
+    notes: tuple[str, ...] = ()
+    if verdict.violations:
+        worst = worst_violation(verdict)
+        log = worst.source if worst.source.startswith("/") else f"{root}/{worst.source}"
+        related.append(Related(Place(Span(0, 0), log), f"run {worst.run} is in this log"))
+        notes = (explained(verdict, worst, {}),)
+    rule = _RULES[verdict.verdict]
+    assert rule in RULES, "the rules of evidence have pages"
+    earlier = _EARLIER if judged.is_earlier else ""
+    return Diagnostic(rule, node.node.head.span, f"{message}{earlier}", tuple(related), notes)
+
+
+def _nodes(demand: Demand) -> Sequence[ResolvedNode]:
+    return demand.applied.nodes if demand.applied is not None else ()
+
+
+def _rank(shown: Shown) -> int:
+    return WORST_FIRST.index(shown.verdict.verdict) if shown.verdict is not None else WORST_FIRST.index(UNKNOWN)
+
+
+def _row(shown: Shown) -> tuple[str, ...]:
+    if shown.verdict is None:
+        return "", code(shown.demand.claim.text), "not measured yet"
+    at = f" at {escaped(shown.verdict.path)}" if shown.verdict.path else ""
+    return shown.verdict.verdict, f"{code(shown.demand.claim.text)}{at}", escaped(_result(shown, shown.verdict))
+
+
+def _result(shown: Shown, verdict: ClauseVerdict) -> str:
+    found = result(verdict)
+    if shown.least == verdict.violated or verdict.interval is not None:
+        return found
+    return f"{shown.least} to {found}"
+
+
+def _title(shown: Shown, judged: Judged) -> str:
+    verdict = shown.verdict
+    if verdict is None:
+        return f"not measured yet: {shown.demand.claim.text}"
+    held = verdict.counted - verdict.violated
+    count = f"{shown.least} to {verdict.violated}" if shown.least != verdict.violated else str(verdict.violated)
+    has_odds = verdict.interval is not None
+    title = {
+        VIOLATED: f"held in only {held} of {verdict.counted} {verdict.unit}"
+        if has_odds
+        else f"violated in {count} of {verdict.counted} {verdict.unit}",
+        SATISFIED: f"held in {held} of {verdict.counted} {verdict.unit}",
+        UNDECIDED: f"undecided: held in {held} of {verdict.counted} {verdict.unit}",
+        UNKNOWN: f"unknown: {verdict.why}",
+        NEVER: "never exercised",
+    }[verdict.verdict]
+    if verdict.worst is not None and not has_odds and verdict.verdict in (VIOLATED, SATISFIED):
+        title += f" · worst {verdict.worst.text}"
+    return f"{title}{' ·' if judged.is_earlier else ''}{_EARLIER.replace(',', '') if judged.is_earlier else ''}"
+
+
+_RULES: Final = {VIOLATED: "requirement-violated", NEVER: "never-exercised"}
+_EARLIER: Final = ", measured on an earlier text"
+_ROWS: Final = 8
+_MOST_MISSIONS: Final = 4  # as for other features: resolving one takes long, and a library may be in hundreds

@@ -1,0 +1,283 @@
+"""What logs show of the open projects' requirements: a process of its own judges the logs, and its summary is loaded.
+
+One invariant: the server never reads a log.  It looks at names, sizes and times of the logs that `[evidence]` names, in
+a thread; when these have changed, and then rest, `btq verify --summary` reads the logs, one project at a time.
+Summaries stay in the user's cache, each named by what it was made of, so that a new session need not read them again.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import json
+import logging
+import os
+import sys
+from asyncio.subprocess import DEVNULL, PIPE, Process
+from collections.abc import AsyncIterator, Callable, Sequence
+from contextlib import asynccontextmanager, suppress
+from typing import TYPE_CHECKING, Any, Final
+
+from lsprotocol import types
+
+from btq_lang.lsp.editor import Refused, Server
+from btq_lang.util.version import __version__
+
+if TYPE_CHECKING:
+    from btq_lang.ide.runs import LoggedRun
+    from btq_lang.ide.verdicts import Evidence
+    from btq_lang.workspace.config import Project
+    from btq_lang.workspace.workspace import Workspace
+
+
+RUNS = "btq.server.runs"
+RUN = "btq.server.run"
+
+
+def register(server: Server) -> None:
+    session, convert = server.session, server.convert
+    logs = Logs(server)
+    server.on_scanned, server.on_end = logs.watch, logs.stop
+
+    @server.feature(types.SHUTDOWN)
+    def shutdown(_: None) -> None:
+        logs.stop()
+
+    @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
+    def did_save(params: types.DidSaveTextDocumentParams) -> None:
+        logs.saved(convert.path(params.text_document.uri))
+
+    def judged(document: types.TextDocumentIdentifier) -> tuple[Workspace, str, Evidence]:
+        place = server.at(document, reads=True)
+        evidence = session.evidence(place[0]) if place is not None else None
+        if place is None or evidence is None:
+            raise Refused("no logs of this mission have been judged; name them with `logs` in [evidence] of btq.toml")
+        return *place, evidence
+
+    @server.command(RUNS)
+    def runs(document: types.TextDocumentIdentifier) -> list[dict[str, object]]:
+        """The runs in the logs that people look for: the `run`, and what it is."""
+        from btq_lang.ide.runs import runs_to_show  # few projects have logs
+
+        return [{"run": run, "said": said} for run, said in runs_to_show(*judged(document))]
+
+    @server.command(RUN)
+    async def run(document: types.TextDocumentIdentifier, number: int) -> dict[str, object]:
+        """A run of the logs, step by step, with the keys of nodes as in the picture."""
+        from btq_lang.ide.runs import logged_run, run_on_picture  # as above
+
+        workspace, path, evidence = judged(document)
+        where = logged_run(workspace, path, evidence, number)
+        if where is None:
+            raise Refused(f"the logs have no run {number} of this mission")
+        found = await logs.read_run(evidence.root, where)
+        if isinstance(found, str):
+            raise Refused(found)
+        drawn = run_on_picture(workspace, path, where, found)
+        if drawn is None:
+            raise Refused("this run is of an earlier text: the trees have been edited since, or are not saved")
+        return drawn
+
+
+class Logs:
+    """The logs of the projects of a session, and the process that judges them."""
+
+    def __init__(self, server: Server) -> None:
+        self._server: Final = server
+        self._task: asyncio.Task[None] | None = None
+        self._process: Process | None = None
+        self._shown: Final[dict[str, str]] = {}  # what is shown, or could not be made, by the project's folder
+        self._before: Final[dict[str, str]] = {}  # what was there at the last look
+        self._saved = asyncio.Event()  # a file was saved, or the logs are to be looked at for another reason
+
+    def watch(self) -> None:
+        """Look at the logs from now on."""
+        if self._task is None:
+            self._task = asyncio.ensure_future(self._watch())
+
+    def stop(self) -> None:
+        """End the process, and look at the logs no more."""
+        if self._task is not None:
+            self._task.cancel()
+        if self._process is not None and self._process.returncode is None:
+            with suppress(ProcessLookupError):
+                self._process.terminate()
+
+    def saved(self, path: str) -> None:
+        """Note that a file has been saved: if the summary says nothing of the new text, the logs are read again."""
+        session = self._server.session
+        workspace = session.workspace_of(path)
+        if workspace is None or workspace.project.root not in self._shown:
+            return
+        evidence = session.evidence(workspace)
+        if evidence is not None:
+            from btq_lang.ide.verdicts import is_outdated  # few projects have logs
+
+            missions = evidence.missions.keys() & workspace.files
+            if not any(is_outdated(workspace, mission, evidence) for mission in missions):
+                return
+        del self._shown[workspace.project.root]
+        self._saved.set()
+
+    async def read_run(self, root: str, run: LoggedRun) -> dict[str, Any] | str:
+        """A run as `btq verify --run` prints it, or why there is none."""
+        words = (
+            "verify",
+            "--no-store",
+            os.path.join(root, run.log),
+            "--mission",
+            run.mission,
+            "--run",
+            str(run.number_in_log),
+        )
+        process = await _started(root, words)
+        printed, said = await process.communicate()
+        return json.loads(printed) if process.returncode == 0 else said.decode(errors="replace").strip()
+
+    async def _watch(self) -> None:
+        while True:
+            for project in self._projects():
+                try:
+                    await self._look(project)
+                except OSError as error:
+                    self._server.log_failure(error)
+            with suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(self._saved.wait(), PAUSE)
+            self._saved.clear()
+
+    def _projects(self) -> Sequence[Project]:
+        projects = (workspace.project for workspace in self._server.session.workspaces())
+        return [*{each.root: each for each in projects if each.evidence is not None and each.evidence.logs}.values()]
+
+    async def _look(self, project: Project) -> None:
+        root = project.root
+        there = await asyncio.to_thread(_state, project)
+        is_at_rest = there == self._before.get(root, there)
+        self._before[root] = there
+        if self._shown.get(root) == there or not is_at_rest:
+            return
+        texts = await asyncio.to_thread(_texts, [*self._missions(root)])
+        summary = os.path.join(_cache(), f"{_digest(root)}-{_digest(there, texts)}.json")
+        if not os.path.exists(summary) and there != _digest(repr(project.evidence)):
+            await self._judge(root, summary)
+        if os.path.exists(summary):
+            self._show(root, summary)
+        self._shown[root] = there
+
+    def _missions(self, root: str) -> set[str]:
+        workspaces = self._server.session.workspaces()
+        return {path for each in workspaces if each.project.root == root for path in each.files}
+
+    async def _judge(self, root: str, summary: str) -> None:
+        """Have the logs judged, with progress in the editor."""
+        os.makedirs(os.path.dirname(summary), exist_ok=True)
+        process = await _started(root, ("verify", "--no-store", "--summary", summary))
+        self._process = process
+        assert process.stdout is not None, "it is a pipe"
+        assert process.stderr is not None, "likewise"
+        said = asyncio.ensure_future(process.stderr.read())
+        async with self._progress() as report:
+            async for line in process.stdout:
+                report(json.loads(line))
+        if await process.wait() == _TROUBLE:
+            logging.getLogger(__name__).warning((await said).decode(errors="replace").strip())
+        else:
+            await said
+
+    @asynccontextmanager
+    async def _progress(self) -> AsyncIterator[Callable[[dict[str, int]], None]]:
+        """Show progress in an editor that can; yields a function that shows what the process says."""
+        server = self._server
+        window = server.client_capabilities.window
+        if window is None or not window.work_done_progress:
+            yield lambda _: None
+            return
+        server.count += 1
+        token = f"btq/logs/{server.count}"
+        shown = server.work_done_progress
+        await asyncio.shield(shown.create_async(token))
+        shown.begin(token, types.WorkDoneProgressBegin("btq", message="judging logs", percentage=0))
+
+        def report(said: dict[str, int]) -> None:
+            message = f"{said['done']} of {said['of']} logs, {said['runs']} runs"
+            percentage = 100 * said["done"] // max(said["of"], 1)
+            shown.report(token, types.WorkDoneProgressReport(message=message, percentage=percentage))
+
+        try:
+            yield report
+        finally:
+            shown.end(token, types.WorkDoneProgressEnd())
+
+    def _show(self, root: str, summary: str) -> None:
+        from btq_lang.evidence.written_verdicts import NotVerdicts, read_verdicts  # few projects have logs
+        from btq_lang.ide.verdicts import Evidence
+        from btq_lang.workspace.loader import absolute, read
+
+        try:
+            missions = read_verdicts(read(summary)[0] or "")
+        except NotVerdicts as error:
+            logging.getLogger(__name__).warning("%s: %s", summary, error)
+            return
+        by_path = {absolute(os.path.join(root, each.file)): each for each in missions if each.runs}
+        self._server.session.show(root, Evidence(root, by_path))
+        self._server.check_soon(self._server.session.paths())
+        self._server.refresh()
+        _forget_others(summary, root)
+
+
+async def _started(folder: str, words: Sequence[str]) -> Process:
+    """A command of btq in a folder, by the Python and the package that run this server."""
+    paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    program = (sys.executable, "-c", _COMMAND)
+    return await asyncio.create_subprocess_exec(
+        *program, *words, cwd=folder, env=paths, stdin=DEVNULL, stdout=PIPE, stderr=PIPE, limit=_LONGEST
+    )
+
+
+def _state(project: Project) -> str:
+    """A digest of what is judged: the logs with their sizes and times, and what the project says of them."""
+    from btq_lang.commands.verify import logs_of
+    from btq_lang.workspace.loader import stamp
+
+    found = [f"{path} {stamp(path)}" for log in logs_of(project) for path in _files(log) if stamp(path) is not None]
+    return _digest(repr(project.evidence), *found)
+
+
+def _files(path: str) -> Sequence[str]:
+    """A file, or what is below a folder."""
+    if not os.path.isdir(path):
+        return [path]
+    return sorted(os.path.join(folder, name) for folder, _, names in os.walk(path) for name in names)
+
+
+def _texts(paths: Sequence[str]) -> str:
+    """A digest of files as they are on the disk, which is what is judged."""
+    from btq_lang.workspace.loader import read
+
+    return _digest(*(read(path)[0] or "" for path in sorted(paths)))
+
+
+def _digest(*parts: str) -> str:
+    return hashlib.sha256("\n".join([__version__, *parts]).encode(errors="surrogateescape")).hexdigest()[:_DIGITS]
+
+
+def _cache() -> str:
+    """The folder of summaries, as the system has one for caches."""
+    home = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or os.path.expanduser("~/.cache")
+    return os.path.join(home, "btq")
+
+
+def _forget_others(summary: str, root: str) -> None:
+    """Remove older summaries of a project."""
+    folder, name = os.path.split(summary)
+    for each in os.listdir(folder):
+        if each.startswith(_digest(root)) and each != name:
+            with suppress(OSError):
+                os.remove(os.path.join(folder, each))
+
+
+PAUSE = 5  # seconds between two looks at the logs
+_COMMAND: Final = "import sys; from btq_lang.cli import main; sys.exit(main())"
+_TROUBLE: Final = 2  # the exit code of an error
+_DIGITS: Final = 24
+_LONGEST: Final = 1 << 20  # bytes of a line of progress

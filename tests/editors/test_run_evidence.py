@@ -1,0 +1,73 @@
+"""A run of the logs in the page of the preview, in a real browser: its marks, and stepping by keys and buttons."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+MISSION = "BehaviorTree Main\n    ->\n        Move\n        Pick\n"
+RUN = {
+    "title": "Run 3 of second.btlog: failed",
+    "leftOut": 0,
+    "steps": [
+        {"key": "n0", "state": "running", "time": "", "said": "0 ms: Sequence starts"},
+        {"key": "n1", "state": "running", "time": "", "said": "0 ms: Move starts"},
+        {"key": "n1", "state": "succeeded", "time": "25 ms", "said": "25 ms: Move succeeded, 25 ms"},
+        {"key": "n2", "state": "failed", "time": "5 ms", "said": "30 ms: Pick failed, 5 ms"},
+        {"key": "n0", "state": "failed", "time": "30 ms", "said": "30 ms: Sequence failed, 30 ms"},
+    ],
+}
+
+
+def test_a_run_is_stepped_through_with_the_keyboard(browser: Browser, tmp_path: Path, artifacts: Path) -> None:
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "btq_lang", "preview", "main.btq", "--follow"],
+        cwd=tmp_path,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    assert process.stdin is not None
+    found = re.search(r"http://\S+", process.stdout.readline())
+    assert found is not None
+    page = browser.new_page(viewport={"width": 900, "height": 600})
+    page.goto(found[0])
+    page.locator(".box", has_text="Move").wait_for(state="attached")
+    process.stdin.write(json.dumps({"run": RUN}) + "\n")
+    process.stdin.flush()
+    said = page.locator("#step")
+
+    def sees(step: int, sentence: str, *marks: str) -> None:
+        page.wait_for_function("text => document.getElementById('step').textContent.endsWith(text)", arg=sentence)
+        assert said.text_content() == f"Run 3 of second.btlog: failed, step {step} of 5: {sentence}"
+        assert page.locator(".mark").all_text_contents() == list(marks)
+
+    sees(5, "30 ms: Sequence failed, 30 ms", "✖ 30 ms", "✔ 25 ms", "✖ 5 ms")
+    page.screenshot(path=str(artifacts / "run.png"))
+    page.keyboard.press("p")
+    sees(4, "30 ms: Pick failed, 5 ms", "…", "✔ 25 ms", "✖ 5 ms")
+    assert page.locator(".box.step").get_attribute("data-state") == "failed"
+    page.keyboard.press("Shift+P")
+    sees(1, "0 ms: Sequence starts", "…")
+    page.keyboard.press("n")
+    sees(2, "0 ms: Move starts", "…", "…")
+    page.get_by_role("button", name="Next step").click()
+    sees(3, "25 ms: Move succeeded, 25 ms", "…", "✔ 25 ms")
+    page.keyboard.press("Shift+N")
+    sees(5, "30 ms: Sequence failed, 30 ms", "✖ 30 ms", "✔ 25 ms", "✖ 5 ms")
+    page.keyboard.press("Escape")
+    page.locator("#run").wait_for(state="hidden")
+    assert page.locator(".mark, .box[data-state]").count() == 0
+    page.close()
+    process.stdin.close()
+    process.wait(timeout=30)
+    process.stdout.close()

@@ -1,0 +1,158 @@
+"""Clauses judged again after an edit of their bounds or odds: as if the logs had been read again."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+from pathlib import Path
+
+import pytest
+from check_asserts import workspace_of
+from evidence_logs import MAIN, MAIN_XML, btlog, rows
+from random_runs import Case, case
+
+from btq_lang.evidence import margins
+from btq_lang.evidence.again import shown_now
+from btq_lang.evidence.edges import edge_of
+from btq_lang.evidence.evaluate import MissionEvaluation
+from btq_lang.evidence.identity import Candidate, join
+from btq_lang.evidence.json_document import render
+from btq_lang.evidence.margins import Margins
+from btq_lang.evidence.model import Session
+from btq_lang.evidence.outline import demands, outline
+from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report
+from btq_lang.evidence.verifying import judged as judged_logs
+from btq_lang.evidence.written_verdicts import WrittenMission, read_verdicts
+
+KEPT, VIOLATED = 0, 1
+
+
+def judged(made: Case, mission: Candidate) -> MissionVerdicts:
+    """The verdicts on all sessions, each judged by itself."""
+    joined = join([mission], made.joined.tree)
+    assert joined is not None
+    evaluation = MissionEvaluation(mission, with_measures=True)
+    runs = 0
+    for number, session in enumerate(made.sessions):
+        one = MissionEvaluation(mission, with_measures=True)
+        read = one.read(Session(made.joined.tree, iter(session)), joined, made.series, 1, f"log {number}")
+        evaluation.add(one.findings(), runs)
+        runs += read
+    return evaluation.result()
+
+
+def written(found: MissionVerdicts) -> WrittenMission:
+    """The verdicts as a program reads them from the file."""
+    (mission,) = read_verdicts(render(Report((found,), (), ())))
+    return mission
+
+
+def edited(text: str, chance: random.Random) -> str:
+    """The text with other bounds and odds in its requirements."""
+
+    def other(match: re.Match[str]) -> str:
+        number = float(match["number"]) * chance.choice((0.2, 0.5, 0.9, 1, 1.1, 2, 5))
+        if match["unit"] == "%":
+            number = min(max(number, 1), 99)
+        shown = f"{number:.3g}" if match["unit"].strip() else f"{round(number)}"
+        return f"{match['before']}{shown}{match['unit']}"
+
+    bounds = r"(?P<before>(?:at most|at least|within|every|[<>]=?) )(?P<number>[0-9.]+)(?P<unit> ?(?:ms|s|%|m/s|m|))"
+    bound = re.compile(bounds + r"(?![\w.])")
+    lines = text.splitlines(keepends=True)
+    is_clause = re.compile(r"    (?!while|when|over|confidence)[a-zA-Z]|apply")
+    return "".join(bound.sub(other, line) if is_clause.match(line) else line for line in lines)
+
+
+def counts(clause: ClauseVerdict) -> tuple[object, ...]:
+    interval = tuple(round(each, 9) for each in clause.interval) if clause.interval is not None else None
+    worst = (clause.worst.si, clause.worst.text) if clause.worst is not None else None
+    return (
+        clause.verdict,
+        clause.counted,
+        clause.violated,
+        clause.unknown,
+        clause.cut_off,
+        worst,
+        interval,
+        clause.more,
+    )
+
+
+def test_a_clause_with_an_edited_bound_is_judged_as_if_the_logs_were_read_again() -> None:
+    again = 0
+    for seed in range(60):
+        made = case(seed)
+        before = written(judged(made, made.mission))
+        text = edited(made.text, random.Random(seed))
+        mission = Candidate(workspace_of({"main.btq": text}), "main.btq", "main", None)
+        if outline(mission.requirements) != before.outline:
+            continue  # a context has changed
+        truth: dict[tuple[str, str], list[tuple[object, ...]]] = {}
+        for requirement in judged(made, mission).requirements:
+            for clause in requirement.clauses:
+                truth.setdefault((requirement.id, clause.text), []).append(counts(clause))
+        old = {id(clause) for requirement in before.requirements for clause in requirement.clauses}
+        for shown in shown_now(mission.requirements, before.requirements):
+            if shown.verdict is not None:
+                name, claim = shown.demand.requirement.name, shown.demand.claim.text
+                same = [
+                    found
+                    for (id_, text), each in truth.items()
+                    for found in each
+                    if id_ == name and text.startswith(claim)
+                ]
+                assert counts(shown.verdict) in same, f"seed {seed}: {name} {claim}"
+                assert shown.least == shown.verdict.violated
+                again += id(shown.verdict) not in old
+    assert again > 30, again
+
+
+def test_there_are_no_more_steps_than_are_kept() -> None:
+    """A bound inside of a step of several judgements: the counts are between those with all and with none of them."""
+    claim = "Move takes at most 3 s"
+    mission = Candidate(
+        workspace_of({"main.btq": f"QualityReq rq : safety\n    {claim}\nBehaviorTree Main\n    Action Move\n"}),
+        "main.btq",
+        "main",
+        None,
+    )
+    (demand,) = demands(mission.requirements)
+    edge = edge_of(demand.claim, demand.applied.subject if demand.applied else None, demand.requirement)
+    assert edge is not None
+    found = Margins(of_runs=False)
+    for number in range(10_000):
+        found.add(KEPT, VIOLATED, number / 1000)
+        found.end_run(number + 1)
+    found = Margins.read(json.loads(json.dumps(found.written())))
+    assert len(found.written()["steps"]) <= margins.MOST_STEPS
+    for bound in (-1.0, 0.0, 2.0, 4.9995, 9.999, 11.0):
+        least, most = found.counts(bound, edge)
+        truth = sum(number / 1000 > bound for number in range(10_000))
+        assert least.violated <= truth <= most.violated
+        assert most.violated - least.violated <= 20
+        assert least.kept + least.violated == most.kept + most.violated == 10_000
+    assert found.worst(3.0, edge) == (9.999, 10_000)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "seen"),
+    [
+        ("in at least 90 % of activations", "in at least 40 % of activations", ("satisfied", 2, 1)),
+        ("in at least 40 % of activations", "in at least 90 % of activations", ("violated", 2, 1)),
+        ("in at least 90 % of activations", "", ("violated", 2, 1)),
+        ("", "in at least 90 % of activations\n    confidence 95 %", ("undecided", 2, 1)),
+        ("in at least 90 % of activations", "in at least 90 % of runs", None),
+        ("", "while node Move", None),
+    ],
+)
+def test_edited_odds_and_scopes(before: str, after: str, seen: tuple[object, ...] | None, tmp_path: Path) -> None:
+    texts = [f"QualityReq rq : safety\n    Move succeeds\n    {each}\n{MAIN}" for each in (before, after)]
+    old, new = (Candidate(workspace_of({"main.btq": text}), "main.btq", "main", None) for text in texts)
+    (tmp_path / "run.btlog").write_bytes(btlog(MAIN_XML, rows("0 1R 2R 20 2S 3R 60 3S 1S 1I 100 1R 2R 140 2F 1F")))
+    log = [str(tmp_path / "run.btlog")]
+    (mission,) = judged_logs(log, [old], ("", {}), (), {}, (), with_measures=True).report.missions
+    (shown,) = shown_now(new.requirements, written(mission).requirements)
+    verdict = shown.verdict
+    assert (None if verdict is None else (verdict.verdict, verdict.counted, verdict.violated)) == seen
