@@ -223,8 +223,7 @@ def test_a_damaged_file_is_named(kept: Path) -> None:
     path.write_bytes(whole[:100])
     code, output, errors = run_btq("verify", "--store", "kept", cwd=kept)
     assert (code, output) == (2, "")
-    assert errors.startswith("btq verify: kept: ")
-    assert str(path.relative_to(kept)) in errors
+    assert errors.startswith(f"btq verify: {path.relative_to(kept)}: ")
     assert errors.count("\n") == 1
     path.write_bytes(whole)
     assert run_btq("verify", "--store", "kept", cwd=kept)[0] == 1

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 from btq_lang.catalog.units import parse_unit
 from btq_lang.evidence.compare import questions
 from btq_lang.evidence.compare.chance import LEVEL, Shuffles, fisher, holm, is_too_few, shuffles_for
-from btq_lang.evidence.store.engine import quoted
 from btq_lang.evidence.store.queries import only
 from btq_lang.evidence.store.summary import summary
+from btq_lang.evidence.store.tables import quoted
 from btq_lang.evidence.verdicts import VIOLATED
 from btq_lang.util.record import Record, replace
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from btq_lang.evidence.compare.comparison import Comparison, Unknown, compare
 from btq_lang.evidence.report.trends import Steps, Trends, by_mission, steps_of, trends
-from btq_lang.evidence.store.engine import quoted
 from btq_lang.evidence.store.queries import OVERVIEW, only
 from btq_lang.evidence.store.summary import parted
+from btq_lang.evidence.store.tables import quoted
 from btq_lang.evidence.verdicts import VIOLATED, MissionVerdicts
 from btq_lang.util.record import Record
 

@@ -6,6 +6,7 @@ One invariant: of each log there is one set of files, whole or not at all, named
     rows.py        what is found in a log, as rows of text, while it is judged
     sets.py        a log's set of files, published at once; what writers that were killed leave is removed
     engine.py      DuckDB, which writes the files and is asked for rows
+    damage.py      files that are missing, damaged or of another table
     fleet.py       other engines, asked through Ibis
     queries.py     the questions, as SQL
     summary.py     the report of a whole store

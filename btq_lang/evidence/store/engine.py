@@ -10,8 +10,9 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Any, Final
 
+from btq_lang.evidence.store.damage import damage, incomplete
 from btq_lang.evidence.store.rows import file_of
-from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, ROWS
+from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, ROWS, files_of, quoted
 
 
 class NoEngine(Exception):
@@ -57,22 +58,14 @@ def asked(store: str) -> Callable[[str], list[dict[str, Any]]]:
             names = [str(column[0]) for column in found.description]
             return [dict(zip(names, row, strict=True)) for row in found.fetchall()]
         except duckdb.Error as error:
-            raise NoEngine(f"{store}: {' '.join(str(error).split())}") from error
+            raise NoEngine(damage(connection, store) or f"{store}: {' '.join(str(error).split())}") from error
 
-    try:
-        for table in ROWS:
-            files = quoted(files_of(store, table))
-            connection.execute(f"CREATE VIEW {table} AS SELECT * FROM read_parquet({files}, union_by_name = true)")
-    except duckdb.IOException as error:
-        raise NoEngine(f"{store}: no verdicts are kept there; keep some with btq verify LOG --store {store}") from error
-    except duckdb.Error as error:
-        raise NoEngine(f"{store}: {' '.join(str(error).split())}") from error
+    if problem := incomplete(connection, store):
+        raise NoEngine(problem)
+    for table in ROWS:
+        files = quoted(files_of(store, table))
+        ask(f"CREATE VIEW {table} AS SELECT * FROM read_parquet({files}, union_by_name = true)")
     return ask
-
-
-def files_of(store: str, table: str) -> str:
-    """The pattern of the files of a table; what is still being written has other names."""
-    return f"{store.rstrip('/')}/{SETS}/{table}.parquet"
 
 
 def imported() -> Any:
@@ -88,11 +81,6 @@ def imported() -> Any:
             "a store is written and read with duckdb; install it with pip install 'btq-lang[evidence]'"
         ) from error
     return duckdb
-
-
-def quoted(text: str) -> str:
-    """A text as SQL."""
-    return "'" + text.replace("'", "''") + "'"
 
 
 @lru_cache(1)
@@ -127,7 +115,6 @@ def _rows(folder: str, table: str) -> str:
     return f"read_csv({quoted(file_of(folder, table))}, columns = {{{types}}}, {form}, parallel = false) AS {table}"
 
 
-SETS: Final = "[0-9a-f]*"
 # The rows of a group are in memory together: fewer than DuckDB's 122 880 take less, and a few bytes more on the disk.
 _OPTIONS: Final = "FORMAT parquet, COMPRESSION zstd, PARQUET_VERSION v2, ROW_GROUP_SIZE 20480"
 _BUFFER: Final = 4_000_000  # bytes of text that are read at once

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from btq_lang.evidence.store.engine import NoEngine, files_of
-from btq_lang.evidence.store.tables import ROWS
+from btq_lang.evidence.store.engine import NoEngine
+from btq_lang.evidence.store.tables import ROWS, files_of
 
 
 def asked_by(url: str, store: str) -> Callable[[str], list[dict[str, Any]]]:

@@ -10,6 +10,17 @@ from __future__ import annotations
 
 from typing import Final
 
+
+def files_of(store: str, table: str) -> str:
+    """The pattern of the files of a table; what is still being written has other names."""
+    return f"{store.rstrip('/')}/{_SETS}/{table}.parquet"
+
+
+def quoted(text: str) -> str:
+    """A text as SQL."""
+    return "'" + text.replace("'", "''") + "'"
+
+
 # What all rows of a table have in common in a set; the other columns are in the rows that `rows.py` writes.
 COMMON: Final = {
     "runs": ("log", "label", "source"),
@@ -93,3 +104,4 @@ ROWS: Final = {
 }
 # What a verdict has of its clause.
 OF_CLAUSE: Final = ("mission", "robot", "requirement", "clause", "node")
+_SETS: Final = "[0-9a-f]*"

@@ -1,0 +1,68 @@
+"""What is wrong with the files of a store: those that are missing, damaged or of another table."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, ROWS, files_of, quoted
+
+
+def incomplete(connection: Any, store: str) -> str | None:
+    """A file that a store lacks, or that lacks a column of its table.
+
+    Args:
+        connection: to DuckDB.
+    """
+    import duckdb
+
+    found = _files(connection, store)
+    if not found:
+        return f"{store}: no verdicts are kept there; keep some with btq verify LOG --store {store}"
+    for folder in sorted({file.rpartition("/")[0] for file in found}):
+        for table in ROWS:
+            if (file := f"{folder}/{table}.parquet") not in found:
+                return f"{file}: missing; {_AGAIN}"
+    for table in ROWS:
+        question = f"SELECT file_name, list(name) FROM parquet_schema({quoted(files_of(store, table))}) GROUP BY ALL"
+        try:
+            for file, names in connection.execute(question).fetchall():
+                if lacking := _columns(table).keys() - names:
+                    return f"{file}: no column {min(lacking)}; {_AGAIN}"
+        except duckdb.Error:
+            return damage(connection, store)
+    return None
+
+
+def damage(connection: Any, store: str) -> str | None:
+    """The first file of a store that cannot be read, or whose columns are not those of its table."""
+    import duckdb
+
+    for file in _files(connection, store):
+        table, source = file.rpartition("/")[2].removesuffix(".parquet"), f"read_parquet({quoted(file)})"
+        try:
+            types = {name: kind for name, kind, *_ in connection.execute(f"DESCRIBE FROM {source}").fetchall()}
+            connection.execute(f"SELECT max(COLUMNS(*)) FROM {source}").fetchall()
+        except duckdb.Error as error:
+            return f"{file}: {' '.join(str(error).split())}; {_AGAIN}"
+        if wrong := _columns(table).items() - types.items():
+            return f"{file}: no column {min(wrong)[0]} of the type {min(wrong)[1]}; {_AGAIN}"
+    return None
+
+
+def _files(connection: Any, store: str) -> list[str]:
+    """The files of all tables."""
+    patterns = [quoted(files_of(store, table)) for table in ROWS]
+    question = " UNION ALL ".join(f"SELECT file FROM glob({each})" for each in patterns)
+    return sorted(file.replace("\\", "/") for (file,) in connection.execute(question).fetchall())
+
+
+def _columns(table: str) -> dict[str, str]:
+    """The columns of a table and their types."""
+    texts = dict.fromkeys((*COMMON[table], *(OF_CLAUSE if table == "verdicts" else ())), "VARCHAR")
+    return {
+        **texts,
+        **{name: kind for name, kind in ROWS[table].items() if (table, name) != ("verdicts", "clause_index")},
+    }
+
+
+_AGAIN: Final = "remove its folder and read its log again"

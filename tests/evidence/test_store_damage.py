@@ -1,0 +1,85 @@
+"""Stored files that are damaged by chance: an answer, or one error that names a file; and nothing is lost."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+from by_day import of_the_day
+from evidence_logs import MAIN, MAIN_XML, START, btlog, rows
+from in_process import run_btq
+
+from btq_lang.evidence.store.engine import NoEngine, asked
+from btq_lang.evidence.store.summary import summary
+
+MISSION = "QualityReq quick : safety\n    Move takes at most 15 ms\n" + MAIN
+CASES, SHARE = 20_000, 400
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Path:
+    """A store of two logs."""
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    for number in range(2):
+        log = f"1R 2R {12 + 5 * number} 2S 3R 25 3S 1S 26 2I 3I 1I"
+        (tmp_path / f"{number}.btlog").write_bytes(btlog(MAIN_XML, rows(log), START + number * 60_000_000))
+    run_btq("verify", "0.btlog", "1.btlog", "--mission", "main.btq", "--store", "kept", cwd=tmp_path)
+    return tmp_path / "kept"
+
+
+def damaged(chance: random.Random, data: bytes, others: list[bytes]) -> bytes | None:
+    """A file with bytes changed, cut, empty, another one, or gone."""
+    how = chance.randrange(7)
+    if how < 3:
+        changed = bytearray(data)
+        for _ in range(chance.choice((1, 1, 2, 8))):
+            changed[chance.randrange(len(data))] = chance.randrange(256)
+        return bytes(changed)
+    return (data[: chance.randrange(len(data))], b"", chance.choice(others), None)[how - 3]
+
+
+def problem(store: Path) -> str | None:
+    """Why a store has no summary."""
+    try:
+        summary(asked(str(store)), "kept")
+    except NoEngine as error:
+        return str(error)
+    return None
+
+
+def test_damaged_files_are_named(store: Path) -> None:
+    paths = sorted(store.glob("*/*.parquet"))
+    whole = {path: path.read_bytes() for path in paths}
+    expected = summary(asked(str(store)), "kept")
+    for case in of_the_day(range(CASES), SHARE):
+        chance = random.Random(case)
+        path = chance.choice(paths)
+        data = damaged(chance, whole[path], [*whole.values()])
+        path.unlink()
+        if data is not None:
+            path.write_bytes(data)
+        error = problem(store)
+        if error is None:
+            assert data, f"case {case}: {path} is missing or empty"
+        else:
+            assert any(str(each) in error for each in paths), f"case {case}: {error}"
+            assert error.endswith("; remove its folder and read its log again"), f"case {case}: {error}"
+            assert "\n" not in error
+        path.write_bytes(whole[path])
+    assert summary(asked(str(store)), "kept") == expected
+
+
+@pytest.mark.parametrize("table", ["runs", "activations", "clauses", "verdicts"])
+def test_a_file_that_is_missing_or_of_another_table(table: str, store: Path) -> None:
+    path = sorted(store.glob(f"*/{table}.parquet"))[-1]
+    path.unlink()
+    again = "remove its folder and read its log again"
+    code, output, errors = run_btq("verify", "--store", "kept", cwd=store.parent)
+    named = path.relative_to(store.parent)
+    assert (code, output, errors) == (2, "", f"btq verify: {named}: missing; {again}\n")
+    other = "clauses" if table != "clauses" else "runs"
+    path.write_bytes(path.with_name(f"{other}.parquet").read_bytes())
+    code, output, errors = run_btq("verify", "--store", "kept", cwd=store.parent)
+    assert (code, output) == (2, "")
+    assert errors.startswith(f"btq verify: {named}: no column ")
