@@ -1,13 +1,17 @@
-"""A run of the logs in the page of the preview, in a real browser: its marks, and stepping by keys and buttons."""
+"""A run of the logs in the page of the preview, in a real browser and out of a real Neovim."""
 
 from __future__ import annotations
 
 import json
+import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from evidence_logs import MAIN, MAIN_XML, btlog, rows
+from installed import ROOT
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -71,3 +75,53 @@ def test_a_run_is_stepped_through_with_the_keyboard(browser: Browser, tmp_path: 
     process.stdin.close()
     process.wait(timeout=30)
     process.stdout.close()
+
+
+SHOW = """
+local said, sent = {}, ''
+vim.notify = function(text) table.insert(said, text) end
+vim.fn.jobstart = function() return 1 end
+vim.fn.chansend = function(_, text)
+  sent = text
+  return 1
+end
+vim.wait(60000, function() -- until the logs have been judged, the server refuses
+  vim.cmd('BtqRun 2')
+  return vim.wait(1000, function() return sent:find('steps') end, 50)
+end)
+said = {}
+local run = vim.fn.json_decode(sent).run
+local chosen
+vim.ui.select = function(runs, options, act)
+  chosen = options.format_item(runs[1])
+  act(nil)
+end
+vim.cmd('BtqRun')
+vim.wait(40000, function() return chosen end, 100)
+vim.fn.writefile({ vim.fn.json_encode({ run.title, #run.steps, chosen, said }) }, 'seen.json')
+"""
+
+
+def test_neovim_sends_a_run_to_the_page(nvim: Path, tmp_path: Path) -> None:
+    demand = "QualityReq quick : safety\n    Move takes at most 30 ms\n"
+    (tmp_path / "main.btq").write_text(demand + MAIN, encoding="utf-8")
+    (tmp_path / "btq.toml").write_text('[evidence]\nlogs = ["run.btlog"]\n', encoding="utf-8")
+    runs = "0 1R 2R 20 2S 3R 60 3S 1S 1I 100 1R 2R 140 2S 3R 150 3S 1S"
+    (tmp_path / "run.btlog").write_bytes(btlog(MAIN_XML, rows(runs)))
+    (tmp_path / "show.lua").write_text(SHOW)
+    scratch = {f"XDG_{name}_HOME": str(tmp_path / name) for name in ("STATE", "CACHE", "DATA", "RUNTIME")}
+    setup = [
+        f"set rtp^={ROOT / 'editors' / 'nvim'}",
+        f"let g:btq_cmd = ['{sys.executable}', '-m', 'btq_lang.server']",
+        f"let g:btq_program = ['{sys.executable}', '-m', 'btq_lang']",
+    ]
+    options = [word for line in setup for word in ("--cmd", line)]
+    command = [nvim, "--headless", "--clean", *options, "main.btq", "-S", "show.lua", "-c", "qall!"]
+    environment = {**os.environ, **scratch, "HOME": str(tmp_path), "PYTHONPATH": str(ROOT)}
+    run = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=180)
+    assert json.loads((tmp_path / "seen.json").read_text(encoding="utf-8")) == [
+        "Run 2 of run.btlog: succeeded",
+        6,
+        "run 2: the last one; the worst of quick, 40 ms",
+        [],
+    ], run.stderr
