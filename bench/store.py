@@ -51,7 +51,11 @@ QUESTIONS = {  # of the tables of a made-up log
             NULL::DOUBLE AS last_seconds, true AS exercised, 0 AS cut_off, NULL::VARCHAR AS missing
         FROM range({CLAUSES}) AS t(clause_index)
     """,
-    "activations": f"SELECT {COMMON} LIMIT 0",
+    "activations": f"""
+        SELECT {COMMON}, 1 AS run, 1 AS uid, '' AS path, '' AS kind, true AS leaf, 0::BIGINT AS start_us,
+            0::BIGINT AS end_us, '' AS outcome, '' AS timing
+        LIMIT 0
+    """,
     "verdicts": f"""
         SELECT {COMMON}, {CLAUSE}, run::INTEGER AS run, 'Do::' || clause_index AS path,
             1795209740000000 + run * 60000000 + n * 1000000 AS start_us, start_us + (took * 1e6)::BIGINT AS end_us,
