@@ -279,24 +279,22 @@ def test_checking_all_missions_finds_what_is_wrong_in_files_that_are_not_open(co
     if not served:
         code.settings(**{**ENVIRONMENT, "btq.checkClosedFiles": False})
     code.write("unopened.btq", WRONG)
-    code.command("btq: Check All Missions")
-    code.task_ends()
+    code.run_task("btq: Check All Missions")
     assert "btq unknown-node" in " ".join(code.problems_of("unopened.btq", 1))
     code.settings(**ENVIRONMENT)
 
 
 def test_a_task_takes_nothing_from_the_problems_and_knows_which_rules_are_off(code: Workbench) -> None:
-    code.write("opened.btq", WRONG)
-    code.open("opened.btq")
-    code.problems_of("opened.btq", 1)
-    code.command("btq: Check All Missions")
-    code.task_ends()
-    code.problems_of("opened.btq", 1)
+    code.write("seen.btq", WRONG)
+    code.open("seen.btq")
+    code.problems_of("seen.btq", 1)
+    code.run_task("btq: Check All Missions")
+    code.problems_of("seen.btq", 1)
     code.settings(**{**ENVIRONMENT, "btq.rules": {"unknown-node": "off"}})
-    code.no_problems_of("opened.btq")
-    code.command("btq: Check All Missions")
+    code.no_problems_of("seen.btq")
+    code.run_task("btq: Check All Missions")
     code.see(".single-terminal-tab .codicon-check")
-    code.no_problems_of("opened.btq")
+    code.no_problems_of("seen.btq")
     code.settings(**ENVIRONMENT)
 
 

@@ -32,10 +32,11 @@ FLAGS = [
 _LOOK = 50  # milliseconds between two looks at the page: with each frame, as is usual, the page draws all the time
 _WAIT = 40_000  # milliseconds; what takes longer on the busiest machine is broken
 # Keys for what tests do all the time: the palette takes a second of a processor each time.
-_CLOSE_ALL, _SHOW_PROBLEMS = "Control+Alt+F5", "Control+Alt+F6"
+_CLOSE_ALL, _SHOW_PROBLEMS, _KILL_TERMINALS = "Control+Alt+F5", "Control+Alt+F6", "Control+Alt+F7"
 _KEYBINDINGS = [
     {"key": "ctrl+alt+f5", "command": "workbench.action.closeAllEditors"},
     {"key": "ctrl+alt+f6", "command": "workbench.panel.markers.view.focus"},
+    {"key": "ctrl+alt+f7", "command": "workbench.action.terminal.killAll"},
 ]
 
 
@@ -242,6 +243,13 @@ class Workbench:
         """Wait until the Problems view does not name the file."""
         self.keys(_SHOW_PROBLEMS)
         self.no_more(f".markers-panel .monaco-list-row:has-text({_quoted(name)})")
+
+    def run_task(self, title: str) -> None:
+        """Run the task of a command and wait until it has ended; no terminal shows how another one did."""
+        self.keys(_KILL_TERMINALS)
+        self.gone(".single-terminal-tab")
+        self.command(title)
+        self.task_ends()
 
     def task_ends(self) -> None:
         """Wait until the task in the terminal that is shown has ended."""
