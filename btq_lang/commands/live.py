@@ -98,6 +98,8 @@ def _problem(options: Namespace) -> str | None:
 
 _NOT_LIVE: Final = {
     "--signals": "is read before the robot runs; with --live, values come from its blackboard",
+    "--summary": "is for logs",
+    "--run": "is for logs",
     "--by": "goes with --store DIR and no log",
     "--engine": "goes with --store DIR and no log",
     "--label-by": "is for logs, which are in folders; give --label NAME",

@@ -26,12 +26,12 @@ def form_of(options: Namespace, forms: Sequence[str]) -> str:
 
 def form_problem(options: Namespace, forms: Sequence[str]) -> str | None:
     """The error in the output file's name: it is a mission's, or, without a requested format, has the suffix of one
-    that btq does not write.
+    that is not written.
     """
     ending = _ending(options)
     if problem := mission_problem("-o", options.output, options.format):
         return problem
-    if options.format or ending not in _OTHERS:
+    if options.format or (ending not in _OTHERS and _ENDINGS.get(ending, forms[0]) in forms):
         return None
     return f"cannot write {ending}; choose one of {', '.join(forms)} with --format, or another file name"
 

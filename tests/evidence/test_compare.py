@@ -54,6 +54,7 @@ MARKDOWN = (
     "\n"
     "* 3 of 9 comparisons without a change that chance does not explain\n"
 )
+CHOICE = "choose one of table, json, markdown with --format, or another file name"
 FEW = (
     "main: 2 runs of a, 2 runs of b, durations compared by runs\n"
     "\n"
@@ -202,11 +203,11 @@ def finds_something(store: Path, seed: int) -> bool:
         (("kept", "v1", "v3"), "no run has the label v3; there are v1, v2"),
         (("kept", "v1", "v1"), "both sides are v1"),
         (("gone", "v1", "v2"), "gone: no verdicts are kept there; keep some with btq verify LOG --store gone"),
-        (("kept", "v1", "v2", "-o", "x.pdf"), None),
+        (("kept", "v1", "v2", "-o", "x.pdf"), "cannot write .pdf; " + CHOICE),
+        (("kept", "v1", "v2", "-o", "x.svg"), "cannot write .svg; " + CHOICE),
     ],
 )
-def test_what_cannot_be_compared(arguments: tuple[str, ...], message: str | None, changed: Path) -> None:
-    message = message or "cannot write .pdf; choose one of table, json, markdown with --format, or another file name"
+def test_what_cannot_be_compared(arguments: tuple[str, ...], message: str, changed: Path) -> None:
     assert run_btq("compare", *arguments, cwd=changed) == (2, "", f"btq compare: {message}\n")
 
 

@@ -270,6 +270,8 @@ def test_the_report_goes_where_it_is_asked(live: Live) -> None:
         (["tcp://x"], "--live tcp://x: expected an address with a port, as in tcp://127.0.0.1:1667"),
         (["tcp://x:99999"], "--live tcp://x:99999: expected an address with a port, as in tcp://127.0.0.1:1667"),
         (["tcp://x:1", "--jobs", "2"], "--jobs is for logs; a running robot is judged in one process"),
+        (["tcp://x:1", "--summary", "a.json"], "--summary is for logs"),
+        (["tcp://x:1", "--run", "1"], "--run is for logs"),
         (["tcp://x:1", "--by", "label"], "--by goes with --store DIR and no log"),
         (["tcp://x:1", "--label", "v1"], "--label goes with --store DIR"),
         (["tcp://x:1", "--label-by", "folder"], "--label-by is for logs, which are in folders; give --label NAME"),
