@@ -266,3 +266,24 @@ def test_two_writers_at_once(tmp_path: Path) -> None:
     first, second = writer(tmp_path, logs), writer(tmp_path, logs[::-1])
     assert (first.wait(), second.wait()) == (1, 1)
     assert {name: data for name, (_, data) in files(tmp_path / "kept").items()} == expected
+
+
+def test_a_set_that_another_writer_replaces_meanwhile(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whenever this writer has put the old set aside, another one has put its own there, three times."""
+    logs = logs_of(tmp_path, 1)
+    assert writer(tmp_path, logs).wait() == 1
+    (tmp_path / "main.btq").write_text(MISSION.replace("15 ms", "14 ms"), encoding="utf-8")
+    rename = os.rename
+    left = iter(range(3))
+
+    def rename_and_be_late(source: str, target: str) -> None:
+        rename(source, target)
+        if ".old-" in target and next(left, None) is not None:
+            shutil.copytree(target, source)
+
+    monkeypatch.setattr(os, "rename", rename_and_be_late)
+    assert run_btq("verify", *logs, "--mission", "main.btq", "--store", "kept", cwd=tmp_path)[0] == 1
+    assert next(left, None) is None
+    (kept,) = (tmp_path / "kept").iterdir()
+    bounds = duckdb.connect().execute(f"SELECT max(bound_si) FROM '{kept}/verdicts.parquet'").fetchall()
+    assert bounds == [(0.014,)]

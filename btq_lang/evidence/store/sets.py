@@ -150,7 +150,8 @@ def about(folder: str) -> dict[str, Any]:
 
 def _take_place(folder: str, target: str) -> None:
     """Give a folder its name, even if another one has it."""
-    aside = os.path.join(os.path.dirname(target), f"{_OLD}{os.path.basename(target)}-{uuid.uuid4().hex}")
+    store, name = os.path.split(target)
+    aside = []
     while True:
         try:
             os.rename(folder, target)
@@ -158,9 +159,11 @@ def _take_place(folder: str, target: str) -> None:
         except OSError as error:
             if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
                 raise
+        aside.append(os.path.join(store, f"{_OLD}{name}-{uuid.uuid4().hex}"))
         with suppress(FileNotFoundError):  # another writer is replacing it
-            os.rename(target, aside)
-    shutil.rmtree(aside, ignore_errors=True)
+            os.rename(target, aside[-1])
+    for each in aside:
+        shutil.rmtree(each, ignore_errors=True)
 
 
 def _sha256(log: str) -> str:
