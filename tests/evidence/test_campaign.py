@@ -1,0 +1,104 @@
+"""A campaign of simulated variants, a folder each: `btq verify --label-by folder`, then `btq compare`."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import fleet
+import pytest
+from in_process import run_btq
+
+from btq_lang.evidence.store import engine
+
+VARIANTS: dict[str, tuple[dict[str, float], dict[str, float]]] = {
+    "base": ({}, {}),
+    "same": ({}, {}),
+    "slow": ({"Follow": 6.6}, {}),  # seconds
+    "clumsy": ({}, {"Pick": 0.6}),  # how often it fails
+}
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the store of four variants, each of two logs with 60 runs."""
+    folder = tmp_path_factory.mktemp("campaign")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(fleet, "VERSIONS", VARIANTS)
+        patch.setattr(fleet, "MISSION", fleet.MISSION.replace("tries at most 6", "tries at most 60"))
+        fleet.write_logs(folder, 1, [*VARIANTS], 2, 60)
+    for variant in VARIANTS:
+        (folder / "logs" / variant / "r001").rename(folder / variant)
+    assert verify(folder, *VARIANTS) == 1
+    return folder
+
+
+def verify(folder: Path, *logs: str) -> int:
+    asked = ("--mission", "fetch.btq", "--store", "kept", "--label-by", "folder", "-o", "verdicts.json")
+    code, output, errors = run_btq("verify", *logs, *asked, cwd=folder)
+    assert (output, errors) == ("", "")
+    return code
+
+
+def labels(folder: Path) -> list[tuple[str, str, int]]:
+    """The logs of the store, their labels and how many runs each has."""
+    asked = engine.asked(str(folder / "kept"))
+    rows = asked("SELECT source, label, COUNT(*) AS number FROM runs GROUP BY ALL ORDER BY ALL")
+    return [(row["source"], row["label"], row["number"]) for row in rows]
+
+
+def compared(folder: Path, variant: str) -> tuple[int, list[str], set[tuple[str, str]]]:
+    """The exit code, what is newly violated, and what is found at which nodes, from `base` to a variant."""
+    code, output, errors = run_btq("compare", "kept", "base", variant, "--format", "json", cwd=folder)
+    assert errors == ""
+    (mission,) = json.loads(output)["missions"]
+    assert mission["runs"] == [120, 120]
+    found = {(each["finding"], each["node"]) for each in mission["changes"] if each["finding"]}
+    return code, [each["id"] for each in mission["newly"]], found
+
+
+def test_the_folders_are_the_labels(campaign: Path) -> None:
+    assert labels(campaign) == [
+        (f"{variant}/{day}.btlog", variant, 60) for variant in sorted(VARIANTS) for day in ("01", "02")
+    ]
+
+
+def test_a_variant_that_differs_in_nothing(campaign: Path) -> None:
+    assert compared(campaign, "same") == (0, [], set())
+
+
+def test_a_slower_node_and_what_waits_for_it(campaign: Path) -> None:
+    follow = "Drive::9/Follow::15"
+    quick = f"{follow}, Drive::20/Follow::26"
+    above = ("Drive::9/Sequence::13", "Drive::9/ReactiveSequence::11", "Drive::9/drive", "Drive::9", "Sequence::1")
+    slower = {("slower", each) for each in (follow, quick, *above)}
+    assert compared(campaign, "slow") == (1, ["quick"], {*slower, ("less reliable", quick)})
+
+
+def test_a_node_that_fails_more_often_and_what_waits_for_it(campaign: Path) -> None:
+    tried = ("Look::18", "Pick::19", "Sequence::17")
+    above = ("grasp", "Sequence::8", "shelf", "shelves", "Sequence::1")
+    code, newly, found = compared(campaign, "clumsy")
+    assert (code, newly) == (1, [])
+    assert found == {
+        *(("less reliable", each) for each in tried),
+        *(("slower", each) for each in above),
+        ("higher", "Look::18"),  # how often it is tried
+    }
+
+
+def test_logs_outside_of_folders_and_in_nested_ones(campaign: Path, tmp_path: Path) -> None:
+    """The nearest folder names the label, also where it is the one that the command is run in."""
+    folder = tmp_path / "home"
+    (folder / "slow" / "monday").mkdir(parents=True)
+    shutil.copy(campaign / "fetch.btq", folder)
+    shutil.copy(campaign / "base" / "01.btlog", folder / "loose.btlog")
+    shutil.copy(campaign / "slow" / "01.btlog", folder / "slow" / "monday")
+    shutil.copy(campaign / "slow" / "02.btlog", folder / "slow")
+    assert verify(folder, "loose.btlog", "slow") == 1
+    assert labels(folder) == [
+        ("loose.btlog", "home", 60),
+        ("slow/02.btlog", "slow", 60),
+        ("slow/monday/01.btlog", "monday", 60),
+    ]
