@@ -60,20 +60,23 @@ def store_problem(options: Namespace, is_summary: bool) -> str | None:
 
 def opened(options: Namespace, problems: list[str]) -> Keeping | None:
     """The store to keep verdicts in, without what killed writers left; errors are appended to the problems."""
-    if options.store is None:
+    if options.store is None or problems:
+        return None
+    if "://" in options.store:
+        problems.append(f"{options.store}: expected a folder; keep verdicts in one and upload it, or give --no-store")
         return None
     from btq_lang.evidence.store.engine import NoEngine, imported
-    from btq_lang.evidence.store.sets import Keeping, tidy
+    from btq_lang.evidence.store.sets import Keeping, prepare
 
     try:
         imported()
-        tidy(options.store)
+        prepare(options.store)
     except NoEngine as error:
         problems.append(str(error))
-    except NotADirectoryError:
+    except (FileExistsError, NotADirectoryError):
         problems.append(f"{shown(options.store)}: expected a folder, found a file")
     except OSError as error:
-        problems.append(f"{shown(options.store)}: cannot be read: {error.strerror or error}")
+        problems.append(f"{shown(options.store)}: cannot be written: {error.strerror or error}")
     return Keeping(options.store, options.label, options.label_by, options.robot, options.robot_by)
 
 

@@ -180,6 +180,75 @@ def test_a_store_that_cannot_be_written(robot: Path) -> None:
     assert keep(robot, "v1", "v2") == (2, "", "btq verify: kept: expected a folder, found a file\n")
 
 
+def test_a_folder_that_cannot_be_written(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (robot / "kept").mkdir(0o500)
+    if os.access(robot / "kept", os.W_OK):  # root may write everywhere but on a disk that is read only
+        monkeypatch.setattr(os, "access", lambda path, mode: False)
+    assert keep(robot, "v1", "v2") == (2, "", "btq verify: kept: cannot be written: Permission denied\n")
+
+
+def test_a_store_that_only_an_engine_knows(robot: Path) -> None:
+    message = "s3://fleet/kept: expected a folder; keep verdicts in one and upload it, or give --no-store"
+    asked = ("verify", "v1", "--mission", "main.btq", "--store", "s3://fleet/kept")
+    assert run_btq(*asked, cwd=robot) == (2, "", f"btq verify: {message}\n")
+    assert not (robot / "s3:").exists()
+
+
+@pytest.mark.parametrize("command", [("verify", "--store", "kept"), ("compare", "kept", "a", "b"), ("report", "kept")])
+def test_a_store_that_is_a_file_or_empty(command: tuple[str, ...], robot: Path) -> None:
+    said = f"btq {command[0]}: kept: "
+    (robot / "kept").write_text("a file", encoding="utf-8")
+    assert run_btq(*command, cwd=robot) == (2, "", f"{said}expected a folder, found a file\n")
+    (robot / "kept").unlink()
+    (robot / "kept").mkdir()
+    untold = "no verdicts are kept there; keep some with btq verify LOG --store kept\n"
+    assert run_btq(*command, cwd=robot) == (2, "", said + untold)
+
+
+@pytest.mark.parametrize("size", [0, 300, 1000])  # bytes; of the largest, only DuckDB writes more
+def test_a_disk_that_is_full(size: int, robot: Path) -> None:
+    resource = pytest.importorskip("resource", reason="Windows has no limits on what a process writes")
+    keep(robot, "v1")
+    before = files(robot / "kept")
+    (robot / "main.btq").write_text(MISSION.replace("15 ms", "14 ms"), encoding="utf-8")
+    logs = ("v1/a.btlog", "v2/b.btlog")
+    found = subprocess.run(
+        [sys.executable, "-m", "btq_lang", "verify", *logs, "--mission", "main.btq", "--store", "kept"],
+        cwd=robot,
+        # half-written bytecode would break the next start
+        env={**os.environ, "PYTHONPATH": str(HERE.parents[1]), "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
+    )
+    expected = [f"btq verify: {log}: cannot be kept: File too large: kept" for log in logs]
+    assert (found.returncode, found.stderr.splitlines()) == (2, expected)
+    assert "2 of 3 activations, worst 20 ms in run 1" in found.stdout
+    assert files(robot / "kept") == before
+    assert len(os.listdir(robot / "kept")) == 1
+
+
+def test_a_set_of_a_newer_version_is_read_and_not_replaced(robot: Path) -> None:
+    keep(robot, "v1", "v2", "--label", "x")
+    expected = run_btq("verify", "--store", "kept", cwd=robot)
+    (log,) = {log for log, source in of(robot / "kept", "runs", "log, source") if source == "v1/a.btlog"}
+    folder = robot / "kept" / log
+    for table in TABLES:
+        new = f"SELECT *, 1 AS added FROM '{folder}/{table}.parquet'"
+        duckdb.connect().execute(f"COPY ({new}) TO '{folder}/new.parquet'")
+        (folder / "new.parquet").rename(folder / f"{table}.parquet")
+    about = (folder / "about.json").read_text(encoding="utf-8")
+    (folder / "about.json").write_text(about.replace('"version": 1', '"version": 2'), encoding="utf-8")
+    assert run_btq("verify", "--store", "kept", cwd=robot) == expected
+    before = files(robot / "kept")
+    code, _, errors = keep(robot, "v1", "v2")
+    assert (code, errors) == (
+        2,
+        f"btq verify: v1/a.btlog: cannot be kept: a newer version of btq has written kept/{log}\n",
+    )
+    assert files(robot / "kept") == before
+
+
 def test_a_set_that_cannot_be_written(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(engine, "_OPTIONS", "FORMAT parquet, COMPRESSION nothing")
     code, output, errors = keep(robot, "v1")
@@ -203,7 +272,7 @@ def test_what_killed_writers_leave(robot: Path) -> None:
         (draft / "runs.csv").write_text("1", encoding="utf-8")
         for path in (draft / "runs.csv", draft):
             os.utime(path, (time.time() - age,) * 2)
-    sets.tidy(str(store))
+    sets.prepare(str(store))
     assert sorted(os.listdir(store)) == [".draft-0", first, second]
     assert {name: data for name, data in files(store).items() if "draft" not in name} == before
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any, Final
 
 from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, ROWS, files_of, quoted
@@ -15,6 +16,8 @@ def incomplete(connection: Any, store: str) -> str | None:
     """
     import duckdb
 
+    if os.path.isfile(store):
+        return f"{store}: expected a folder, found a file"
     found = _files(connection, store)
     if not found:
         return f"{store}: no verdicts are kept there; keep some with btq verify LOG --store {store}"

@@ -1,11 +1,12 @@
 """DuckDB, which writes the files of a set and answers questions about a store.
 
-One invariant: nothing else imports DuckDB for the store, and any failure is a NoEngine with one sentence.
+One invariant: nothing else imports DuckDB for the store; any failure is an OSError, or a NoEngine with one sentence.
 """
 
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Any, Final
@@ -27,6 +28,7 @@ def write_parquet(folder: str, common: Mapping[str, str]) -> None:
 
     Raises:
         NoEngine: DuckDB is missing, or fails.
+        OSError: the files cannot be written; the disk may be full.
     """
     duckdb = imported()
     cursor = _writer(os.getpid()).cursor()
@@ -38,6 +40,8 @@ def write_parquet(folder: str, common: Mapping[str, str]) -> None:
                 cursor.execute("RESET memory_limit")
                 cursor.execute(_copy(folder, table, common))
     except duckdb.Error as error:
+        if found := re.search(r'"errno":"(\d+)"', str(error)):
+            raise OSError(int(found[1]), os.strerror(int(found[1]))) from error
         raise NoEngine(" ".join(str(error).split())) from error
     finally:
         cursor.close()

@@ -79,10 +79,13 @@ class Draft:
 
         Raises:
             OSError, NoEngine: it cannot be written.
+            NotKept: a newer version of btq has written the set, perhaps with more columns.
         """
         self.rows.close()
         target = os.path.join(self._store, self._log)
         before = about(target)
+        if before.get("version", VERSION) not in range(VERSION + 1):
+            raise NotKept(f"cannot be kept: a newer version of btq has written {target}")
         label = self._label if self._label is not None else str(before.get("label", ""))
         now = {"format": FORMAT, "version": VERSION, "log": self._log, "label": label, "rows": digest(self._folder)}
         if now.items() <= before.items():
@@ -115,19 +118,24 @@ def draft(keeping: Keeping, log: str, name: str | None = None) -> Iterator[Draft
     try:
         with Rows(folder) as rows:
             yield Draft(keeping.folder, folder, name, keeping.label_of(log), rows)
-    except (OSError, NoEngine) as error:
+    except OSError as error:
+        raise NotKept(f"cannot be kept: {error.strerror or error}: {keeping.folder}") from error
+    except NoEngine as error:
         raise NotKept(f"cannot be kept: {error}") from error
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def tidy(store: str) -> None:
-    """Restore or remove what killed writers left.
+def prepare(store: str) -> None:
+    """Make the folder of a store, if there is none, and restore or remove what killed writers left.
 
     Raises:
-        OSError: the store cannot be read.
+        OSError: the store cannot be read or written.
     """
-    for name in os.listdir(store) if os.path.exists(store) else ():
+    os.makedirs(store, exist_ok=True)
+    if not os.access(store, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), store)
+    for name in os.listdir(store):
         path = os.path.join(store, name)
         if (aside := _ASIDE.fullmatch(name)) is not None:
             with suppress(OSError):  # another writer was faster
@@ -194,7 +202,7 @@ def _folder_of(log: str) -> str:
 
 
 FORMAT: Final = "btq-evidence"
-VERSION: Final = 1
+VERSION: Final = 1  # one more with each new column: older versions then leave the set as it is
 ABOUT: Final = "about.json"
 DRAFT: Final = ".draft-"
 _OLD: Final = ".old-"
