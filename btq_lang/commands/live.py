@@ -17,7 +17,7 @@ from btq_lang.commands.files import usage_problem
 from btq_lang.commands.live_lines import Lines
 from btq_lang.commands.live_screen import Screen, is_screen
 from btq_lang.commands.output import form_of, form_problem, is_coloured
-from btq_lang.commands.stored import opened, store_of_project
+from btq_lang.commands.stored import name_problem, opened, store_of_project
 from btq_lang.commands.verdict_events import events_problem
 from btq_lang.commands.verdict_formats import FORMATS
 from btq_lang.commands.verdict_report import failed, finish
@@ -80,6 +80,8 @@ def _problem(options: Namespace) -> str | None:
         return "--live watches a robot; judge logs by themselves"
     if options.jobs != 1:
         return "--jobs is for logs; a running robot is judged in one process"
+    if problem := name_problem(options):
+        return problem
     if options.store is None and (options.label or options.robot):
         return f"{'--label' if options.label else '--robot'} goes with --store DIR"
     try:

@@ -44,6 +44,8 @@ def store_problem(options: Namespace, is_summary: bool) -> str | None:
     Args:
         is_summary: as `reads_store` says.
     """
+    if problem := name_problem(options):
+        return problem
     named = _given(options, (*_OF_LOGS, *_OF_KEEPING, *_OF_SUMMARY))
     if options.store is None:
         wrong = [each for each in named if each not in _OF_LOGS]
@@ -56,6 +58,14 @@ def store_problem(options: Namespace, is_summary: bool) -> str | None:
     if form_of(options, FORMATS) == "html":
         return "a page is made of logs; choose another format for a store"
     return form_problem(options, FORMATS)
+
+
+def name_problem(options: Namespace) -> str | None:
+    """The error of a label or robot without a name, which a script with an unset variable gives."""
+    for option, name in (("--label", options.label), ("--robot", options.robot)):
+        if name is not None and not name.strip():
+            return f"{option} is empty; give a name, or leave it out to keep what the store has"
+    return None
 
 
 def opened(options: Namespace, problems: list[str]) -> Keeping | None:

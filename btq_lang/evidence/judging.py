@@ -6,6 +6,7 @@ up in their order.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, Protocol
 
@@ -17,13 +18,13 @@ from btq_lang.evidence.runs import count_runs
 from btq_lang.evidence.signals import by_signal
 from btq_lang.evidence.verdicts import Foreign, Report
 from btq_lang.util.record import Record, replace
+from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import NamedLog, Series, Session
     from btq_lang.evidence.odds import Limits
-    from btq_lang.evidence.store.rows import Rows
-    from btq_lang.evidence.store.sets import Keeping
+    from btq_lang.evidence.store.sets import Draft, Keeping
     from btq_lang.workspace.project_evidence import SignalSource
 
 
@@ -80,12 +81,14 @@ class JudgedLog(Record):
         findings: with the path of the mission, for each of its robots.
         foreign: the runs of other missions.
         problems: why the log, or the rest of it, could not be read or kept.
+        renamed: the label and the robot that the store had for it, as far as others are given now.
     """
 
     runs: int
     findings: tuple[tuple[str, Findings], ...]
     foreign: tuple[Foreign, ...]
     problems: tuple[str, ...]
+    renamed: tuple[str, ...] = ()
 
 
 def judge(
@@ -104,9 +107,9 @@ def judge(
     found: JudgedLog | None = None
     try:
         with draft(means.keeping, log, running.id if running is not None else None) as written:
-            found = _judged(log, means, ran, written.rows, running)
+            found = _judged(log, means, ran, written, running)
             if found.runs and not found.problems:
-                written.publish(means.shown(log))
+                found = replace(found, renamed=written.publish(means.shown(log)))
     except NotKept as error:
         problem = f"{means.shown(log)}: {error}"
         found = replace(found, problems=(problem,)) if found is not None else JudgedLog(0, (), (), (problem,))
@@ -114,7 +117,7 @@ def judge(
 
 
 def _judged(
-    log: str, means: Means, ran: Callable[[int], None], rows: Rows | None, running: Running | None
+    log: str, means: Means, ran: Callable[[int], None], written: Draft | None, running: Running | None
 ) -> JudgedLog:
     missions, shown = means.missions, means.shown
     evaluations: dict[tuple[str, str], MissionEvaluation] = {}
@@ -135,8 +138,9 @@ def _judged(
                 mission = joined.mission
                 key = mission.path, session.robot
                 if key not in evaluations:
-                    robot = session.robot or (means.keeping.robot_of(log) if means.keeping is not None else "")
-                    parts = [rows.part(mission.name, robot)] if rows is not None else []
+                    parts = []
+                    if written is not None:
+                        parts.append(written.rows.part(mission.name, session.robot or written.robot))
                     evaluation = MissionEvaluation(
                         mission, means.with_timelines, ran, parts, means.limits, means.with_measures
                     )
@@ -169,6 +173,7 @@ class Judging:
         self._evaluations: Final = {each.path: _empty(each, means) for each in means.missions}
         self._foreign: Final[dict[tuple[str, str], Foreign]] = {}
         self._problems: Final[list[str]] = []
+        self._renamed: Final[Counter[str]] = Counter()
 
     def add(self, log: JudgedLog) -> None:
         """Add the next log."""
@@ -179,12 +184,14 @@ class Judging:
             known = self._foreign.get((each.file, each.of))
             self._foreign[each.file, each.of] = replace(known, runs=known.runs + each.runs) if known else each
         self._problems.extend(log.problems)
+        self._renamed.update(log.renamed)
 
     def report(self) -> Report:
         """All that was found."""
         missions = [each.result() for each in self._evaluations.values()]
         found = tuple(each for each in missions if each.sources)
-        return Report(found, tuple(self._foreign.values()), tuple(self._problems))
+        renamed = tuple(f"{counted(number, 'log')} had {what}" for what, number in self._renamed.items())
+        return Report(found, tuple(self._foreign.values()), tuple(self._problems), renamed)
 
 
 def _empty(mission: Candidate, means: Means) -> MissionEvaluation:

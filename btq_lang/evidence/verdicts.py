@@ -331,7 +331,7 @@ class Report(Record):
     Attributes:
         missions: those that have logs.
         problems: the files that could not be read, each with the reason.
-        remarks: notes about the samples.
+        remarks: notes about the samples, and about labels that the store had.
     """
 
     missions: tuple[MissionVerdicts, ...]

@@ -147,7 +147,8 @@ def judged(
     )
     read_from = [(file, each) for each in series.values()]
     read_from += [(source.file, of_files[source.signal]) for source in sources if source.signal in of_files]
-    report = replace(report, remarks=(*ignored_columns(file, series, missions), *other_times(read_from, report)))
+    remarks = (*ignored_columns(file, series, missions), *other_times(read_from, report))
+    report = replace(report, remarks=(*remarks, *report.remarks))
     return _with_problems(report, missions, requested)
 
 

@@ -114,11 +114,11 @@ def test_a_run_that_counts_as_one_has_one_judgement_that_counts(robot: Path) -> 
 
 
 def test_reading_a_log_again_changes_nothing(robot: Path) -> None:
-    keep(robot, "v1", "v2", "--label", "x")
+    keep(robot, "v1", "v2", "--label", "x", "--robot", "r7")
     before = files(robot / "kept")
     assert len(before) == 10
     shutil.copy(robot / "v1" / "a.btlog", robot / "copy.btlog")
-    keep(robot, "copy.btlog", "v2")  # also under another name, and without the label, which it keeps
+    keep(robot, "copy.btlog", "v2")  # also under another name, and without the label and the robot, which it keeps
     assert files(robot / "kept") == before
 
 
@@ -135,6 +135,37 @@ def test_what_is_found_anew_takes_the_place_of_the_old(robot: Path) -> None:
     keep(robot, "v1", "--label", "y")
     assert sorted(each for (each,) in of(robot / "kept", "runs", "label")) == ["x", "y", "y"]
     assert not [name for name in os.listdir(robot / "kept") if name.startswith(".")]
+
+
+def test_a_log_that_is_judged_anew_keeps_its_label_and_robot(robot: Path) -> None:
+    keep(robot, "v1", "--label", "x", "--robot", "r7")
+    (robot / "main.btq").write_text(MISSION.replace("15 ms", "25 ms"), encoding="utf-8")
+    assert keep(robot, "v1")[0] == 0
+    whose = [("x", "r7", "Move takes at most 25 ms")] * 2
+    assert of(robot / "kept", "verdicts", "label, robot, clause") == whose
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_a_note_says_which_labels_and_robots_are_replaced(jobs: str, robot: Path) -> None:
+    assert "had the" not in keep(robot, "v1", "--label", "x", "--robot", "r7")[1]
+    assert "had the" not in keep(robot, "v2", "--label", "x")[1]
+    again = ("v1", "v2", "--label", "y", "--robot", "r8", "--jobs", jobs)
+    code, output, errors = keep(robot, *again)
+    assert (code, errors) == (1, "")
+    notes = [line for line in output.splitlines() if "note:" in line]
+    assert notes == ["  note: 2 logs had the label x", "  note: 1 log had the robot r7"]
+    assert "had the" not in keep(robot, *again)[1]
+    assert keep(robot, "v1", "--label", "z", "-o", "x.json") == (1, "", "btq verify: 1 log had the label y\n")
+
+
+@pytest.mark.parametrize("name", ["", " "])
+@pytest.mark.parametrize("option", ["--label", "--robot"])
+def test_an_empty_name_changes_nothing(option: str, name: str, robot: Path) -> None:
+    keep(robot, "v1", "--label", "x", "--robot", "r7")
+    before = files(robot / "kept")
+    message = f"btq verify: {option} is empty; give a name, or leave it out to keep what the store has\n"
+    assert keep(robot, "v1", option, name) == (2, "", message)
+    assert files(robot / "kept") == before
 
 
 def test_a_folder_names_labels_and_robots(robot: Path) -> None:

@@ -38,7 +38,7 @@ class Keeping(Record):
 
     Attributes:
         folder: of the store.
-        label, robot: of the logs; None: the label that the log has in the store already.
+        label, robot: of the logs; None: those that the log has in the store already.
         label_by, robot_by: `folder`: of each log, the name of its folder.
     """
 
@@ -52,9 +52,9 @@ class Keeping(Record):
         """The label of a log."""
         return _folder_of(log) if self.label_by else self.label
 
-    def robot_of(self, log: str) -> str:
+    def robot_of(self, log: str) -> str | None:
         """The robot of a log that names none."""
-        return _folder_of(log) if self.robot_by else self.robot or ""
+        return _folder_of(log) if self.robot_by else self.robot
 
 
 class Draft:
@@ -62,41 +62,46 @@ class Draft:
 
     Attributes:
         rows: takes what is found.
+        robot: of the log, unless it names its robots.
     """
 
-    def __init__(self, store: str, folder: str, log: str, label: str | None, rows: Rows) -> None:
-        self._store: Final = store
+    def __init__(self, store: str, folder: str, log: str, label: str | None, robot: str | None, rows: Rows) -> None:
+        self._target: Final = os.path.join(store, log)
         self._folder: Final = folder
         self._log: Final = log
         self._label: Final = label
         self.rows: Final = rows
+        self.robot: Final = robot or str(about(self._target).get("robot", ""))
 
-    def publish(self, source: str) -> None:
+    def publish(self, source: str) -> tuple[str, ...]:
         """Make it the set of its log, unless that has the same rows and label already.
 
         Args:
             source: the file, as people read it.
+
+        Returns:
+            The label and the robot that the log had, as far as it has another one now.
 
         Raises:
             OSError, NoEngine: it cannot be written.
             NotKept: a newer version of btq has written the set, perhaps with more columns.
         """
         self.rows.close()
-        target = os.path.join(self._store, self._log)
-        before = about(target)
+        before = about(self._target)
         if before.get("version", VERSION) not in range(VERSION + 1):
-            raise NotKept(f"cannot be kept: a newer version of btq has written {target}")
-        label = self._label if self._label is not None else str(before.get("label", ""))
-        now = {"format": FORMAT, "version": VERSION, "log": self._log, "label": label, "rows": digest(self._folder)}
+            raise NotKept(f"cannot be kept: a newer version of btq has written {self._target}")
+        whose = {"label": self._label or str(before.get("label", "")), "robot": self.robot}
+        now = {"format": FORMAT, "version": VERSION, "log": self._log, **whose, "rows": digest(self._folder)}
         if now.items() <= before.items():
-            return
+            return ()
         named = source.encode(errors="replace").decode()
-        write_parquet(self._folder, {"log": self._log, "label": label, "source": named})
+        write_parquet(self._folder, {"log": self._log, "label": whose["label"], "source": named})
         for name in ROWS:
             os.remove(file_of(self._folder, name))
         with open(os.path.join(self._folder, ABOUT), "w", encoding="utf-8") as file:
             json.dump(now, file, indent=1)
-        _take_place(self._folder, target)
+        _take_place(self._folder, self._target)
+        return tuple(f"the {each} {before[each]}" for each in whose if before.get(each, "") not in ("", whose[each]))
 
 
 @contextmanager
@@ -117,7 +122,7 @@ def draft(keeping: Keeping, log: str, name: str | None = None) -> Iterator[Draft
         raise NotKept(f"cannot be kept: {error.strerror or error}: {error.filename}") from error
     try:
         with Rows(folder) as rows:
-            yield Draft(keeping.folder, folder, name, keeping.label_of(log), rows)
+            yield Draft(keeping.folder, folder, name, keeping.label_of(log), keeping.robot_of(log), rows)
     except OSError as error:
         raise NotKept(f"cannot be kept: {error.strerror or error}: {keeping.folder}") from error
     except NoEngine as error:
