@@ -300,11 +300,23 @@ def test_without_the_extra_it_says_so(live: Live, monkeypatch: pytest.MonkeyPatc
     )
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_process_ends_with_the_table(number: signal.Signals, tmp_path: Path) -> None:
+TIMEOUT = ["timeout", "--foreground", "--preserve-status", "1h"]  # as docs/evidence.md has it; SIGALRM ends the hour
+
+
+@pytest.mark.parametrize(
+    ("before", "number"),
+    [
+        ([], signal.SIGINT),
+        ([], signal.SIGTERM),
+        pytest.param(
+            TIMEOUT, signal.SIGALRM, marks=pytest.mark.skipif(sys.platform != "linux", reason="timeout is of coreutils")
+        ),
+    ],
+)
+def test_a_process_ends_with_the_table(before: list[str], number: signal.Signals, tmp_path: Path) -> None:
     (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
     with Robot(MAIN_XML) as robot:
-        command: list[Any] = [sys.executable, "-m", "btq_lang", "verify", "--live", robot.address]
+        command: list[Any] = [*before, sys.executable, "-m", "btq_lang", "verify", "--live", robot.address]
         with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as btq:
             robot.wait_for("r", "t")
             robot.play(GOOD)
