@@ -339,7 +339,9 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument("--format", choices=VERDICT_FORMATS, help="default: as the file of -o ends, else table")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     parser.add_argument("--verbose", action="store_true", help="in the table, explain more violations of each clause")
-    parser.add_argument("--strict", action="store_true", help="exit 1 unless every requirement is satisfied")
+    fails = parser.add_mutually_exclusive_group()
+    fails.add_argument("--strict", action="store_true", help="exit 1 unless every requirement is satisfied")
+    fails.add_argument("--exit-zero", action="store_true", help="exit 0 also if a requirement is violated")
     _add_color(parser)
 
 

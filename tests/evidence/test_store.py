@@ -158,6 +158,27 @@ def test_a_note_says_which_labels_and_robots_are_replaced(jobs: str, robot: Path
     assert keep(robot, "v1", "--label", "z", "-o", "x.json") == (1, "", "btq verify: 1 log had the label y\n")
 
 
+def test_a_job_keeps_verdicts_and_compares(robot: Path) -> None:
+    """The lines of docs/ci.md, in the shell of a build server, which ends at the first error."""
+    assert keep(robot, "v2", "--label", "main", "--exit-zero")[0] == 0
+    script = """
+        btq verify "$LOGS" --mission main.btq --store kept --label "$GITHUB_SHA" --exit-zero -o verdicts.md
+        btq compare kept main "$GITHUB_SHA" -o comparison.md
+    """
+
+    def job(logs: str, sha: str) -> int:
+        path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+        environment = {**os.environ, "PATH": path, "LOGS": logs, "GITHUB_SHA": sha}
+        return subprocess.run(["bash", "-ec", script], cwd=robot, env=environment, capture_output=True).returncode
+
+    assert job("v1", "") == 2
+    assert job("gone.btlog", "abc") == 2
+    assert not (robot / "comparison.md").exists()
+    assert job("v1", "abc") == 0
+    assert (robot / "comparison.md").read_text(encoding="utf-8").startswith("### main: 1 run of main, 2 runs of abc")
+    assert "violated" in (robot / "verdicts.md").read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize("name", ["", " "])
 @pytest.mark.parametrize("option", ["--label", "--robot"])
 def test_an_empty_name_changes_nothing(option: str, name: str, robot: Path) -> None:
