@@ -15,6 +15,7 @@ from json_schema import violations
 
 from btq_lang.evidence.compare.chance import Shuffles, fisher, holm, is_too_few, shuffles_for
 from btq_lang.evidence.compare.comparison import compare
+from btq_lang.evidence.compare.words import remarks
 from btq_lang.evidence.store import engine
 from btq_lang.evidence.store.rows import file_of
 from btq_lang.evidence.store.tables import ROWS
@@ -59,6 +60,7 @@ FEW = (
     "main: 2 runs of a, 2 runs of b, durations compared by runs\n"
     "\n"
     "9 of 9 comparisons without a change that chance does not explain\n"
+    "medians and p95: not testable with 2 runs\n"
     "too few to show any change: Dock::3, Move::2, quick: Move takes at most 12 s at Move::2\n"
 )
 
@@ -169,9 +171,38 @@ def test_robots_are_shuffled_where_a_label_has_several(tmp_path: Path) -> None:
     (found,) = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", "b"))
     assert (found.over, found.robots, found.runs) == ("robots", (2, 2), (100, 100))
     assert [each.finding for each in found.changes if each.finding] == []
+    assert "medians and p95: not testable with 2 robots" in remarks(found)
     (alone,) = compare(engine.asked(str(tmp_path / "kept")), "robot", ("r1", "r4"))
     assert {each.node for each in alone.changes if each.finding == "slower"} == {"Move::2"}
     assert alone.over == "runs"
+
+
+def keep_robots(store: Path, label: str, chance: random.Random, slower: float = 0.0) -> None:
+    """Keep 25 runs of each of three robots, of which each is slower, and fails more often, than the one before."""
+    for number in range(3):
+        keep(store, label, drawn(chance, 25, 8 + number + slower, 0.1 + 0.2 * number), f"r{number}")
+
+
+def test_runs_of_each_robot_are_shuffled_where_the_same_robots_ran_both(tmp_path: Path) -> None:
+    chance = random.Random(5)
+    keep_robots(tmp_path / "kept", "a", chance)
+    keep_robots(tmp_path / "kept", "b", chance, 0.5)
+    (found,) = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", "b"))
+    assert (found.over, found.robots, found.runs) == ("runs of each robot", (3, 3), (75, 75))
+    slower = {(each.node, each.what) for each in found.changes if each.finding}
+    assert slower == {("Move::2", "median"), ("Move::2", "p95")}
+    keep(tmp_path / "kept", "b", drawn(chance, 25, 12.0, 0.5), "r3")
+    (found,) = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", "b"))
+    assert (found.over, found.robots) == ("runs of each robot", (3, 4))
+
+
+def test_a_version_compared_with_itself_on_robots_of_different_speed(tmp_path: Path) -> None:
+    for seed in range(12):
+        chance = random.Random(seed)
+        keep_robots(tmp_path / str(seed), "a", chance)
+        keep_robots(tmp_path / str(seed), "b", chance)
+        (found,) = compare(engine.asked(str(tmp_path / str(seed))), "label", ("a", "b"))
+        assert [each for each in found.changes if each.finding in ("slower", "faster")] == []
 
 
 def test_many_runs_are_shuffled_in_groups(tmp_path: Path) -> None:
@@ -225,7 +256,8 @@ def test_fisher_is_the_sum_of_all_tables_that_are_as_unlikely(first: tuple[int, 
 def test_shuffles_agree_with_fisher_where_each_run_fails_or_not() -> None:
     scores = [80 * failed - 24 for failed in [True] * 7 + [False] * 33 + [True] * 17 + [False] * 23]
     assert sum(scores) == 0
-    assert Shuffles(40, 40, 10_000).probability(scores) == pytest.approx(fisher((7, 40), (17, 40)), rel=0.15)
+    side = [""] * 40
+    assert Shuffles(side, side, 10_000).probability(scores) == pytest.approx(fisher((7, 40), (17, 40)), rel=0.15)
 
 
 def test_holm() -> None:
@@ -235,12 +267,14 @@ def test_holm() -> None:
 
 def test_as_many_shuffles_as_comparisons_need() -> None:
     assert (shuffles_for(12), shuffles_for(1000)) == (10_000, 20_000)
-    assert (is_too_few(3, 3, 1), is_too_few(4, 4, 1), is_too_few(4, 4, 12), is_too_few(6, 6, 12)) == (
-        False,
+    assert [is_too_few([(size, size)], 1) for size in (3, 4)] == [True, False]  # 2 of 20 ways, 2 of 70
+    assert [is_too_few([(size, size)], 12) for size in (5, 6)] == [True, False]  # of 252, of 924
+    assert [is_too_few(sizes, 1) for sizes in ([(3, 3)] * 2, [(1, 18)], [(1, 19)], [(4, 0)])] == [
         False,
         True,
         False,
-    )
+        True,
+    ]
 
 
 def test_the_table_of_the_page() -> None:

@@ -1,31 +1,43 @@
 """How likely a difference at least as large is where nothing has changed.
 
 One invariant: what is shuffled or counted are runs, groups of runs, or robots, never activations: those of one run are
-not independent of each other.
+not independent of each other.  What differs without a change, such as robots, may part them in strata.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
-from math import comb, exp, lgamma
+from collections import Counter
+from collections.abc import Hashable, Sequence
+from math import comb, exp, lgamma, prod
 from operator import itemgetter
 from typing import Final
 
 
 class Shuffles:
-    """Random ways to part units into two sides of the same sizes as those that are compared; the seed is fixed."""
+    """Random ways to part the units of each stratum into two sides of the same sizes as those that are compared.
 
-    def __init__(self, first: int, second: int, number: int) -> None:
+    The seed is fixed.
+    """
+
+    def __init__(self, first: Sequence[Hashable], second: Sequence[Hashable], number: int) -> None:
         """
         Args:
-            first, second: how many units each side has.
+            first, second: the stratum of each unit of a side.
         """
         chance = random.Random(_SEED)
-        units, fewer = range(first + second), min(first, second)
-        self._first: Final = first
-        # The last index is that of a zero, for `itemgetter` gives no tuple for a single one.
-        self._sides: Final = [itemgetter(len(units), *chance.sample(units, fewer)) for _ in range(number)]
+        strata: dict[Hashable, list[int]] = {}
+        for index, stratum in enumerate((*first, *second)):
+            strata.setdefault(stratum, []).append(index)
+        fewer = Counter(first if len(first) <= len(second) else second)
+        parted = [(units, fewer[stratum]) for stratum, units in strata.items() if 0 < fewer[stratum] < len(units)]
+        self._first: Final = len(first)
+        # That of a zero, twice, for `itemgetter` gives no tuple for a single index.
+        zero = len(first) + len(second)
+        self._sides: Final = [
+            itemgetter(zero, zero, *(at for units, size in parted for at in chance.sample(units, size)))
+            for _ in range(number)
+        ]
 
     def probability(self, scores: Sequence[int]) -> float:
         """The p-value of the difference between the sides, in both directions.
@@ -33,7 +45,7 @@ class Shuffles:
         It ends early once it is certain to be above `LEVEL`.
 
         Args:
-            scores: of the units of the first side, then of the second; their sum is 0.
+            scores: of the units of the first side, then of the second; their sum in each stratum is 0.
         """
         observed = abs(sum(scores[: self._first]))
         if not observed:
@@ -77,9 +89,15 @@ def holm(probabilities: Sequence[float]) -> list[float]:
     return found
 
 
-def is_too_few(first: int, second: int, comparisons: int) -> bool:
-    """Whether so few units cannot show any change, among so many comparisons."""
-    return comb(first + second, first) < comparisons / LEVEL
+def is_too_few(sizes: Sequence[tuple[int, int]], comparisons: int) -> bool:
+    """Whether so few units cannot show any change, among so many comparisons.
+
+    Args:
+        sizes: how many units each side has in each stratum.
+    """
+    # Sides of the same size can be exchanged, and then differ as much.
+    extremes = 2 if all(first == second for first, second in sizes) else 1
+    return prod(comb(first + second, first) for first, second in sizes) < extremes * comparisons / LEVEL
 
 
 def _log_comb(n: int, k: int) -> float:

@@ -5,7 +5,9 @@ One invariant: what is loaded are counts of each run, group of runs or robot; th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import lcm
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import parse_unit
@@ -20,6 +22,8 @@ from btq_lang.util.record import Record, replace
 if TYPE_CHECKING:
     Ask: TypeAlias = Callable[[str], Sequence[Mapping[str, Any]]]
     Key: TypeAlias = tuple[str, str, str]  # requirement, clause, node
+    Unit: TypeAlias = tuple[str, str, Any]  # side, stratum, and which of these
+    Over: TypeAlias = Literal["runs", "runs of each robot", "robots"]
     Finding: TypeAlias = Literal["", "slower", "faster", "higher", "lower", "less reliable", "more reliable"]
 
 
@@ -65,7 +69,8 @@ class Comparison(Record):
 
     Attributes:
         runs, robots: how many each side has.
-        over: what is shuffled: `robots`, where a side has several, else `runs`.
+        over: what is shuffled.  Where a side has several robots, `runs of each robot`, as far as they ran both sides;
+            `robots` where each side has some of its own.
         group: how many runs are shuffled together; 1 without groups.
         newly: the requirements that only the second side violates.
         changes: all that was compared.
@@ -74,7 +79,7 @@ class Comparison(Record):
     mission: str
     runs: tuple[int, int]
     robots: tuple[int, int]
-    over: Literal["runs", "robots"]
+    over: Over
     group: int
     newly: tuple[Newly, ...]
     changes: tuple[Change, ...]
@@ -130,11 +135,14 @@ class _Mission:
         self.name: Final = name
         self._sides: Final = sides
         self._runs: Final = (runs[sides[0]]["runs"], runs[sides[1]]["runs"])
-        self._robots: Final = (runs[sides[0]]["robots"], runs[sides[1]]["robots"])
-        self._is_by_robot: Final = max(self._robots) > 1
-        self._size: Final = 1 if self._is_by_robot else -(-min(self._runs) // _MOST_UNITS)
-        unit = "robot" if self._is_by_robot else questions.BY_RUN.format(by=words["by"], size=self._size)
-        words = {**words, "mission": quoted(name), "unit": unit}
+        robots = set(runs[sides[0]]["robots"]), set(runs[sides[1]]["robots"])
+        self._robots: Final = (len(robots[0]), len(robots[1]))
+        self._over: Final = _over(*robots)
+        self._size: Final = 1 if self._over == "robots" else -(-min(self._runs) // _MOST_UNITS)
+        stratum = "robot" if self._over == "runs of each robot" else "''"
+        by_run = questions.BY_RUN.format(by=words["by"], stratum=stratum, size=self._size)
+        unit = "robot" if self._over == "robots" else by_run
+        words = {**words, "mission": quoted(name), "stratum": stratum, "unit": unit}
 
         def asked(question: str) -> Sequence[Mapping[str, Any]]:
             return ask(question.format(**words))
@@ -142,9 +150,9 @@ class _Mission:
         self._measures: Final = self._of_both(asked(questions.QUANTILES))
         self._failures: Final = self._of_both(asked(questions.FAILURES))
         self._units: Final = {_key(row): row["unit"] or "1" for row in asked(questions.UNITS)}
-        self._scores: Final[dict[Key, dict[tuple[str, Any], Mapping[str, Any]]]] = {}
+        self._scores: Final[dict[Key, dict[Unit, Mapping[str, Any]]]] = {}
         for row in asked(questions.SCORES):
-            self._scores.setdefault(_key(row), {})[row["side"], row["unit"]] = row
+            self._scores.setdefault(_key(row), {})[row["side"], row["stratum"], row["unit"]] = row
         self.comparisons: Final = 2 * len(self._measures) + len(self._failures)
 
     def changes(self, comparisons: int) -> list[Change]:
@@ -154,28 +162,37 @@ class _Mission:
             comparisons: how many there are in all missions.
         """
         ids = [sorted({at for rows in self._scores.values() for at in rows if at[0] == side}) for side in self._sides]
-        shuffles = Shuffles(len(ids[0]), len(ids[1]), shuffles_for(comparisons))
+        strata = [[stratum for _, stratum, _ in side] for side in ids]
+        shuffles = Shuffles(strata[0], strata[1], shuffles_for(comparisons))
         units = [*ids[0], *ids[1]]
         found = []
         for key, (before, after) in self._measures.items():
             counts = before["number"], after["number"]
-            too_few = is_too_few(before["units"], after["units"], comparisons)
+            too_few = is_too_few(self._sizes(self._scores[key]), comparisons)
             for what in ("median", "p95"):
-                p = shuffles.probability(_centred(self._scores[key], units, what))
+                scores = _centred(self._scores[key], units, what)
+                # Robots of different speed may move the quantiles of all values in the other direction than their own.
+                agrees = (sum(scores[: len(ids[0])]) < 0) == (after[what] > before[what])
+                p = shuffles.probability(scores) if agrees else 1.0
                 unit = self._units.get(key, "s") if key[0] else "s"
                 found.append(Change(*key, what, unit, before[what], after[what], counts, None, p, too_few, ""))
         for key, (before, after) in self._failures.items():
             counts, failed = (before["number"], after["number"]), (before["failed"], after["failed"])
             p = fisher((failed[0], counts[0]), (failed[1], counts[1]))
             shares = failed[0] / counts[0], failed[1] / counts[1]
-            too_few = is_too_few(*counts, comparisons)
+            too_few = is_too_few([counts], comparisons)
             found.append(Change(*key, "failures", "%", *shares, counts, failed, p, too_few, ""))
         return found
 
     def result(self, newly: Sequence[Newly], changes: tuple[Change, ...]) -> Comparison:
         """The comparison, with p-values after Holm."""
-        over: Literal["runs", "robots"] = "robots" if self._is_by_robot else "runs"
-        return Comparison(self.name, self._runs, self._robots, over, self._size, tuple(newly), changes)
+        return Comparison(self.name, self._runs, self._robots, self._over, self._size, tuple(newly), changes)
+
+    def _sizes(self, units: Iterable[Unit]) -> list[tuple[int, int]]:
+        """How many units each side has in each stratum."""
+        found = Counter((side, stratum) for side, stratum, _ in units)
+        first, second = self._sides
+        return [(found[first, each], found[second, each]) for each in {stratum for _, stratum in found}]
 
     def _of_both(self, rows: Sequence[Mapping[str, Any]]) -> dict[Key, tuple[Mapping[str, Any], Mapping[str, Any]]]:
         """The rows of what both sides have."""
@@ -186,17 +203,29 @@ class _Mission:
         return {key: (rows[first], rows[second]) for key, rows in found.items() if len(rows) == len(self._sides)}
 
 
+def _over(first: set[str], second: set[str]) -> Over:
+    """What is shuffled, for the robots of the two sides."""
+    if max(len(first), len(second)) == 1:
+        return "runs"
+    return "runs of each robot" if first <= second or second <= first else "robots"
+
+
 def _key(row: Mapping[str, Any]) -> Key:
     return row["requirement"], row["clause"], row["node"]
 
 
-def _centred(
-    rows: Mapping[tuple[str, Any], Mapping[str, Any]], units: Sequence[tuple[str, Any]], what: str
-) -> list[int]:
-    """The scores of all units, less what each would have with the average of all values; as integers, exact."""
-    number, total = sum(row["number"] for row in rows.values()), sum(row[what] for row in rows.values())
-    found = [rows.get(unit) for unit in units]
-    return [row[what] * number - row["number"] * total if row is not None else 0 for row in found]
+def _centred(rows: Mapping[Unit, Mapping[str, Any]], units: Sequence[Unit], what: str) -> list[int]:
+    """The scores of all units, less what each would have with the average of its stratum; as integers, exact."""
+    number, total = Counter[str](), Counter[str]()
+    for (_, stratum, _), row in rows.items():
+        number[stratum] += row["number"]
+        total[stratum] += row[what]
+    scale = lcm(*number.values())
+    found = [(unit[1], rows.get(unit)) for unit in units]
+    return [
+        (row[what] * number[stratum] - row["number"] * total[stratum]) * (scale // number[stratum]) if row else 0
+        for stratum, row in found
+    ]
 
 
 def _judged(change: Change, p: float) -> Change:

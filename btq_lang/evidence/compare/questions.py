@@ -1,6 +1,6 @@
 """The questions that a comparison asks of a store, in DuckDB's SQL.
 
-`{by}` is the column that names the sides, `{sides}` their names, `{unit}` what is shuffled.
+`{by}` is the column that names the sides, `{sides}` their names, `{unit}` what is shuffled, `{stratum}` within what.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 RUNS: Final = """
-    SELECT mission, {by} AS side, COUNT(*) AS runs, COUNT(DISTINCT robot) AS robots
+    SELECT mission, {by} AS side, COUNT(*) AS runs, list(DISTINCT robot ORDER BY robot) AS robots
     FROM runs WHERE {by} IN ({sides}) GROUP BY ALL ORDER BY mission
 """
 NAMES: Final = "SELECT DISTINCT {by} AS name FROM runs ORDER BY name"
@@ -16,7 +16,8 @@ NAMES: Final = "SELECT DISTINCT {by} AS name FROM runs ORDER BY name"
 # A unit is a robot, or a group of runs that a hash has put together.
 _PLACED: Final = """
     WITH placed AS (
-        SELECT log, run, {by} AS side, {unit} AS unit FROM runs WHERE mission = {mission} AND {by} IN ({sides})
+        SELECT log, run, {by} AS side, {stratum} AS stratum, {unit} AS unit
+        FROM runs WHERE mission = {mission} AND {by} IN ({sides})
     ),
     measures AS (
         SELECT '' AS requirement, '' AS clause, path AS node, log, run, (end_us - start_us) / 1e6 AS value
@@ -25,32 +26,33 @@ _PLACED: Final = """
         SELECT requirement, clause, node, log, run, measured_si AS value
         FROM verdicts WHERE mission = {mission} AND measured_si IS NOT NULL
     ),
-    measured AS (SELECT measures.*, side, unit FROM measures JOIN placed USING (log, run))
+    measured AS (SELECT measures.*, side, stratum, unit FROM measures JOIN placed USING (log, run))
 """
-BY_RUN: Final = "(ROW_NUMBER() OVER (PARTITION BY {by} ORDER BY md5(log || run), log, run) - 1) // {size}"
+BY_RUN: Final = "(ROW_NUMBER() OVER (PARTITION BY {by}, {stratum} ORDER BY md5(log || run), log, run) - 1) // {size}"
 
 # Of each measure, what is in the middle of a side, and what 95 of 100 do not exceed.
 QUANTILES: Final = (
     _PLACED
     + """
-    SELECT requirement, clause, node, side, COUNT(*) AS number, COUNT(DISTINCT unit) AS units,
+    SELECT requirement, clause, node, side, COUNT(*) AS number,
         quantile_disc(value, 0.5) AS median, quantile_disc(value, 0.95) AS p95
     FROM measured GROUP BY ALL ORDER BY requirement, clause, node
 """
 )
-# Of each unit, how many of its measures are above the median and the 95th percentile of both sides, less how many are
-# below, with the weights that make the sum over all measures nearly 0.
+# Of each unit, how many of its measures are above the median and the 95th percentile of both sides of its stratum, less
+# how many are below, with the weights that make the sum over all measures nearly 0.
 SCORES: Final = (
     _PLACED
     + """,
     pooled AS (
-        SELECT requirement, clause, node, quantile_disc(value, 0.5) AS median, quantile_disc(value, 0.95) AS p95
+        SELECT requirement, clause, node, stratum,
+            quantile_disc(value, 0.5) AS median, quantile_disc(value, 0.95) AS p95
         FROM measured GROUP BY ALL
     )
-    SELECT requirement, clause, node, side, unit, COUNT(*) AS number,
+    SELECT requirement, clause, node, side, stratum, unit, COUNT(*) AS number,
         SUM(CASE WHEN value > median THEN 1 WHEN value < median THEN -1 ELSE 0 END)::BIGINT AS median,
         SUM(CASE WHEN value > p95 THEN 19 WHEN value < p95 THEN -1 ELSE 0 END)::BIGINT AS p95
-    FROM measured JOIN pooled USING (requirement, clause, node) GROUP BY ALL
+    FROM measured JOIN pooled USING (requirement, clause, node, stratum) GROUP BY ALL
 """
 )
 # In how many runs a node failed, or a clause was violated, at least once, of those where it had a result.

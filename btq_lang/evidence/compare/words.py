@@ -13,9 +13,9 @@ from btq_lang.util.text import counted
 def heading(comparison: Comparison, sides: tuple[str, str]) -> str:
     """What is compared."""
     (first, second), (one, other) = comparison.runs, sides
-    group = f"groups of {counted(comparison.group, 'run')}" if comparison.group > 1 else "runs"
-    robots = f"robots ({comparison.robots[0]} and {comparison.robots[1]})"
-    over = robots if comparison.over == "robots" else group
+    over = f"groups of {comparison.group:,} {comparison.over}" if comparison.group > 1 else comparison.over
+    if comparison.over == "robots":
+        over += f" ({comparison.robots[0]} and {comparison.robots[1]})"
     runs = f"{counted(first, 'run')} of {one}, {counted(second, 'run')} of {other}"
     return f"{comparison.mission}: {runs}, durations compared by {over}"
 
@@ -41,9 +41,21 @@ def remarks(comparison: Comparison) -> Iterator[str]:
     changes = comparison.changes
     same = sum(not each.finding for each in changes)
     yield f"{same} of {counted(len(changes), 'comparison')} without a change that chance does not explain"
+    if found := untestable(comparison):
+        yield f"medians and p95: {found}"
     few = dict.fromkeys(subject(each) for each in changes if each.too_few)
     if few:
         yield f"too few to show any change: {', '.join(few)}"
+
+
+def untestable(comparison: Comparison) -> str:
+    """Why no measure can show a change; empty if one can, or none is compared."""
+    measures = [each for each in comparison.changes if each.failed is None]
+    if not measures or not all(each.too_few for each in measures):
+        return ""
+    first, second = comparison.robots if comparison.over == "robots" else comparison.runs
+    what = "robot" if comparison.over == "robots" else "run"
+    return f"not testable with {f'{first} and ' if first != second else ''}{counted(second, what)}"
 
 
 def _chance(p: float) -> str:

@@ -10,7 +10,7 @@ from html import escape
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.compare.comparison import WORSE
-from btq_lang.evidence.compare.words import difference, heading, remarks, subject
+from btq_lang.evidence.compare.words import difference, heading, remarks, subject, untestable
 from btq_lang.evidence.report.parts import NO_NAME, REPORT_STYLE, bars
 from btq_lang.evidence.sentences import explained, result, worst_violation
 from btq_lang.evidence.verdicts import NEVER, VIOLATED, WORST_FIRST
@@ -79,16 +79,19 @@ def _changes(overview: Overview) -> Iterator[str]:
 
 def _tiles(overview: Overview) -> str:
     """The numbers of what got worse, where something is compared, and of what is violated."""
-    tiles = []
+    tiles: list[tuple[str, int | str, str]] = []
     if found := overview.comparisons:
         tiles = [("newly violated", sum(len(each.newly) for each in found), "")]
         changes = {(each.mission, subject(change), change.finding) for each in found for change in each.changes}
         tiles += [(word, sum(finding == word for *_, finding in changes), "") for word in reversed(WORSE)]
+        if all(whys := [untestable(each) for each in found]):
+            tiles[-1] = (f"slower: {whys[0]}", _NOT_TESTED, "")
     last = [mission.parts[-1] for mission in overview.missions]
     requirements = sum(len(part.verdicts.requirements) for part in last)
     tiles.append(("violated now", sum(part.violated for part in last), f" of {counted(requirements, 'requirement')}"))
     items = [
-        f"<li{_class('bad' if number else '')}><strong>{number}</strong> {word}{of}</li>" for word, number, of in tiles
+        f"<li{_class('' if number in (0, _NOT_TESTED) else 'bad')}><strong>{number}</strong> {word}{of}</li>"
+        for word, number, of in tiles
     ]
     return f'<ul class="tiles">{"".join(items)}</ul>'
 
@@ -391,6 +394,7 @@ _LABELS: Final = 4  # with a column of their own
 _ROWS: Final = 10
 _CLAUSES: Final = 3
 _LARGE: Final = 1000
+_NOT_TESTED: Final = "–"
 _NOTHING: Final = 1e-9
 _DOTTED: Final = "a dotted line is where the first run of a label begins"
 _LATE: Final = len(WORST_FIRST)
