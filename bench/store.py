@@ -52,7 +52,7 @@ QUESTIONS = {  # of the tables of a made-up log
         FROM range({CLAUSES}) AS t(clause_index)
     """,
     "activations": f"""
-        SELECT {COMMON}, 1 AS run, 1 AS uid, '' AS path, '' AS kind, true AS leaf, 0::BIGINT AS start_us,
+        SELECT {COMMON}, 1 AS run, 1 AS uid, '' AS path, '' AS node, '' AS kind, true AS leaf, 0::BIGINT AS start_us,
             0::BIGINT AS end_us, '' AS outcome, '' AS timing
         LIMIT 0
     """,

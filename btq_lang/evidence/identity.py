@@ -170,9 +170,9 @@ def join_build(mission: Candidate, build: Build, tree: LoggedTree) -> Joined | N
 
 def _by_path(mission: Candidate, build: Build, tree: LoggedTree) -> Joined:
     """The nodes whose paths are equal and unique on both sides."""
-    logged = _unique([((node.kind, _without_number(node.path)), node.uid) for node in tree.nodes.values()])
+    logged = _unique([((node.kind, without_number(node.path)), node.uid) for node in tree.nodes.values()])
     made = _unique(
-        [((kind_of(each.element), _without_number(each.path)), _number(each)) for each, _ in build.running.all]
+        [((kind_of(each.element), without_number(each.path)), _number(each)) for each, _ in build.running.all]
     )
     uids = {number: logged[key] for key, number in made.items() if key in logged}
     return Joined(mission, tree, "built from another version", uids, len(uids), build)
@@ -213,7 +213,7 @@ def _number(instance: Instance) -> int:
     return instance.uid or 0
 
 
-def _without_number(path: str) -> str:
+def without_number(path: str) -> str:
     """A path without the numbers of unnamed nodes, which change when a node before them is added or removed."""
     parts = [(name, *name.rpartition("::")) for name in path.split("/")]
     return "/".join(own if own and number.isdecimal() else name for name, own, _, number in parts)

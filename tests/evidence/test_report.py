@@ -267,7 +267,7 @@ def test_all_runs_by_robot(kept: Path) -> None:
     ]
     assert page.tables["Nodes where failures began, with their share of the failed runs"] == [
         ["Node", "All runs"],
-        ["Pick::3", "1 of 1, 100 %"],
+        ["Pick", "1 of 1, 100 %"],
     ]
     assert page.tables["What was exercised"][1] == ["Nodes", "3 of 3"]
 

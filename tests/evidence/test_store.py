@@ -67,14 +67,14 @@ def test_what_is_kept_of_a_log(robot: Path) -> None:
     assert of(store, "runs", "DISTINCT source") == [("v1/a.btlog",)]
     assert of(store, "runs", "* EXCLUDE (tree, source)") == [
         (*whose, 1, START, START + 25_000, "succeeded", 3, 0, 0, None, 3, 3),
-        (*whose, 2, START + 40_000, START + 55_000, "failed", 3, 0, 0, "Pick::3", 3, 3),
+        (*whose, 2, START + 40_000, START + 55_000, "failed", 3, 0, 0, "Pick", 3, 3),
     ]
     assert of(store, "activations", "*")[3:] == [
-        (*whose, 2, 2, "Move::2", "Move", True, START + 40_000, START + 50_000, "succeeded", "exact"),
-        (*whose, 2, 3, "Pick::3", "Pick", True, START + 50_000, START + 55_000, "failed", "exact"),
-        (*whose, 2, 1, "Sequence::1", "Sequence", False, START + 40_000, START + 55_000, "failed", "exact"),
+        (*whose, 2, 2, "Move::2", "Move", "Move", True, START + 40_000, START + 50_000, "succeeded", "exact"),
+        (*whose, 2, 3, "Pick::3", "Pick", "Pick", True, START + 50_000, START + 55_000, "failed", "exact"),
+        (*whose, 2, 1, "Sequence::1", "Sequence", "Sequence", False, START + 40_000, START + 55_000, "failed", "exact"),
     ]
-    clause = ("quick", "Move takes at most 15 ms", "Move::2")
+    clause = ("quick", "Move takes at most 15 ms", "Move")
     assert of(store, "verdicts", "*") == [
         (
             *whose,

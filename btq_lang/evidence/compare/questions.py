@@ -20,7 +20,7 @@ _PLACED: Final = """
         FROM runs WHERE mission = {mission} AND {by} IN ({sides})
     ),
     measures AS (
-        SELECT '' AS requirement, '' AS clause, path AS node, log, run, (end_us - start_us) / 1e6 AS value
+        SELECT '' AS requirement, '' AS clause, node, log, run, (end_us - start_us) / 1e6 AS value
         FROM activations WHERE mission = {mission} AND timing = 'exact' AND outcome IN ('succeeded', 'failed')
         UNION ALL
         SELECT requirement, clause, node, log, run, measured_si AS value
@@ -58,7 +58,7 @@ SCORES: Final = (
 # In how many runs a node failed, or a clause was violated, at least once, of those where it had a result.
 FAILURES: Final = """
     WITH results AS (
-        SELECT '' AS requirement, '' AS clause, path AS node, {by} AS side, log, run, outcome = 'failed' AS failed
+        SELECT '' AS requirement, '' AS clause, node, {by} AS side, log, run, outcome = 'failed' AS failed
         FROM activations WHERE mission = {mission} AND {by} IN ({sides}) AND outcome IN ('succeeded', 'failed')
         UNION ALL
         SELECT requirement, clause, node, {by} AS side, log, run, verdict = 'violated' AS failed

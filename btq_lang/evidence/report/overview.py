@@ -49,7 +49,7 @@ class Part(Record):
 class Node(Record):
     """A node; runs: of each part of the mission, how many of its runs are counted."""
 
-    path: str
+    name: str
     runs: tuple[int, ...]
 
 
@@ -122,8 +122,8 @@ def overview(ask: Ask, store: str, by: Sequence[str]) -> Overview:
                 name=name,
                 parts=tuple(parts),
                 robots=tuple(_robots(ask, store, name, labels)) if "robot" in by else (),
-                failures=tuple(sorted(began, key=lambda each: ([-number for number in each.runs[::-1]], each.path))),
-                nodes=tuple(sorted(ran, key=lambda each: (each.runs[-1], each.path))),
+                failures=tuple(sorted(began, key=lambda each: ([-number for number in each.runs[::-1]], each.name))),
+                nodes=tuple(sorted(ran, key=lambda each: (each.runs[-1], each.name))),
                 trends=of_time[name],
             )
         )
@@ -171,6 +171,6 @@ def _nodes(rows: Iterable[Row], labels: Sequence[str] | None) -> list[Node]:
     places = {label: place for place, label in enumerate(labels or ())}
     found: dict[str, list[int]] = {}
     for row in rows:
-        runs = found.setdefault(row["path"] or "", [0] * max(len(places), 1))
+        runs = found.setdefault(row["node"] or "", [0] * max(len(places), 1))
         runs[places.get(row["label"], 0)] += int(row["runs"])
-    return [Node(path, tuple(runs)) for path, runs in found.items()]
+    return [Node(name, tuple(runs)) for name, runs in found.items()]

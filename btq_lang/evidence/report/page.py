@@ -346,7 +346,7 @@ def _of(number: int, total: int) -> str:
 
 
 def _node(node: Node) -> str:
-    return f"<code>{escape(node.path or '(unknown)')}</code>"
+    return f"<code>{escape(node.name or '(unknown)')}</code>"
 
 
 def _name(part: Part, overview: Overview) -> str:

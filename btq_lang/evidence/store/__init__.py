@@ -4,6 +4,7 @@ One invariant: of each log there is one set of files, whole or not at all, named
 
     tables.py      the tables and their columns
     rows.py        what is found in a log, as rows of text, while it is judged
+    node_names.py  names of nodes that do not depend on their numbers
     sets.py        a log's set of files, published at once; what writers that were killed leave is removed
     engine.py      DuckDB, which writes the files and is asked for rows
     damage.py      files that are missing, damaged or of another table

@@ -141,16 +141,16 @@ OVERVIEW: Final = {
     """,
     # Where failures began.
     "failures": """
-        SELECT mission, label, failure AS path, COUNT(*) AS runs
+        SELECT mission, label, failure AS node, COUNT(*) AS runs
         FROM runs
         WHERE outcome = 'failed'
         GROUP BY mission, label, failure
     """,
     # In how many runs each node was active, and how many were at all.
     "nodes": """
-        SELECT mission, label, path, COUNT(*) AS runs
-        FROM (SELECT DISTINCT mission, label, path, log, run FROM activations) AS active
-        GROUP BY mission, label, path
+        SELECT mission, label, node, COUNT(*) AS runs
+        FROM (SELECT DISTINCT mission, label, node, log, run FROM activations) AS active
+        GROUP BY mission, label, node
     """,
     "exercised": """
         SELECT {by}, COUNT(DISTINCT uid) AS nodes

@@ -15,6 +15,8 @@ from contextlib import ExitStack
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
+from btq_lang.evidence.identity import without_number
+from btq_lang.evidence.store.node_names import node_names
 from btq_lang.evidence.store.tables import ROWS
 from btq_lang.evidence.verdicts import OUTCOMES, SATISFIED, UNKNOWN, VIOLATED
 
@@ -67,6 +69,7 @@ class Part:
         self._clauses: Final[list[_Clause]] = []
         self._tree: tuple[object, ...] = ()
         self._nodes: dict[int, tuple[object, ...]] = {}
+        self._names: Final[dict[str, dict[str, None]]] = {}  # of all nodes by their paths, in all trees of the log
         self._activations = 0
 
     def join(self, joined: Joined, clauses: Sequence[JudgedClause]) -> None:
@@ -74,7 +77,12 @@ class Part:
         tree = joined.tree
         named = "\n".join(f"{node.uid} {node.kind} {node.path}" for node in tree.nodes.values())
         self._tree = hashlib.sha256(named.encode()).hexdigest()[:_DIGITS], len(tree.nodes), joined.number
-        self._nodes = {uid: (uid, each.path, each.kind, uid in tree.leaves) for uid, each in tree.nodes.items()}
+        names = node_names(tree)
+        self._nodes = {
+            uid: (uid, each.path, names[uid], each.kind, uid in tree.leaves) for uid, each in tree.nodes.items()
+        }
+        for uid, each in tree.nodes.items():
+            self._names.setdefault(each.path, {})[names[uid]] = None
         if not self._clauses:
             self._clauses.extend(_Clause(self._rows.clauses + index) for index in range(len(clauses)))
             self._rows.clauses += len(clauses)
@@ -102,7 +110,7 @@ class Part:
                 for row in clause.open:
                     self._rows.write["verdicts"](_counted(row, row is decisive))
                 clause.open.clear()
-        counts = self._activations, retries, recoveries, self._nodes[failure][1] if failure is not None else None
+        counts = self._activations, retries, recoveries, self._nodes[failure][_NAME] if failure is not None else None
         of = (*self._whose, self._rows.run)
         self._rows.write["runs"]((*of, root.begin, root.end, OUTCOMES[root.outcome], *counts, *self._tree))
         self._rows.run += 1
@@ -114,10 +122,12 @@ class Part:
         for written, clause in zip(self._clauses, clauses, strict=True):
             found, verdict, requirement = clause.findings(), clause.verdict(), clause.requirement
             odds, window = requirement.odds, requirement.window
-            same = requirement.name, verdict.text, verdict.path
+            paths = [self._names.get(path, {without_number(path): None}) for path in found.paths]
+            node = ", ".join(dict.fromkeys(name for names in paths for name in names))
+            same = requirement.name, verdict.text, node
             known[same] += 1  # a requirement with parameters may be applied to a node twice
             text = verdict.text if known[same] == 1 else f"{verdict.text} ({known[same]})"
-            named = (requirement.name, " ".join((requirement.title or "").split()), text, verdict.path)
+            named = (requirement.name, " ".join((requirement.title or "").split()), text, node)
             of_odds = (odds.probability, odds.relation, odds.experiments) if odds is not None else (None, None, None)
             of_window = (window.count, window.experiments, window.seconds) if window is not None else (None, None, None)
             means = (verdict.of, verdict.unit, written.unit, *of_odds, requirement.confidence, *of_window)
@@ -175,6 +185,7 @@ def _counted(row: tuple[Any, ...], is_counted: bool) -> tuple[Any, ...]:
     return (*row[: _VERDICT + 1], is_counted, *row[_VERDICT + 2 :])
 
 
+_NAME: Final = 2  # its column, of a node
 _VERDICT: Final = 5  # its column
 _DECISIVE: Final = (VIOLATED, UNKNOWN, SATISFIED)  # what a run is, if it has such a judgement
 _DIGITS: Final = 16  # enough to tell trees apart

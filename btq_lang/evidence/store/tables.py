@@ -47,13 +47,15 @@ ROWS: Final = {
         "nodes": "INTEGER",
         "joined": "INTEGER",
     },
-    # An activation of a node.  `timing`: `exact`; `latest`, if it may have ended before; `broken`, if the clock was set
+    # An activation of a node.  `path`: as the engine names it; `node`: as in other trees (`node_names.py`).
+    # `timing`: `exact`; `latest`, if it may have ended before; `broken`, if the clock was set
     # back meanwhile; `late`, if it began before; `lost`, if the rest of the run was lost; `part`, if both.
     "activations": {
         **_WHOSE,
         "run": "INTEGER",
         "uid": "INTEGER",
         "path": "VARCHAR",
+        "node": "VARCHAR",
         "kind": "VARCHAR",
         "leaf": "BOOLEAN",
         "start_us": "BIGINT",
@@ -61,7 +63,7 @@ ROWS: Final = {
         "outcome": "VARCHAR",
         "timing": "VARCHAR",
     },
-    # A clause at a node, whether something was judged or not.  `node`: all paths at which it is counted together;
+    # A clause at a node, whether something was judged or not.  `node`: all nodes at which it is counted together;
     # `counts`: `activations` or `runs`; `unit`: of what is measured; `exercised`: whether its node ran; `cut_off`:
     # activations that the end of the log left undecided; `missing`: why it cannot be judged at all its nodes.
     "clauses": {
