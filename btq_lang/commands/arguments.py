@@ -332,9 +332,12 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
     kept.add_argument("--engine", metavar="URL", help="without logs: ask another engine than DuckDB, through Ibis")
     label, robot = kept.add_mutually_exclusive_group(), kept.add_mutually_exclusive_group()
     label.add_argument("--label", metavar="NAME", help="of these runs, such as a version")
-    label.add_argument("--label-by", choices=("folder",), help="label each log with the name of its folder")
+    folders = ("folder", "folder-above")
+    label.add_argument(
+        "--label-by", choices=folders, help="label each log with the name of its folder, or of the folder above that"
+    )
     robot.add_argument("--robot", metavar="NAME", help="whose logs these are; a bag's topics name the robot themselves")
-    robot.add_argument("--robot-by", choices=("folder",), help="name the robot of each log as its folder is named")
+    robot.add_argument("--robot-by", choices=folders, help="name the robot of each log in the same way")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="judge logs in N processes; default: 1")
     parser.add_argument("--format", choices=VERDICT_FORMATS, help="default: as the file of -o ends, else table")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")

@@ -198,6 +198,18 @@ def test_a_folder_names_labels_and_robots(robot: Path) -> None:
     ]
 
 
+def test_the_folder_above_names_labels_where_the_folder_names_robots(robot: Path) -> None:
+    for label, name, log in (("v1", "r1", "v1/a.btlog"), ("v2", "r2", "v2/b.btlog")):
+        (robot / "logs" / label / name).mkdir(parents=True)
+        (robot / log).rename(robot / "logs" / label / name / "01.btlog")
+    assert keep(robot, "logs", "--label-by", "folder-above", "--robot-by", "folder")[0] == 1
+    assert sorted(of(robot / "kept", "runs", "label, robot, run")) == [
+        ("v1", "r1", 1),
+        ("v1", "r1", 2),
+        ("v2", "r2", 1),
+    ]
+
+
 def test_the_topics_of_a_bag_name_its_robots(robot: Path) -> None:
     names = {1: "Sequence", 2: "Move", 3: "Pick"}
     red = tree_log(rows(RUN), names, topic="/red/behavior_tree_log")
@@ -299,6 +311,11 @@ def test_a_set_of_a_newer_version_is_read_and_not_replaced(robot: Path) -> None:
         f"btq verify: v1/a.btlog: cannot be kept: a newer version of btq has written kept/{log}\n",
     )
     assert files(robot / "kept") == before
+
+
+def test_a_log_that_is_not_there(robot: Path) -> None:
+    message = "btq verify: gone.btlog: cannot be read: No such file or directory\n"
+    assert keep(robot, "gone.btlog") == (2, "", message)
 
 
 def test_a_set_that_cannot_be_written(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -39,7 +39,7 @@ class Keeping(Record):
     Attributes:
         folder: of the store.
         label, robot: of the logs; None: those that the log has in the store already.
-        label_by, robot_by: `folder`: of each log, the name of its folder.
+        label_by, robot_by: `folder`: of each log, the name of its folder; `folder-above`: of the one that this is in.
     """
 
     folder: str
@@ -50,11 +50,11 @@ class Keeping(Record):
 
     def label_of(self, log: str) -> str | None:
         """The label of a log."""
-        return _folder_of(log) if self.label_by else self.label
+        return _folder_of(log, self.label_by) if self.label_by else self.label
 
     def robot_of(self, log: str) -> str | None:
         """The robot of a log that names none."""
-        return _folder_of(log) if self.robot_by else self.robot
+        return _folder_of(log, self.robot_by) if self.robot_by else self.robot
 
 
 class Draft:
@@ -116,6 +116,9 @@ def draft(keeping: Keeping, log: str, name: str | None = None) -> Iterator[Draft
     """
     try:
         name = name or _sha256(log)
+    except OSError as error:
+        raise NotKept(f"cannot be read: {error.strerror or error}") from error
+    try:
         folder = os.path.join(keeping.folder, f"{DRAFT}{name[:_SHORT]}-{uuid.uuid4().hex}")
         os.makedirs(folder)
     except OSError as error:
@@ -202,8 +205,9 @@ def _changed(folder: str) -> float:
         return time.time()
 
 
-def _folder_of(log: str) -> str:
-    return os.path.basename(os.path.dirname(os.path.abspath(log)))
+def _folder_of(log: str, by: str) -> str:
+    folder = os.path.dirname(os.path.abspath(log))
+    return os.path.basename(os.path.dirname(folder) if by == "folder-above" else folder)
 
 
 FORMAT: Final = "btq-evidence"
