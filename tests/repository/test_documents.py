@@ -297,7 +297,7 @@ def test_the_extension_is_packed_and_installed(page: str, tmp_path: Path) -> Non
 def test_ci_knows_its_names() -> None:
     """Hooks, the action's inputs and outputs, and the commands of the page are those there are."""
     text = (ROOT / "docs" / "ci.md").read_text(encoding="utf-8")
-    hooks, workflow, simulation, gitlab = (
+    hooks, workflow, simulation, comparing, gitlab = (
         yaml.safe_load(match[2]) for match in BLOCK.finditer(text) if match[1] == "yaml"
     )
     known = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
@@ -308,5 +308,10 @@ def test_ci_knows_its_names() -> None:
     assert re.findall(r"steps\.btq\.outputs\.(\w+)", json.dumps(comment)) == ["diff", "diff"]
     assert "diff" in action["outputs"]
     assert [*simulation["jobs"]] == ["simulation"]  # evidence/test_recipe_pages.py runs it
+    assert [each["run"] for each in comparing[2:]] == [  # evidence/test_store.py runs them, with other paths
+        "btq verify logs --mission missions/mission.btq"
+        ' --store evidence --label "$GITHUB_SHA" --exit-zero -o verdicts.md',
+        'btq compare evidence main "$GITHUB_SHA" -o comparison.md',
+    ]
     assert gitlab["btq"]["script"][1] == "btq check --output-file btq.json"
     assert gitlab["btq"]["artifacts"]["reports"] == {"codequality": "btq.json"}
