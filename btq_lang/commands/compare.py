@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from argparse import Namespace
 
@@ -17,7 +18,8 @@ def run(options: Namespace) -> int:
     if sides[0] == sides[1]:
         problem = f"both sides are {sides[0]}"
     if problem or store is None:
-        print(f"btq compare: {problem or NO_STORE}", file=sys.stderr)
+        one = f"one {options.by} given; compare two, as in btq compare {sides[0]} A B"
+        print(f"btq compare: {problem or (one if os.path.isdir(sides[0]) else NO_STORE)}", file=sys.stderr)
         return 2
     from btq_lang.evidence.compare.comparison import Unknown, compare
     from btq_lang.evidence.store.engine import NoEngine, asked

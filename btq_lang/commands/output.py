@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from collections.abc import Iterable, Sequence
@@ -68,6 +69,8 @@ def write_file(command: str, path: str, content: str | bytes) -> int:
     """Write a file, whole or not at all; returns the command's exit code."""
     target = absolute(path)
     try:
+        if path.endswith("/"):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
         os.makedirs(os.path.dirname(target), exist_ok=True)
         write_whole(target, content)
     except OSError as error:

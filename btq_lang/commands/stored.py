@@ -49,7 +49,8 @@ def store_problem(options: Namespace, is_summary: bool) -> str | None:
     named = _given(options, (*_OF_LOGS, *_OF_KEEPING, *_OF_SUMMARY))
     if options.store is None:
         wrong = [each for each in named if each not in _OF_LOGS]
-        return f"{wrong[0]} goes with --store DIR" if wrong else None
+        where = "a store; leave out --no-store" if options.no_store else "--store DIR"
+        return f"{wrong[0]} goes with {where}" if wrong else None
     if not is_summary:
         wrong = [each for each in named if each in _OF_SUMMARY]
         return f"{wrong[0]} goes with --store DIR and no log" if wrong else None

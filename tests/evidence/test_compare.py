@@ -238,6 +238,7 @@ def finds_something(store: Path, seed: int) -> bool:
     ("arguments", "message"),
     [
         (("kept", "v1", "v3"), "no run has the label v3; there are v1, v2"),
+        (("kept", "v1"), "one label given; compare two, as in btq compare kept A B"),
         (("kept", "v1", "v1"), "both sides are v1"),
         (("gone", "v1", "v2"), "gone: no verdicts are kept there; keep some with btq verify LOG --store gone"),
         (("kept", "v1", "v2", "-o", "x.pdf"), "cannot write .pdf; " + CHOICE),

@@ -318,6 +318,19 @@ def test_a_log_that_is_not_there(robot: Path) -> None:
     assert keep(robot, "gone.btlog") == (2, "", message)
 
 
+def test_an_output_that_is_named_as_a_folder(robot: Path) -> None:
+    code, output, errors = keep(robot, "v1", "-o", "verdicts/")
+    assert (code, output) == (2, "")
+    assert errors == "btq verify: verdicts: cannot be written: Is a directory\n"
+    assert not (robot / "verdicts").exists()
+
+
+def test_a_store_without_labels_has_none_to_compare(robot: Path) -> None:
+    keep(robot, "v1")
+    message = "btq compare: no run has the label v1; there are no labels\n"
+    assert run_btq("compare", "kept", "v1", "v2", cwd=robot) == (2, "", message)
+
+
 def test_a_set_that_cannot_be_written(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(engine, "_OPTIONS", "FORMAT parquet, COMPRESSION nothing")
     code, output, errors = keep(robot, "v1")

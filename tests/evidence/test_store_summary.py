@@ -213,7 +213,7 @@ def test_logs_of_the_project_are_kept_in_its_store(kept: Path) -> None:
     assert run_btq("verify", "--no-store", "--label", "x", cwd=kept) == (
         2,
         "",
-        "btq verify: --label goes with --store DIR\n",
+        "btq verify: --label goes with a store; leave out --no-store\n",
     )
 
 

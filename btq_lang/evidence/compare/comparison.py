@@ -103,7 +103,8 @@ def compare(ask: Ask, by: str, sides: tuple[str, str]) -> tuple[Comparison, ...]
     known = [str(row["name"]) for row in ask(questions.NAMES.format(by=by))]
     for side in sides:
         if side not in known:
-            raise Unknown(f"no run has the {by} {side}; there are {', '.join(known)}")
+            named = ", ".join(filter(None, known)) or f"no {by}s"
+            raise Unknown(f"no run has the {by} {side}; there are {named}")
     words = {"by": by, "sides": ", ".join(map(quoted, sides))}
     runs: dict[str, dict[str, Mapping[str, Any]]] = {}
     for row in ask(questions.RUNS.format(**words)):
