@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from chromium import CHROMIUM
+from evidence_logs import MAIN, MAIN_XML, btlog, rows
 from installed import ROOT, STORE, has_failed, there
 from workbench import Windows, Workbench, workbench
 
@@ -405,6 +406,48 @@ def test_the_tree_beside_is_folded_and_saved_as_it_is_shown(code: Workbench) -> 
     saved = (code.folder / "tree.svg").read_text(encoding="utf-8")
     assert (saved.count('class="box'), "… 1 node" in saved) == (3, True)
     (code.folder / "tree.svg").unlink()
+
+
+def test_logs_are_judged_as_a_bound_is_typed_and_a_run_is_stepped_through_in_the_tree(code: Workbench) -> None:
+    code.write("robot/btq.toml", '[evidence]\nlogs = ["run.btlog"]\n')
+    log = code.write("robot/run.btlog", "")
+    log.write_bytes(btlog(MAIN_XML, rows("0 1R 2R 20 2S 3R 60 3S 1S 1I 100 1R 2R 140 2S 3R 150 3S 1S")))
+    code.write("robot/main.btq", "QualityReq quick : safety\n    Move takes at most 30 ms\n" + MAIN)
+    code.open("robot/main.btq")
+    code.see(".codelens-decoration:has-text('violated in 1 of 2 activations · worst 40 ms')")
+    (problem,) = code.problems("`quick` is violated: 1 of 2 activations, worst 40 ms in run 2")
+    assert "btq requirement-violated [Ln 6, Col 16] Move::2: took 40 ms, bound 30 ms" in problem
+    code.focus()
+    code.cursor(2, 24)
+    code.keys("Delete")
+    code.type("4")
+    code.see(".codelens-decoration:has-text('held in 2 of 2 activations · worst 40 ms')")
+    code.problems()
+    code.focus()
+    code.cursor(2, 25)
+    code.keys("Backspace")
+    code.type("1")
+    code.see(".codelens-decoration:has-text('violated in 2 of 2 activations · worst 40 ms')")
+    code.command("btq: Show Run")
+    code.see(".quick-input-list .monaco-list-row:has-text('Run 2'):has-text('the last one')")
+    code.keys("Enter")
+    frame = code.page.frame_locator("iframe.webview.ready").frame_locator("#active-frame")
+
+    def sees(step: int, sentence: str, *marks: str) -> None:
+        said = f"Run 2 of run.btlog: succeeded, step {step} of 6: {sentence}"
+        frame.locator(f"#step:text-is('{said}')").wait_for(state="attached")
+        assert frame.locator(".mark").all_text_contents() == [*marks]
+
+    sees(6, "50 ms: Sequence::1 succeeded, 50 ms", "✔ 50 ms", "✔ 40 ms", "✔ 10 ms")
+    frame.locator("#step").click()  # in this browser the page has the keys only then
+    code.keys("p")
+    sees(5, "50 ms: Pick::3 succeeded, 10 ms", "…", "✔ 40 ms", "✔ 10 ms")
+    code.keys("p", "p")
+    sees(3, "40 ms: Move::2 succeeded, 40 ms", "…", "✔ 40 ms")
+    code.keys("n")
+    sees(4, "40 ms: Pick::3 starts", "…", "✔ 40 ms", "…")
+    code.focus()
+    code.save()
 
 
 COLUMNS = """[...document.querySelectorAll(".editor-group-container")].map(column =>
