@@ -29,7 +29,7 @@ CLAUSE = ("quick", "Be quick", "Move takes at most 12 s", "Move", "", "activatio
 TABLE = (
     "main: 60 runs of v1, 50 runs of v2, durations compared by runs\n"
     "\n"
-    "  newly violated  quick  Be quick                         was satisfied\n"
+    "  newly violated  quick  Be quick                         was satisfied, 0 of 60 → 10 of 50\n"
     "  slower          Move                                    median 10.1 s → 11.6 s, p = 0.0008\n"
     "  slower          Move                                    p95 10.8 s → 12.4 s, p = 0.032\n"
     "  slower          quick: Move takes at most 12 s at Move  median 10.1 s → 11.6 s, p = 0.0008\n"
@@ -44,7 +44,7 @@ MARKDOWN = (
     "\n"
     "| Finding | Of | Change |\n"
     "|---|---|---|\n"
-    "| **newly violated** | `quick` | was satisfied |\n"
+    "| **newly violated** | `quick` | was satisfied, 0 of 60 → 10 of 50 |\n"
     "| **slower** | `Move` | median 10.1 s → 11.6 s, p = 0.0008 |\n"
     "| **slower** | `Move` | p95 10.8 s → 12.4 s, p = 0.032 |\n"
     "| **slower** | `quick: Move takes at most 12 s at Move` | median 10.1 s → 11.6 s, p = 0.0008 |\n"
@@ -123,6 +123,9 @@ def test_without_a_store(changed: Path) -> None:
 def test_back_to_the_version_that_was_better(changed: Path) -> None:
     code, output, errors = run_btq("compare", "kept", "v2", "v1", cwd=changed)
     assert (code, errors) == (0, "")
+    assert (
+        "  no longer violated  quick  Be quick                            is satisfied, 10 of 50 → 0 of 60\n" in output
+    )
     assert [line.split("  ")[1] for line in output.splitlines() if line.startswith("  ")] == [
         "faster",
         "faster",
@@ -130,7 +133,17 @@ def test_back_to_the_version_that_was_better(changed: Path) -> None:
         "faster",
         "more reliable",
         "more reliable",
+        "no longer violated",
     ]
+
+
+def test_a_single_violation_may_be_chance(tmp_path: Path) -> None:
+    keep(tmp_path / "kept", "a", [(10, 5, True)] * 50)
+    keep(tmp_path / "kept", "b", [(10, 5, True)] * 49 + [(13, 5, True)])
+    code, output, errors = run_btq("compare", "kept", "a", "b", cwd=tmp_path)
+    assert (code, errors) == (1, "")
+    line = "  newly violated  quick  Be quick  was satisfied, 0 of 50 → 1 of 50, which chance may explain"
+    assert line in output.splitlines()
 
 
 def test_json_is_as_its_schema_says(changed: Path) -> None:
@@ -140,7 +153,9 @@ def test_json_is_as_its_schema_says(changed: Path) -> None:
     assert list(violations(found, SCHEMA)) == []
     (mission,) = found["missions"]
     assert (found["sides"], mission["runs"], mission["over"], mission["group"]) == (["v1", "v2"], [60, 50], "runs", 1)
-    assert mission["newly"] == [{"id": "quick", "title": "Be quick", "before": "satisfied"}]
+    turned = {"before": "satisfied", "after": "violated", "violated": [0, 10], "counted": [60, 50]}
+    assert mission["newly"] == [{"id": "quick", "title": "Be quick", **turned, "may_be_chance": False}]
+    assert mission["no_longer"] == []
     assert [(each["node"], each["what"], each["finding"]) for each in mission["changes"]] == [
         ("Dock", "median", ""),
         ("Dock", "p95", ""),

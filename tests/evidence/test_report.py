@@ -243,7 +243,7 @@ def test_what_is_newly_violated_is_on_top(kept: Path) -> None:
     assert code == 1
     assert page.tables["What got worse in main"] == [
         ["Finding", "Of", "Change"],
-        ["newly violated", "quick Be <quick>", "was satisfied"],
+        ["newly violated", "quick Be <quick>", "was satisfied, 0 of 1 → 1 of 1, which chance may explain"],
     ]
     assert page.texts[2:8] == [
         "What got worse from v<1> to v<2>",

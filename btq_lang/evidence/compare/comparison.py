@@ -57,11 +57,21 @@ class Change(Record):
 
 
 class Newly(Record):
-    """A requirement that only the second side violates."""
+    """A requirement that only one side violates.
+
+    Attributes:
+        before, after: the verdict of each side.
+        violated, counted: how many judgements of each side are violations, and how many count.
+        may_be_chance: whether chance may explain it: of the runs of both sides, no more are violated than by chance.
+    """
 
     id: str
     title: str
     before: str
+    after: str
+    violated: tuple[int, int]
+    counted: tuple[int, int]
+    may_be_chance: bool
 
 
 class Comparison(Record):
@@ -72,7 +82,7 @@ class Comparison(Record):
         over: what is shuffled.  Where a side has several robots, `runs of each robot`, as far as they ran both sides;
             `robots` where each side has some of its own.
         group: how many runs are shuffled together; 1 without groups.
-        newly: the requirements that only the second side violates.
+        newly, no_longer: the requirements that only the second side violates, and only the first.
         changes: all that was compared.
     """
 
@@ -82,6 +92,7 @@ class Comparison(Record):
     over: Over
     group: int
     newly: tuple[Newly, ...]
+    no_longer: tuple[Newly, ...]
     changes: tuple[Change, ...]
 
     @property
@@ -116,9 +127,9 @@ def compare(ask: Ask, by: str, sides: tuple[str, str]) -> tuple[Comparison, ...]
     found = [mission.changes(number) for mission in missions]
     adjusted = iter(holm([each.p for changes in found for each in changes]))
     judged = [tuple(_judged(each, next(adjusted)) for each in changes) for changes in found]
-    newly = _newly(ask, by, sides)
+    turned = _turned(ask, by, sides)
     return tuple(
-        mission.result(newly.get(mission.name, ()), changes) for mission, changes in zip(missions, judged, strict=True)
+        mission.result(turned.get(mission.name, ()), changes) for mission, changes in zip(missions, judged, strict=True)
     )
 
 
@@ -185,9 +196,16 @@ class _Mission:
             found.append(Change(*key, "failures", "%", *shares, counts, failed, p, too_few, ""))
         return found
 
-    def result(self, newly: Sequence[Newly], changes: tuple[Change, ...]) -> Comparison:
+    def result(self, turned: Sequence[Newly], changes: tuple[Change, ...]) -> Comparison:
         """The comparison, with p-values after Holm."""
-        return Comparison(self.name, self._runs, self._robots, self._over, self._size, tuple(newly), changes)
+        tested: dict[str, float] = {}
+        for change in changes:
+            if change.failed is not None:
+                tested[change.requirement] = min(change.p, tested.get(change.requirement, 1.0))
+        turned = [replace(each, may_be_chance=tested.get(each.id, 0.0) > LEVEL) for each in turned]
+        newly = tuple(each for each in turned if each.after == VIOLATED)
+        no_longer = tuple(each for each in turned if each.after != VIOLATED)
+        return Comparison(self.name, self._runs, self._robots, self._over, self._size, newly, no_longer, changes)
 
     def _sizes(self, units: Iterable[Unit]) -> list[tuple[int, int]]:
         """How many units each side has in each stratum."""
@@ -248,18 +266,33 @@ def is_time(symbol: str) -> bool:
     return unit is not None and second is not None and unit.dimension == second.dimension
 
 
-def _newly(ask: Ask, by: str, sides: tuple[str, str]) -> dict[str, list[Newly]]:
-    """The requirements that only the second side violates, by mission."""
-    before, after = (summary(only(ask, f"{by} = {quoted(side)}"), "").missions for side in sides)
-    verdicts = {(mission.name, each.id): each.verdict for mission in before for each in mission.requirements}
+def _turned(ask: Ask, by: str, sides: tuple[str, str]) -> dict[str, list[Newly]]:
+    """The requirements that only one side violates, by mission."""
+    before, after = (
+        {
+            (mission.name, each.id): each
+            for mission in summary(only(ask, f"{by} = {quoted(side)}"), "").missions
+            for each in mission.requirements
+        }
+        for side in sides
+    )
     found: dict[str, list[Newly]] = {}
-    for mission in after:
-        for each in mission.requirements:
-            earlier = verdicts.get((mission.name, each.id), "not judged")
-            if each.verdict == VIOLATED and earlier != VIOLATED:
-                found.setdefault(mission.name, []).append(Newly(each.id, each.title, earlier))
+    for at in {**after, **before}:
+        pair = before.get(at), after.get(at)
+        verdicts = [each.verdict if each is not None else _NOT_JUDGED for each in pair]
+        if (verdicts[0] == VIOLATED) != (verdicts[1] == VIOLATED):
+            clauses = [each.clauses if each is not None else () for each in pair]
+            violated, counts = (
+                [sum(getattr(c, name) for c in of) for of in clauses] for name in ("violated", "counted")
+            )
+            title = next(each.title for each in reversed(pair) if each is not None)
+            turned = Newly(
+                at[1], title, verdicts[0], verdicts[1], (violated[0], violated[1]), (counts[0], counts[1]), False
+            )
+            found.setdefault(at[0], []).append(turned)
     return found
 
 
+_NOT_JUDGED: Final = "not judged"
 WORSE: Final = ("slower", "less reliable")
 _MOST_UNITS: Final = 256  # of the smaller side: more show hardly more, and each shuffle takes as much longer

@@ -24,6 +24,7 @@ def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
             {
                 **_fields(each),
                 "newly": [_fields(newly) for newly in each.newly],
+                "no_longer": [_fields(turned) for turned in each.no_longer],
                 "changes": [_fields(change) for change in each.changes],
             }
             for each in found

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.units import parse_unit
-from btq_lang.evidence.compare.comparison import Change, Comparison, is_time
+from btq_lang.evidence.compare.comparison import Change, Comparison, Newly, is_time
+from btq_lang.evidence.verdicts import VIOLATED
 from btq_lang.evidence.wording import duration, quantity
 from btq_lang.util.text import counted
 
@@ -34,6 +35,14 @@ def difference(change: Change) -> str:
         before, after = (f"{k} of {n}" for k, n in zip(change.failed, change.counts, strict=True))
         return f"{verb} in {before} runs → {after}, {_chance(change.p)}"
     return f"{change.what} {_shown(change.before, change)} → {_shown(change.after, change)}, {_chance(change.p)}"
+
+
+def turn(newly: Newly) -> str:
+    """How a requirement came to be violated, or no longer."""
+    first, second = (f"{k:,} of {n:,}" for k, n in zip(newly.violated, newly.counted, strict=True))
+    chance = ", which chance may explain" if newly.may_be_chance else ""
+    verdict = f"was {newly.before}" if newly.after == VIOLATED else f"is {newly.after}"
+    return f"{verdict}, {first} → {second}{chance}"
 
 
 def remarks(comparison: Comparison) -> Iterator[str]:

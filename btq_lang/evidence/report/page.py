@@ -10,7 +10,7 @@ from html import escape
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.compare.comparison import WORSE
-from btq_lang.evidence.compare.words import difference, heading, remarks, subject, untestable
+from btq_lang.evidence.compare.words import difference, heading, remarks, subject, turn, untestable
 from btq_lang.evidence.report.parts import NO_NAME, REPORT_STYLE, bars
 from btq_lang.evidence.sentences import explained, result, worst_violation
 from btq_lang.evidence.verdicts import NEVER, VIOLATED, WORST_FIRST
@@ -20,7 +20,7 @@ from btq_lang.util.record import replace
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.compare.comparison import Change, Comparison
+    from btq_lang.evidence.compare.comparison import Change, Comparison, Newly
     from btq_lang.evidence.report.overview import MissionOverview, Node, Overview, Part
     from btq_lang.evidence.report.trends import Values
     from btq_lang.evidence.verdicts import ClauseVerdict, RequirementVerdict
@@ -98,9 +98,10 @@ def _tiles(overview: Overview) -> str:
 
 def _comparison(comparison: Comparison, sides: tuple[str, str], keys: dict[str, str]) -> Iterator[str]:
     found = sorted((each for each in comparison.changes if each.finding), key=_importance)
-    worse = [_newly(each.id, each.title, each.before, keys) for each in comparison.newly]
+    worse = [_turned("newly violated", each, keys) for each in comparison.newly]
     worse += [_change(each, keys) for each in found if each.finding in WORSE]
-    others = [_change(each, keys) for each in found if each.finding not in WORSE]
+    others = [_turned("no longer violated", each, keys) for each in comparison.no_longer]
+    others += [_change(each, keys) for each in found if each.finding not in WORSE]
     yield f"<p>{escape(heading(comparison, sides))}</p>"
     if worse:
         yield from _folded("changes", f"What got worse in {comparison.mission}", ("Finding", "Of", "Change"), worse)
@@ -120,9 +121,10 @@ def _importance(change: Change) -> tuple[bool, float]:
     return not change.requirement, -abs(change.after - change.before) / (change.before or _NOTHING)
 
 
-def _newly(name: str, title: str, before: str, keys: dict[str, str]) -> str:
-    about = f"{_link(name, keys)} {escape(title)}"
-    return f'<tr><th scope="row" class="worse">newly violated</th><td>{about}</td><td>was {escape(before)}</td></tr>'
+def _turned(word: str, newly: Newly, keys: dict[str, str]) -> str:
+    about = f"{_link(newly.id, keys)} {escape(newly.title)}"
+    kind = _class("worse" if newly.after == VIOLATED else "")
+    return f'<tr><th scope="row"{kind}>{word}</th><td>{about}</td><td>{escape(turn(newly))}</td></tr>'
 
 
 def _change(change: Change, keys: dict[str, str]) -> str:
