@@ -123,9 +123,7 @@ def test_without_a_store(changed: Path) -> None:
 def test_back_to_the_version_that_was_better(changed: Path) -> None:
     code, output, errors = run_btq("compare", "kept", "v2", "v1", cwd=changed)
     assert (code, errors) == (0, "")
-    assert (
-        "  no longer violated  quick  Be quick                            is satisfied, 10 of 50 → 0 of 60\n" in output
-    )
+    assert "  no longer violated  quick  Be quick                         is satisfied, 10 of 50 → 0 of 60\n" in output
     assert [line.split("  ")[1] for line in output.splitlines() if line.startswith("  ")] == [
         "faster",
         "faster",
