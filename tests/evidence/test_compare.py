@@ -186,7 +186,7 @@ def test_robots_are_shuffled_where_a_label_has_several(tmp_path: Path) -> None:
     (found,) = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", "b"))
     assert (found.over, found.robots, found.runs) == ("robots", (2, 2), (100, 100))
     assert [each.finding for each in found.changes if each.finding] == []
-    assert "medians and p95: not testable with 2 robots" in remarks(found)
+    assert "medians and p95: not testable with 2 robots" in remarks(found, ("a", "b"))
     (alone,) = compare(engine.asked(str(tmp_path / "kept")), "robot", ("r1", "r4"))
     assert {each.node for each in alone.changes if each.finding == "slower"} == {"Move"}
     assert alone.over == "runs"

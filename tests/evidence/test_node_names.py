@@ -66,6 +66,7 @@ def measures(found: dict[str, Any]) -> dict[tuple[str, str], tuple[float, float]
 
 def test_a_node_in_front_shifts_all_numbers(tmp_path: Path) -> None:
     found = compared(tmp_path, FRONT)
+    assert found["missions"][0]["one_sided"] == [0, 1]  # Beep
     assert measures(found) == {("", "Follow"): (3, 3), ("", "Plan"): (3, 3), ("quick", "Follow"): (3, 3)} | {
         ("", "Sequence"): (6, 9)
     }
@@ -86,6 +87,11 @@ def test_one_of_several_is_compared_with_the_same_one(tmp_path: Path) -> None:
 
 def test_one_of_two_is_not_compared_with_one_of_three(tmp_path: Path) -> None:
     found = compared(tmp_path, MORE)
+    assert found["missions"][0]["one_sided"] == [2, 3]
+    assert (
+        "\nnot compared: 2 nodes active only in v1, 3 nodes active only in v2\n"
+        in run_btq("compare", "kept", "v1", "v2", cwd=tmp_path)[1]
+    )
     assert measures(found) == {("", "Sequence"): (3, 12)}
 
 

@@ -82,6 +82,7 @@ class Comparison(Record):
         over: what is shuffled.  Where a side has several robots, `runs of each robot`, as far as they ran both sides;
             `robots` where each side has some of its own.
         group: how many runs are shuffled together; 1 without groups.
+        one_sided: how many nodes were active on each side and not on the other, so that nothing compares them.
         newly, no_longer: the requirements that only the second side violates, and only the first.
         changes: all that was compared.
     """
@@ -91,6 +92,7 @@ class Comparison(Record):
     robots: tuple[int, int]
     over: Over
     group: int
+    one_sided: tuple[int, int]
     newly: tuple[Newly, ...]
     no_longer: tuple[Newly, ...]
     changes: tuple[Change, ...]
@@ -165,6 +167,8 @@ class _Mission:
         self._scores: Final[dict[Key, dict[Unit, Mapping[str, Any]]]] = {}
         for row in asked(questions.SCORES):
             self._scores.setdefault(_key(row), {})[row["side"], row["stratum"], row["unit"]] = row
+        alone = {row["side"]: row["number"] for row in asked(questions.ONE_SIDED)}
+        self._one_sided: Final = (alone.get(sides[0], 0), alone.get(sides[1], 0))
         self.comparisons: Final = 2 * len(self._measures) + len(self._failures)
 
     def changes(self, comparisons: int) -> list[Change]:
@@ -205,7 +209,17 @@ class _Mission:
         turned = [replace(each, may_be_chance=tested.get(each.id, 0.0) > LEVEL) for each in turned]
         newly = tuple(each for each in turned if each.after == VIOLATED)
         no_longer = tuple(each for each in turned if each.after != VIOLATED)
-        return Comparison(self.name, self._runs, self._robots, self._over, self._size, newly, no_longer, changes)
+        return Comparison(
+            mission=self.name,
+            runs=self._runs,
+            robots=self._robots,
+            over=self._over,
+            group=self._size,
+            one_sided=self._one_sided,
+            newly=newly,
+            no_longer=no_longer,
+            changes=changes,
+        )
 
     def _sizes(self, units: Iterable[Unit]) -> list[tuple[int, int]]:
         """How many units each side has in each stratum."""

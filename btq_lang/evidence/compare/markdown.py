@@ -26,4 +26,4 @@ def _lines(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
     if rows:
         yield from table(("Finding", "Of", "Change"), rows)
         yield ""
-    yield from (f"* {escaped(line)}" for line in remarks(comparison))
+    yield from (f"* {escaped(line)}" for line in remarks(comparison, sides))

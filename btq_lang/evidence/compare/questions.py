@@ -69,6 +69,15 @@ FAILURES: Final = """
     SELECT requirement, clause, node, side, COUNT(*) AS number, COUNT(*) FILTER (failed) AS failed
     FROM of_runs GROUP BY ALL ORDER BY requirement, clause, node
 """
+# The nodes that were active on one side only.
+ONE_SIDED: Final = """
+    SELECT side, COUNT(*) AS number
+    FROM (
+        SELECT node, MIN({by}) AS side FROM activations WHERE mission = {mission} AND {by} IN ({sides})
+        GROUP BY node HAVING COUNT(DISTINCT {by}) = 1
+    )
+    GROUP BY side
+"""
 UNITS: Final = """
     SELECT requirement, clause, node, MAX(unit) AS unit FROM clauses
     WHERE mission = {mission} AND {by} IN ({sides}) GROUP BY ALL

@@ -29,7 +29,7 @@ def _lines(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
         blanks = " " * (middle - cells_of(about))
         yield f"  {word:{left}}  {about}{blanks}  {change}"
     yield ""
-    yield from remarks(comparison)
+    yield from remarks(comparison, sides)
 
 
 _NEWLY: Final = "newly violated"

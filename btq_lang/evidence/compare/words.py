@@ -45,14 +45,18 @@ def turn(newly: Newly) -> str:
     return f"{verdict}, {first} → {second}{chance}"
 
 
-def remarks(comparison: Comparison) -> Iterator[str]:
-    """What was compared and not found to have changed, and what has too few runs."""
+def remarks(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
+    """What was compared and not found to have changed, what could not be compared, and what has too few runs."""
     changes = comparison.changes
     same = sum(not each.finding for each in changes)
     yield f"{same} of {counted(len(changes), 'comparison')} without a change that chance does not explain"
+    alone = zip(comparison.one_sided, sides, strict=True)
+    if found := ", ".join(f"{counted(number, 'node')} active only in {side}" for number, side in alone if number):
+        yield f"not compared: {found}"
     if found := untestable(comparison):
         yield f"medians and p95: {found}"
-    few = dict.fromkeys(subject(each) for each in changes if each.too_few)
+    certain = {subject(each) for each in changes if each.finding}
+    few = [each for each in dict.fromkeys(subject(each) for each in changes if each.too_few) if each not in certain]
     if few:
         yield f"too few to show any change: {', '.join(few)}"
 

@@ -112,7 +112,7 @@ def _comparison(comparison: Comparison, sides: tuple[str, str], keys: dict[str, 
         yield from _table("changes", f"Other changes in {comparison.mission}", ("Finding", "Of", "Change"), others)
         yield "</details>"
     yield "<details><summary>What else was compared</summary>"
-    yield from (f"<p><small>{escape(line)}</small></p>" for line in remarks(comparison))
+    yield from (f"<p><small>{escape(line)}</small></p>" for line in remarks(comparison, sides))
     yield "</details>"
 
 
