@@ -35,18 +35,12 @@ def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
         return explained(clause, worst_violation(clause), medians)
     if not clause.violations:
         return f"{clause.of or clause.path}: no share can be as large as the requirement asks"
-    first, *others = clause.violations
+    first = clause.violations[0]
     line = f"{clause.of or first.path}: {clause.violated} of {clause.counted} {clause.unit} broke it"
     causes = Counter(each.chain[0].path for each in clause.violations if each.chain)
     if causes and (cause := causes.most_common(1)[0])[0] != first.path:
         line += f", {cause[1]} of them at {cause[0]}"
-    runs = [run for run in dict.fromkeys(str(each.run) for each in others) if run != str(first.run)]
-    also = ""
-    if runs:
-        named = ", ".join(runs[:_RUNS])
-        also = f"; also run{'s' if len(runs) > 1 else ''} {named}"
-        also += f" and {len(runs) - _RUNS} more" if len(runs) > _RUNS else ""
-    return f"{line} ({_where(first)}{also})"
+    return f"{line} ({_where(first)}{_others(clause)})"
 
 
 def explained(clause: ClauseVerdict, violation: Violation, medians: Mapping[str, float]) -> str:
@@ -67,6 +61,20 @@ def worst_violation(clause: ClauseVerdict) -> Violation:
     worst = clause.worst
     found = (each for each in clause.violations if worst and (each.run, each.measured) == (worst.run, worst.text))
     return next(found, clause.violations[0])
+
+
+def _others(clause: ClauseVerdict) -> str:
+    """The runs that broke a clause beside the first: those of its log by number, then how many others if that is known,
+    for a store gives only the worst violations.
+    """
+    first, *others = dict.fromkeys((each.source, each.run) for each in clause.violations)
+    named = [str(run) for source, run in others if source == first[0]][:_RUNS]
+    runs = clause.violated if clause.unit == "runs" else len(others) + 1
+    is_known = clause.unit == "runs" or len(clause.violations) == clause.violated
+    more = runs - 1 - len(named) if is_known else 0
+    if not named:
+        return f"; also {counted(more, 'other run')}" if more else ""
+    return f"; also run{'s' if len(named) > 1 else ''} {', '.join(named)}" + (f" and {more} more" if more else "")
 
 
 def _counted(clause: ClauseVerdict) -> str:

@@ -118,6 +118,23 @@ def test_the_verdicts_of_all_that_is_kept(kept: Path) -> None:
     )
 
 
+def test_the_runs_that_broke_a_clause_are_those_of_their_log(tmp_path: Path) -> None:
+    """Of the runs of other logs, whose numbers mean nothing without the log, there is only how many they are."""
+    mission = "QualityReq sure : reliability\n    mission succeeds in at least 99 % of runs confidence 95 %\n" + MAIN
+    (tmp_path / "main.btq").write_text(mission, encoding="utf-8")
+    failed = "1R 2R 20 2F 1F 26 2I 3I 1I"
+    for number in range(2):
+        path = tmp_path / f"{number}.btlog"
+        path.write_bytes(btlog(MAIN_XML, rows(" ".join([failed, SLOW, failed, failed])), START + number * 60_000_000))
+    run_btq("verify", "0.btlog", "1.btlog", "--mission", "main.btq", "--store", "kept", cwd=tmp_path)
+    output = run_btq("verify", "--store", "kept", cwd=tmp_path)[1]
+    (line,) = (line for line in output.splitlines() if "broke it" in line)
+    assert line.strip() == (
+        "Sequence::1: 6 of 8 runs broke it (run 1 of 0.btlog, 20 ms after its start at 2026-11-20 21:22:20.000 UTC;"
+        " also runs 3, 4 and 3 more)"
+    )
+
+
 def test_the_verdicts_of_each_label(kept: Path) -> None:
     code, output, errors = run_btq("verify", "--store", "kept", "--by", "label", "--by", "robot", cwd=kept)
     assert (code, errors) == (1, "")
