@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import sys
 from argparse import Namespace
+from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.commands.output import write_output
+from btq_lang.commands.plugin_files import exported_nodes
 from btq_lang.cpp.findings import findings
 from btq_lang.cpp.grammar import GrammarMissing
 from btq_lang.cpp.model import CppNodes
@@ -16,18 +18,23 @@ from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import CPP_SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, absolute, collect, head, read, shown
 
+if TYPE_CHECKING:
+    from btq_lang.diagnostics.model import Diagnostic
+
+    Exported: TypeAlias = tuple[str, tuple[Diagnostic, ...]]  # the text, and what its nodes leave unseen
+
 FORMATS = ("btq", "xml", "html")
 
 
 def run(options: Namespace) -> int:
     """Write the nodes, and say on standard error what cannot be seen or is wrong."""
     form = options.format or os.path.splitext(options.output or "")[1].lower().removeprefix(".") or FORMATS[0]
-    files, problems = _texts(options.paths)
+    files, exported, problems = _texts(options.paths)
     if form not in FORMATS:
         problems.append(f"btq nodes: cannot write {options.output}; choose one of {', '.join(FORMATS)} with --format")
     elif form != "html" and options.output and not _is_ours(options.output):
         problems.append(f"btq nodes: {options.output} exists, and btq nodes did not make it; choose another file name")
-    elif not files and not problems:
+    elif not files and not exported and not problems:
         problems.append(f"btq nodes: no C++ file below {', '.join(options.paths)}")
     for problem in problems:
         print(problem, file=sys.stderr)
@@ -41,9 +48,10 @@ def run(options: Namespace) -> int:
     sources = " ".join(options.paths)
     if code := write_output("nodes", options.output, _written(found, form, sources)):
         return code
-    remarks = findings(found, files)
+    remarks = findings(found, files) | {path: nodes for path, (_, nodes) in exported.items() if nodes}
+    texts = files | {path: text for path, (text, _) in exported.items()}
     for path in sorted(remarks):
-        lines = LineIndex(files[path])
+        lines = LineIndex(texts[path])
         for each in remarks[path]:
             line, column = lines.position(each.span.start)
             what = f"{each.effective_severity.value}[{each.rule}] {each.message}"
@@ -54,18 +62,24 @@ def run(options: Namespace) -> int:
     return int(bool(remarks))
 
 
-def _texts(paths: list[str]) -> tuple[dict[str, str], list[str]]:
-    """The C++ files below some paths, as they are shown, and what cannot be read."""
-    found, unreachable = collect(paths, Project(), CPP_SUFFIXES)
+def _texts(paths: list[str]) -> tuple[dict[str, str], dict[str, Exported], list[str]]:
+    """The C++ files below some paths, as they are shown, those of pluginlib, and what cannot be read."""
+    found, unreachable = collect(paths, Project(), (*CPP_SUFFIXES, ".xml"))
     problems: list[LoadProblem] = list(unreachable)
     texts = {}
+    exported: dict[str, Exported] = {}
     for path in found:
         text, problem = read(path)
-        if text is not None:  # bytes that are not UTF-8 are mostly in comments
+        if path.endswith(".xml"):
+            if text is not None and (nodes := exported_nodes(text)) is not None:
+                exported[shown(path)] = text, nodes
+            elif path in map(absolute, paths):
+                problems.append(problem or LoadProblem(path, "neither C++ nor what pluginlib reads"))
+        elif text is not None:  # bytes that are not UTF-8 are mostly in comments
             texts[shown(path)] = text
         elif problem is not None:
             problems.append(problem)
-    return texts, [f"btq: {problem}" for problem in problems]
+    return texts, exported, [f"btq: {problem}" for problem in problems]
 
 
 def _is_ours(path: str) -> bool:

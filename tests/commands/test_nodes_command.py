@@ -146,3 +146,35 @@ def test_without_files_or_the_grammar_it_says_so(robot: Path, monkeypatch: pytes
         "",
         "btq nodes: C++ is read with tree-sitter; install it with pip install 'btq-lang[cpp]'\n",
     )
+
+
+PLUGINS = """\
+<class_libraries>
+  <library path="docking">
+    <class type="my::Dock" base_class_type="BT::SyncActionNode"><description>Docks.</description></class>
+    <class type="my::Navigator" base_class_type="nav2_core::NavigatorBase"/>
+  </library>
+</class_libraries>
+"""
+
+
+def test_nodes_that_pluginlib_exports(tmp_path: Path) -> None:
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src" / "drive.cpp").write_text(DRIVE, encoding="utf-8")
+    (tmp_path / "src" / "plugins.xml").write_text(PLUGINS, encoding="utf-8")
+    (tmp_path / "src" / "package.xml").write_text("<package/>", encoding="utf-8")
+    code, output, errors = run_btq("nodes", "src", cwd=tmp_path)
+    assert (code, output) == (1, BTQ)
+    assert errors == (
+        "src/plugins.xml:3:5: hint[unseen-in-cpp] exports `my::Dock`, a BT::SyncActionNode, to pluginlib;"
+        " under which ID trees have it cannot be seen\n2 nodes with 4 ports in 1 file\n"
+    )
+
+
+def test_other_xml_is_no_source(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text("<package/>", encoding="utf-8")
+    assert run_btq("nodes", "package.xml", cwd=tmp_path) == (
+        2,
+        "",
+        "btq: package.xml: neither C++ nor what pluginlib reads\n",
+    )
