@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 
 def exported_nodes(text: str) -> tuple[Diagnostic, ...] | None:
-    """The nodes that a description exports, each as what cannot be seen: only the program that loads it has its ID.
+    """The nodes that a file exports, each as what cannot be seen, because the program that loads it gives the ID.
 
-    None if the text is no description.
+    None if it is not for pluginlib.
 
     Source: https://wiki.ros.org/pluginlib/PluginDescriptionFile
     """
