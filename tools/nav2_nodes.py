@@ -1,5 +1,5 @@
 """Writes `btq_lang/catalog/nav2/*.btq`, the nodes of Nav2 by distribution, from a clone of navigation2, and `ports.py`
-beside them.
+beside them, and prints where Nav2's own list of its nodes differs from its code.
 
     python tools/nav2_nodes.py CLONE
 
@@ -17,7 +17,8 @@ from textwrap import wrap
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from nav2_sources import sources  # noqa: E402  # beside this script
+from nav2_differences import differences  # noqa: E402  # beside this script
+from nav2_sources import PALETTE, sources  # noqa: E402  # as above
 from nav2_words import NODES, OF_MESSAGES, PORTS, REQUIRED, REQUIRED_IN  # noqa: E402  # as above
 
 from btq_lang.catalog.nav2 import FILES, ports  # noqa: E402  # of this checkout
@@ -29,9 +30,12 @@ from btq_lang.util.record import replace  # noqa: E402  # as above
 
 
 def model_file(clone: Path, distribution: str) -> str:
-    """The text of a distribution's file."""
-    files = {path: text for path, text in sources(clone, distribution).items() if not path.endswith(".xml")}
+    """The text of a distribution's file; prints what Nav2's list says otherwise."""
+    files = sources(clone, distribution)
+    palette = files.pop(PALETTE)
     found = read_nodes(files)
+    for each in differences(found.nodes, palette):
+        print(f"{distribution}: {each.name}: {each.kind}: {each.why}")
     if found.unseen:
         raise SystemExit("\n".join(f"{each.place}: {each.message}" for each in found.unseen))
     headline = f"The nodes of Nav2 in ROS 2 {distribution.capitalize()}; tools/nav2_nodes.py writes this file."
