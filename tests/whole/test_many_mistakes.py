@@ -17,7 +17,7 @@ T = TypeVar("T")
 MAIN = "main.btq"
 FEW, MANY = 100, 200
 # Up to some hundreds of unknown names what is near to each is looked for among all: so many for it to show.
-MORE = {"unknown in contexts": 600}
+MORE = {"unknown in contexts": 600, "paths to nothing": 400}
 
 
 def tree(lines: Iterable[str]) -> str:
