@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from argparse import ArgumentParser, ArgumentTypeError, RawDescriptionHelpFormatter
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from btq_lang.commands.options import CheckOptions, add_server_options
 from btq_lang.commands.verdict_formats import FORMATS as VERDICT_FORMATS
@@ -361,8 +361,7 @@ def _add_compare(commands: _SubParsersAction[Parser]) -> None:
     )
     # Two names alone are `store` and `before`: if `store` were the optional one, `STORE --by robot A B` would fail.
     parser.usage = "btq compare [-h] [STORE] A B [--by {label,robot}] [--format FORMAT] [-o FILE]"
-    store = "the folder that btq verify --store writes; default: `store` in [evidence] of btq.toml"
-    parser.add_argument("store", metavar="STORE", help=store)
+    parser.add_argument("store", metavar="STORE", help=_STORE)
     parser.add_argument("before", metavar="A", help="the label that is compared with, or the robot")
     parser.add_argument("after", metavar="B", nargs="?", help="the label, or the robot, that may have changed")
     parser.add_argument("--by", choices=("label", "robot"), default="label", help="what A and B are; default: label")
@@ -380,8 +379,7 @@ def _add_report(commands: _SubParsersAction[Parser]) -> None:
         "examples:\n  btq report evidence -o report.html                by version and robot\n"
         "  btq report evidence --by label -o report.html     without the robots\n",
     )
-    store = "the folder that btq verify --store writes; default: `store` in [evidence] of btq.toml"
-    parser.add_argument("store", nargs="?", metavar="STORE", help=store)
+    parser.add_argument("store", nargs="?", metavar="STORE", help=_STORE)
     parser.add_argument(
         "--by",
         action="append",
@@ -548,3 +546,6 @@ def _add_lsp(commands: _SubParsersAction[Parser]) -> None:
 
 def _add_color(parser: ArgumentParser) -> None:
     parser.add_argument("--color", choices=("auto", "always", "never"), default="auto", help="default: auto")
+
+
+_STORE: Final = "the folder that btq verify --store writes; default: `store` in [evidence] of btq.toml"

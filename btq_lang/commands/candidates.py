@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.as_built import as_built
 from btq_lang.btcpp.export import xml_name
@@ -13,6 +14,9 @@ from btq_lang.commands.files import Files
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.readers.side import SideFile, side_file_at, side_files_beside
 from btq_lang.workspace.loader import find_project
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.workspace import Workspace
 
 
 def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
@@ -28,23 +32,33 @@ def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str
     problems += map(str, unreadable)
     for group in groups:
         for path in group.given:
-            side = sides.get(path) or side_file_at(side_path(xml_name(path)))
+            side = side_of(path, sides)
             if path.endswith(".xml") and side is not None and (built := [*_restored(side)]):
                 found += built
             elif requested or path not in group.workspace.included_files:
-                nodes = side.nodes if side is not None and side.mission == path else None
-                found.append(Candidate(group.workspace, path, _name(path), nodes))
+                found.append(candidate(group.workspace, path, side))
     if not found and not problems:
         problems.append("no mission found; name one with --mission FILE, a .btq file or XML")
     return found
+
+
+def side_of(path: str, sides: Mapping[str, SideFile]) -> SideFile | None:
+    """The side file of a mission: one of those beside the logs, else the one beside the mission."""
+    return sides.get(path) or side_file_at(side_path(xml_name(path)))
+
+
+def candidate(workspace: Workspace, path: str, side: SideFile | None) -> Candidate:
+    """A mission, with the nodes of its side file if that is its own."""
+    return Candidate(workspace, path, name_of(path), side.nodes if side is not None and side.mission == path else None)
+
+
+def name_of(path: str) -> str:
+    """What a mission is called: its file's name without the suffix."""
+    return os.path.splitext(os.path.basename(path))[0]
 
 
 def _restored(side: SideFile) -> Iterator[Candidate]:
     """The mission as built, if only the XML and the side file are available."""
     built = as_built(xml_path(side.path), Disk())
     if built is not None:
-        yield Candidate(built.workspace, built.path, _name(side.mission), side.nodes)
-
-
-def _name(path: str) -> str:
-    return os.path.splitext(os.path.basename(path))[0]
+        yield Candidate(built.workspace, built.path, name_of(side.mission), side.nodes)

@@ -6,12 +6,10 @@ import os
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from btq_lang.btcpp.export import xml_name
-from btq_lang.btcpp.side_file import side_path
+from btq_lang.commands.candidates import candidate, name_of, side_of
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.verify import logs_of
-from btq_lang.evidence.identity import Candidate
-from btq_lang.evidence.readers.side import side_file_at, side_files_beside
+from btq_lang.evidence.readers.side import side_files_beside
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.evidence.verifying import judged, logs_below
 from btq_lang.evidence.written_verdicts import NotVerdicts, read_verdicts
@@ -45,7 +43,7 @@ def verdicts_for(given: Sequence[str], groups: Sequence[Group], problems: list[s
             found.setdefault(file, []).extend(verdicts)
     if problems and not found:
         return None
-    return lambda mission: found.get(mission) or found.get(_name(mission), [])
+    return lambda mission: found.get(mission) or found.get(name_of(mission), [])
 
 
 def _read(path: str, found: dict[str, list[RequirementVerdict]], problems: list[str]) -> None:
@@ -67,7 +65,13 @@ def _judged(
 ) -> Iterator[tuple[str, Sequence[RequirementVerdict]]]:
     project = groups[0].project if groups else find_project(".").project
     logs, wrong = logs_below(given, project)
-    missions = list(_missions(logs, groups))
+    sides = {side.mission: side for side in side_files_beside(logs)}
+    missions = [
+        candidate(group.workspace, path, side_of(path, sides))
+        for group in groups
+        for path in group.given
+        if path not in group.workspace.included_files
+    ]
     sources, of_files = signal_sources(project, shown(project.root), missions, wrong)
     problems += wrong
     if wrong:
@@ -85,17 +89,3 @@ def _judged(
     problems += verification.report.problems
     for mission in verification.report.missions:
         yield mission.file, mission.requirements
-
-
-def _missions(logs: Sequence[str], groups: Sequence[Group]) -> Iterator[Candidate]:
-    sides = {side.mission: side for side in side_files_beside(logs)}
-    for group in groups:
-        for path in group.given:
-            if path not in group.workspace.included_files:
-                side = sides.get(path) or side_file_at(side_path(xml_name(path)))
-                is_own = side is not None and side.mission == path
-                yield Candidate(group.workspace, path, _name(path), side.nodes if side and is_own else None)
-
-
-def _name(path: str) -> str:
-    return os.path.splitext(os.path.basename(path))[0]

@@ -15,7 +15,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     scopes.py      which activations count
     outline.py   the clauses of a mission and where they are, so that a later text is known again
     clause.py, evaluate.py   a clause, and all clauses of a mission, judged while a log is read
-    edges.py, margins.py, again.py   the counts for every bound, and a clause judged again with an edited one
+    edges.py, margins.py, rejudging.py   the counts for every bound, and a clause judged again with an edited one
     tally.py, recent.py, odds.py   judgements counted, over all runs or the last ones, and confidence limits
     explain.py, explain_run.py   what led to a violation
     distribution.py, timeline.py   a histogram of values and a timeline of a run, for the page

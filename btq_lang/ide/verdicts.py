@@ -12,8 +12,8 @@ from weakref import ReferenceType, ref
 
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import RULES
-from btq_lang.evidence.again import Shown, shown_now
 from btq_lang.evidence.outline import Demand, outline
+from btq_lang.evidence.rejudging import Shown, shown_now
 from btq_lang.evidence.sentences import explained, result, worst_violation
 from btq_lang.evidence.verdicts import (
     NEVER,
@@ -119,7 +119,7 @@ def verdict_table(workspace: Workspace, path: str, wanted: Subject, evidence: Ev
         if rows:
             runs, logs = judged.written.runs, judged.written.sources
             seen = f"{counted(runs, 'run')} in {logs[0].file if len(logs) == 1 else counted(len(logs), 'log')}"
-            lines += ["", f"**{escaped(seen)}**{_EARLIER if judged.is_earlier else ''}", ""]
+            lines += ["", f"**{escaped(seen)}**" + (f", {_EARLIER}" if judged.is_earlier else ""), ""]
             rows.sort(key=_rank)
             lines += table(("Verdict", "Clause", "Result"), map(_row, rows[:_ROWS]))
             lines += ["", f"and {len(rows) - _ROWS} more"] if len(rows) > _ROWS else []
@@ -175,8 +175,9 @@ def _finding(shown: Shown, node: ResolvedNode, judged: Judged, root: str) -> Dia
         notes = (explained(verdict, worst, {}),)
     rule = _RULES[verdict.verdict]
     assert rule in RULES, "the rules of evidence have pages"
-    earlier = _EARLIER if judged.is_earlier else ""
-    return Diagnostic(rule, node.node.head.span, f"{message}{earlier}", tuple(related), notes)
+    if judged.is_earlier:
+        message += f", {_EARLIER}"
+    return Diagnostic(rule, node.node.head.span, message, tuple(related), notes)
 
 
 def _nodes(demand: Demand) -> Sequence[ResolvedNode]:
@@ -219,10 +220,10 @@ def _title(shown: Shown, judged: Judged) -> str:
     }[verdict.verdict]
     if verdict.worst is not None and not has_odds and verdict.verdict in (VIOLATED, SATISFIED):
         title += f" · worst {verdict.worst.text}"
-    return f"{title}{' ·' if judged.is_earlier else ''}{_EARLIER.replace(',', '') if judged.is_earlier else ''}"
+    return f"{title} · {_EARLIER}" if judged.is_earlier else title
 
 
 _RULES: Final = {VIOLATED: "requirement-violated", NEVER: "never-exercised"}
-_EARLIER: Final = ", measured on an earlier text"
+_EARLIER: Final = "measured on an earlier text"
 _ROWS: Final = 8
 _MOST_MISSIONS: Final = 4  # as for other features: resolving one takes long, and a library may be in hundreds

@@ -14,13 +14,14 @@ import logging
 import os
 import sys
 from asyncio.subprocess import DEVNULL, PIPE, Process
-from collections.abc import AsyncIterator, Callable, Sequence
-from contextlib import asynccontextmanager, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final
 
 from lsprotocol import types
 
 from btq_lang.lsp.editor import Refused, Server
+from btq_lang.lsp.progress import progress
 from btq_lang.util.version import __version__
 
 if TYPE_CHECKING:
@@ -176,37 +177,15 @@ class Logs:
         assert process.stdout is not None, "it is a pipe"
         assert process.stderr is not None, "likewise"
         said = asyncio.ensure_future(process.stderr.read())
-        async with self._progress() as report:
+        async with progress(self._server, "judging logs") as report:
             async for line in process.stdout:
-                report(json.loads(line))
+                now = json.loads(line)
+                message = f"{now['done']} of {now['of']} logs, {now['runs']} runs"
+                report(100 * now["done"] // max(now["of"], 1), message)
         if await process.wait() == _TROUBLE:
             logging.getLogger(__name__).warning((await said).decode(errors="replace").strip())
         else:
             await said
-
-    @asynccontextmanager
-    async def _progress(self) -> AsyncIterator[Callable[[dict[str, int]], None]]:
-        """Show progress in an editor that can; yields a function that shows what the process says."""
-        server = self._server
-        window = server.client_capabilities.window
-        if window is None or not window.work_done_progress:
-            yield lambda _: None
-            return
-        server.count += 1
-        token = f"btq/logs/{server.count}"
-        shown = server.work_done_progress
-        await asyncio.shield(shown.create_async(token))
-        shown.begin(token, types.WorkDoneProgressBegin("btq", message="judging logs", percentage=0))
-
-        def report(said: dict[str, int]) -> None:
-            message = f"{said['done']} of {said['of']} logs, {said['runs']} runs"
-            percentage = 100 * said["done"] // max(said["of"], 1)
-            shown.report(token, types.WorkDoneProgressReport(message=message, percentage=percentage))
-
-        try:
-            yield report
-        finally:
-            shown.end(token, types.WorkDoneProgressEnd())
 
     def _show(self, root: str, summary: str) -> None:
         from btq_lang.evidence.written_verdicts import NotVerdicts, read_verdicts  # few projects have logs

@@ -16,16 +16,34 @@ MANY_FILES = 50
 @asynccontextmanager
 async def checking(server: Server, files: int) -> AsyncIterator[Callable[[int], None]]:
     """Show progress while files are checked, unless they are few; yields a function that reports how many are done."""
-    window = server.client_capabilities.window
-    if files < MANY_FILES or window is None or not window.work_done_progress:
+    if files < MANY_FILES:
         yield lambda _: None
         return
+    async with progress(server, "checking", f"{files} files checked") as report:
+        yield lambda done: report(100 * max(done, 0) // files, None)
+
+
+@asynccontextmanager
+async def progress(
+    server: Server, begun: str, ended: str | None = None
+) -> AsyncIterator[Callable[[int, str | None], None]]:
+    """Show progress in an editor that can; yields a function that reports a percentage, with another message or None.
+
+    Args:
+        begun, ended: the first and the last message.
+    """
+    window = server.client_capabilities.window
+    if window is None or not window.work_done_progress:
+        yield lambda *_: None
+        return
     server.count += 1
-    token = f"btq/check/{server.count}"
+    token = f"btq/{server.count}"
     shown = server.work_done_progress
     await asyncio.shield(shown.create_async(token))  # the request is completed even if the caller is cancelled
-    shown.begin(token, types.WorkDoneProgressBegin("btq", message="checking", percentage=0))
+    shown.begin(token, types.WorkDoneProgressBegin("btq", message=begun, percentage=0))
     try:
-        yield lambda done: shown.report(token, types.WorkDoneProgressReport(percentage=100 * max(done, 0) // files))
+        yield lambda percentage, message: shown.report(
+            token, types.WorkDoneProgressReport(percentage=percentage, message=message)
+        )
     finally:
-        shown.end(token, types.WorkDoneProgressEnd(message=f"{files} files checked"))
+        shown.end(token, types.WorkDoneProgressEnd(message=ended))

@@ -95,8 +95,7 @@ def test_every_transition_of_the_engine_comes(publisher: Engine) -> None:
     transitions: list[tuple[int, int]] = []
     with robot(publisher, 3) as (published, address):
         found = next(sessions(address, {"battery"}, stop, lambda text: None, lambda: None))
-        runs = lambda: transitions.count((1, IDLE))  # noqa: E731  # named for what it counts
-        thread = threading.Thread(target=act, args=(published, runs, stop.set, answers))
+        thread = threading.Thread(target=act, args=(published, lambda: transitions.count((1, IDLE)), stop.set, answers))
         thread.start()
         for _, uid, status in found.transitions:
             transitions.append((uid, status))

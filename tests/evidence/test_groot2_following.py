@@ -16,7 +16,7 @@ from btq_lang.commands.candidates import candidates
 from btq_lang.evidence.json_document import render
 from btq_lang.evidence.model import GAP, PAUSE, Session
 from btq_lang.evidence.readers import read
-from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Sampled, Told
+from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Notice, Sampled
 from btq_lang.evidence.readers.groot2.messages import reply, request
 from btq_lang.evidence.readers.groot2.publisher import NoAnswer
 from btq_lang.evidence.readers.groot2.sessions import sessions_of
@@ -163,7 +163,7 @@ def test_a_publisher_that_comes_back_has_a_gap() -> None:
     line.step("1R 2R")
     robot, line.robot = line.robot, None
     assert [*line.following.step()] == [
-        Told("the publisher does not answer any more; waiting for one at tcp://robot:1667")
+        Notice("the publisher does not answer any more; waiting for one at tcp://robot:1667")
     ]
     assert [*line.following.step()] == []
     line.robot = robot
@@ -185,7 +185,7 @@ def test_another_publisher_begins_another_session() -> None:
 def test_no_publisher_is_told_once() -> None:
     line = Line()
     robot, line.robot = line.robot, None
-    assert [*line.following.step()] == [Told("no publisher yet; waiting for one at tcp://robot:1667")]
+    assert [*line.following.step()] == [Notice("no publisher yet; waiting for one at tcp://robot:1667")]
     assert [*line.following.step()] == []
     line.robot = robot
     assert [type(each) for each in line.step()] == [Began]
@@ -238,8 +238,8 @@ def test_a_bad_reply_is_told(damage: Callable[[list[bytes]], list[bytes]], told:
     line = Line()
     assert line.robot is not None
     answer = line.robot.answer
-    line.robot.answer = lambda parts: damage(answer(parts))  # type: ignore[method-assign]
-    assert line.step() == [Told(f"{told}; waiting for one at tcp://robot:1667")]
+    line.robot.answer = lambda parts: damage(answer(parts))
+    assert line.step() == [Notice(f"{told}; waiting for one at tcp://robot:1667")]
     assert line.step() == []
 
 
@@ -260,9 +260,11 @@ def test_bad_content_is_told(kind: str, content: bytes, told: str) -> None:
         found = answer(parts)
         return [found[0], content] if parts[0][1] == ord(kind) else found
 
-    line.robot.answer = damaged  # type: ignore[method-assign,assignment]
+    line.robot.answer = damaged
     events = [*line.step(), *line.step("1R 2R")]
-    assert [each.text for each in events if isinstance(each, Told)] == [f"{told}; waiting for one at tcp://robot:1667"]
+    assert [each.text for each in events if isinstance(each, Notice)] == [
+        f"{told}; waiting for one at tcp://robot:1667"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -282,13 +284,9 @@ def test_a_blackboard_that_cannot_be_read_ends_only_the_samples(
     line.step()
     assert line.step() == [Sampled(START + 100_000, {"battery": 80.0})]
     answer = line.robot.answer
-    line.robot.answer = (
-        lambda parts: (  # type: ignore[method-assign]
-            reply_of(answer(parts)[0]) if parts[0][1:2] == b"B" else answer(parts)
-        )
-    )
+    line.robot.answer = lambda parts: reply_of(answer(parts)[0]) if parts[0][1:2] == b"B" else answer(parts)
     assert line.step() == [
-        Told(f"{told}; signals have no samples from now on"),
+        Notice(f"{told}; signals have no samples from now on"),
         Sampled(START + 150_000, {"battery": None}),
     ]
     assert ms(line.step("1R 2R")) == "150:1R 150:2R"

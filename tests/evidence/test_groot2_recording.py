@@ -13,7 +13,7 @@ from by_day import of_the_day
 from groot2_recording import RECORDINGS, Exchange, exchanges, meaning, read
 from groot2_robot import Publisher
 
-from btq_lang.evidence.readers.groot2.following import Began, Came, Following, Lost, Sampled, Told
+from btq_lang.evidence.readers.groot2.following import Began, Came, Following, Lost, Notice, Sampled
 from btq_lang.evidence.readers.groot2.messages import reply, request
 from btq_lang.evidence.readers.groot2.sessions import sessions_of
 from btq_lang.evidence.runs import activations
@@ -80,7 +80,7 @@ def test_damaged_replies_do_no_harm() -> None:
             for _ in activations(session):
                 pass
         assert any(isinstance(event, Began) for event in events)
-    assert kinds == {Began, Came, Lost, Sampled, Told}
+    assert kinds == {Began, Came, Lost, Sampled, Notice}
 
 
 @pytest.mark.parametrize(
@@ -101,7 +101,7 @@ def test_a_hostile_tree_does_no_harm(xml: str) -> None:
     recorded = read(RECORDED[0])
     recorded[0] = recorded[0][0], [recorded[0][1][0], xml.encode()]
     (event,) = Following(asked_of(recorded, lambda parts: parts), lambda: 0, (), "here").step()
-    assert isinstance(event, Told)
+    assert isinstance(event, Notice)
 
 
 def asked_of(recorded: list[Exchange], damage: Callable[[list[bytes]], list[bytes]]) -> Callable[..., object]:

@@ -410,7 +410,7 @@ def test_a_small_screen_leaves_verdicts_out_and_says_so() -> None:
     watched = Watched((), "tcp://robot:1667", lambda news: None)
     news = [f"news {number}" for number in range(9)]
     assert drawn(watched, news, 80, 10, painter(False)) == ["tcp://robot:1667", "", *news[3:], "", HINT]
-    watched.so_far = lambda: iter([(REQUIREMENT,) * 9])  # type: ignore[method-assign]
+    watched.so_far = lambda: iter([(REQUIREMENT,) * 9])
     assert drawn(watched, news, 80, 14, painter(False)) == [
         "tcp://robot:1667",
         "",

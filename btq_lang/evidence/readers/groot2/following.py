@@ -49,13 +49,13 @@ class Lost(Record):
     why: str
 
 
-class Told(Record):
+class Notice(Record):
     """What happened to the connection."""
 
     text: str
 
 
-Event: TypeAlias = Began | Came | Sampled | Lost | Told
+Event: TypeAlias = Began | Came | Sampled | Lost | Notice
 
 
 class Following:
@@ -108,7 +108,7 @@ class Following:
         self._is_there = False
         if text != self._said:
             self._said = text
-            yield Told(f"{text}; waiting for one at {self._address}")
+            yield Notice(f"{text}; waiting for one at {self._address}")
 
     def _connect(self) -> Iterator[Event]:
         """Take the tree of a publisher, and make it record from now on."""
@@ -216,7 +216,7 @@ class Following:
             found = messages.blackboard(content, self._boards)
         except BadReply as error:  # the verdicts that need no samples do not suffer
             self._boards = ()
-            yield Told(f"{error}; signals have no samples from now on")
+            yield Notice(f"{error}; signals have no samples from now on")
         values: dict[str, SampleValue | None] = {key: found.get(key) for key in self._entries if key in found}
         values |= {key: None for key, value in self._values.items() if value is not None and key not in found}
         changed = {key: value for key, value in values.items() if not _is_same(value, self._values.get(key))}

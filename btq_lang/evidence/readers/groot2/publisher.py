@@ -8,6 +8,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 from contextlib import suppress
+from importlib.util import find_spec
 from time import monotonic
 from typing import Any, Final
 
@@ -28,11 +29,8 @@ def check_installed() -> None:
     Raises:
         NoLive: it is not.
     """
-    try:
-        import msgpack  # noqa: F401  # whether it is installed
-        import zmq  # noqa: F401  # likewise
-    except ImportError as error:
-        raise NoLive("a running robot is read with pyzmq; install it with pip install 'btq-lang[live]'") from error
+    if find_spec("zmq") is None or find_spec("msgpack") is None:
+        raise NoLive("a running robot is read with pyzmq; install it with pip install 'btq-lang[live]'")
 
 
 class Publisher:

@@ -13,7 +13,7 @@ from threading import Thread
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import Series, Session
-from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Sampled, Told
+from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Notice, Sampled
 from btq_lang.evidence.readers.groot2.publisher import Publisher
 from btq_lang.evidence.wording import timestamp
 
@@ -41,7 +41,7 @@ def sessions_of(events: Iterator[Event], tell: Callable[[str], None]) -> Iterato
         began = [event] if isinstance(event, Began) else []
         while began:
             yield _session(began.pop(), events, began, tell)
-        if isinstance(event, Told):
+        if isinstance(event, Notice):
             tell(event.text)
 
 

@@ -13,7 +13,6 @@ from evidence_logs import MAIN, MAIN_XML, btlog, rows
 from random_runs import Case, case
 
 from btq_lang.evidence import margins
-from btq_lang.evidence.again import shown_now
 from btq_lang.evidence.edges import edge_of
 from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.identity import Candidate, join
@@ -21,6 +20,7 @@ from btq_lang.evidence.json_document import render
 from btq_lang.evidence.margins import Margins
 from btq_lang.evidence.model import Session
 from btq_lang.evidence.outline import demands, outline
+from btq_lang.evidence.rejudging import shown_now
 from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report
 from btq_lang.evidence.verifying import judged as judged_logs
 from btq_lang.evidence.written_verdicts import WrittenMission, read_verdicts
