@@ -1,10 +1,11 @@
 """The positions of a tree's nodes: a tidy tree of boxes of any size, in linear time.
 
 The algorithm is that of A. van der Ploeg, "Drawing non-layered tidy trees in linear time", Software: Practice and
-Experience 44 (12), 2014, pp. 1467-1484: Reingold and Tilford's contours and threads, as C. Buchheim, M. Jünger and S.
-Leipert ("Improving Walker's Algorithm to Run in Linear Time", Graph Drawing 2002) made them linear for any number of
-children, with boxes of any height.  Nodes here have layers all the same, but what hangs below a leaf pushes no layer
-down; and a box has an anchor, the point placed over the middle of its children.
+Experience 44 (12), 2014, pp. 1467-1484, with contours as lists: of two that are joined, the deeper one is kept and the
+other written into it, so that the time is linear without the threads of Reingold and Tilford.
+
+Nodes here have layers all the same, but what hangs below a leaf pushes no layer down; and a box has an anchor, the
+point placed over the middle of its children.
 
 One invariant: no two boxes overlap, and a parent's anchor is midway between those of its first and last child.
 `breadth` is the direction in which siblings are next to each other, `depth` that in which children follow parents.
@@ -42,14 +43,47 @@ def layout(sizes: Sequence[Size], parents: Sequence[int | None], gap: int, level
     _layers(nodes, parents, level_gap)
     order = [top, *nodes]
     for node in reversed(order):  # children before their parents, the first child's subtree complete before the next
-        _first_walk(node)
-    _second_walk(order)
+        _place_children(node)
+    _add_up(order)
     least = min(node.at for node in nodes)
     return [(round(node.at - least), node.start) for node in nodes]
 
 
+class _Contour:
+    """One side of a subtree, or of several next to each other.
+
+    Attributes:
+        boxes: where each box on it ends in depth, and its side; the lowest first.
+        moved: what to add to the sides.
+    """
+
+    __slots__ = ("boxes", "moved")
+
+    def __init__(self) -> None:
+        self.boxes: list[tuple[int, float]] = []
+        self.moved = 0.0
+
+    @property
+    def bottom(self) -> int:
+        return self.boxes[0][0]
+
+    def begin(self, end: int, side: float) -> None:
+        """Put a box above the others."""
+        self.boxes.append((end, side - self.moved))
+
+    def continued(self, other: _Contour) -> _Contour:
+        """This contour, and below it the other one; neither can be used any more."""
+        if other.bottom <= self.bottom:
+            return self
+        while other.boxes[-1][0] <= self.bottom:
+            other.boxes.pop()
+        moved = self.moved - other.moved
+        other.boxes += [(end, side + moved) for end, side in self.boxes]
+        return other
+
+
 class _Node:
-    """A box during placement.  The names are the paper's, written out.
+    """A box during placement.
 
     Attributes:
         breadth: with the gap to the next sibling.
@@ -57,28 +91,8 @@ class _Node:
         preliminary: its position, relative to the place that `modifier` moves.
         modifier: what is added to the positions of the whole subtree.
         shift, change: what to spread over the siblings between two that were moved apart.
-        thread_left, thread_right: for a leaf, the next node of the contour.
-        extreme_left, extreme_right: the lowest nodes of the contours, and the sums of modifiers down to them.
+        left, right: the contours of the subtree.
     """
-
-    __slots__ = (
-        "anchor",
-        "at",
-        "breadth",
-        "change",
-        "children",
-        "end",
-        "extreme_left",
-        "extreme_left_sum",
-        "extreme_right",
-        "extreme_right_sum",
-        "modifier",
-        "preliminary",
-        "shift",
-        "start",
-        "thread_left",
-        "thread_right",
-    )
 
     def __init__(self, breadth: int, depth: int, anchor: int) -> None:
         self.breadth = breadth
@@ -87,10 +101,7 @@ class _Node:
         self.anchor = anchor
         self.children: list[_Node] = []
         self.at = self.preliminary = self.modifier = self.shift = self.change = 0.0
-        self.thread_left: _Node | None = None
-        self.thread_right: _Node | None = None
-        self.extreme_left = self.extreme_right = self
-        self.extreme_left_sum = self.extreme_right_sum = 0.0
+        self.left, self.right = _Contour(), _Contour()
 
 
 def _layers(nodes: Sequence[_Node], parents: Sequence[int | None], level_gap: int) -> None:
@@ -110,100 +121,50 @@ def _layers(nodes: Sequence[_Node], parents: Sequence[int | None], level_gap: in
         node.end = starts[level + 1] if node.children else starts[level] + node.end
 
 
-def _first_walk(node: _Node) -> None:
+def _place_children(node: _Node) -> None:
     """Place the children of a node, whose own subtrees are already placed, next to each other."""
-    children = node.children
-    if not children:
-        return
-    lows = _Low(children[0].extreme_left.end, 0, None)
-    for index in range(1, len(children)):
-        low = children[index].extreme_right.end
-        _separate(children, index, lows)
-        lows = _Low(low, index, _above(lows, low))
-    first, last = children[0], children[-1]
-    anchors = first.preliminary + first.modifier + first.anchor + last.preliminary + last.modifier + last.anchor
-    node.preliminary = anchors / 2 - node.anchor
-    node.extreme_left, node.extreme_left_sum = first.extreme_left, first.extreme_left_sum
-    node.extreme_right, node.extreme_right_sum = last.extreme_right, last.extreme_right_sum
+    if node.children:
+        first, last = node.children[0], node.children[-1]
+        left, right = first.left, first.right
+        lows = [(left.bottom, 0)]  # the siblings whose subtrees reach deeper than all after them, and how deep
+        for index, child in enumerate(node.children[1:], start=1):
+            _separate(node.children, index, right, lows)
+            bottom = child.left.bottom
+            while lows and lows[-1][0] <= bottom:
+                lows.pop()
+            lows.append((bottom, index))
+            left, right = left.continued(child.left), child.right.continued(right)
+        anchors = first.preliminary + first.modifier + first.anchor + last.preliminary + last.modifier + last.anchor
+        node.preliminary = anchors / 2 - node.anchor
+        node.left, node.right = left, right
+    node.left.begin(node.end, node.preliminary)
+    node.right.begin(node.end, node.preliminary + node.breadth)
 
 
-class _Low:
-    """The siblings whose subtrees reach deepest so far, the last one first: the ones that a new subtree can collide
-    with.
-    """
-
-    __slots__ = ("index", "low", "next")
-
-    def __init__(self, low: int, index: int, following: _Low | None) -> None:
-        self.low = low
-        self.index = index
-        self.next = following
-
-
-def _above(lows: _Low | None, low: int) -> _Low | None:
-    while lows is not None and low >= lows.low:
-        lows = lows.next
-    return lows
-
-
-def _separate(children: list[_Node], index: int, lows: _Low) -> None:
+def _separate(children: list[_Node], index: int, before: _Contour, lows: Sequence[tuple[int, int]]) -> None:
     """Move a child's subtree away from those before it, along the contours between them."""
-    left: _Node | None = children[index - 1]
-    right: _Node | None = children[index]
-    left_sum, right_sum = children[index - 1].modifier, children[index].modifier
-    while left is not None and right is not None:
-        while left.end > lows.low and lows.next is not None:
-            lows = lows.next
-        distance = (left_sum + left.preliminary + left.breadth) - (right_sum + right.preliminary)
-        if distance > 0:
-            right_sum += distance
-            _move(children, index, lows.index, distance)
-        left_end, right_end = left.end, right.end
-        if left_end <= right_end:
-            left = left.children[-1] if left.children else left.thread_right
-            left_sum += left.modifier if left is not None else 0
-        if left_end >= right_end:
-            right = right.children[0] if right.children else right.thread_left
-            right_sum += right.modifier if right is not None else 0
-    if left is None and right is not None:
-        _thread_left(children, index, right, right_sum)
-    elif right is None and left is not None:
-        _thread_right(children, index, left, left_sum)
-
-
-def _move(children: list[_Node], index: int, met: int, distance: float) -> None:
     child = children[index]
-    child.modifier += distance
-    child.extreme_left_sum += distance
-    child.extreme_right_sum += distance
-    if met != index - 1:  # the siblings between share the distance
-        share = distance / (index - met)
-        children[met + 1].shift += share
-        child.shift -= share
-        child.change -= distance - share
+    at, to, low = len(before.boxes) - 1, len(child.left.boxes) - 1, len(lows) - 1
+    while at >= 0 and to >= 0:
+        (end, side), (own_end, own_side) = before.boxes[at], child.left.boxes[to]
+        while end > lows[low][0]:
+            low -= 1
+        distance = (side + before.moved) - (own_side + child.left.moved)
+        if distance > 0:
+            child.modifier += distance
+            child.left.moved += distance
+            child.right.moved += distance
+            met = lows[low][1]
+            if met != index - 1:  # the siblings between share the distance
+                share = distance / (index - met)
+                children[met + 1].shift += share
+                child.shift -= share
+                child.change -= distance - share
+        at -= end <= own_end
+        to -= end >= own_end
 
 
-def _thread_left(children: list[_Node], index: int, node: _Node, total: float) -> None:
-    first, child = children[0], children[index]
-    lowest = first.extreme_left
-    lowest.thread_left = node
-    difference = (total - node.modifier) - first.extreme_left_sum
-    lowest.modifier += difference
-    lowest.preliminary -= difference
-    first.extreme_left, first.extreme_left_sum = child.extreme_left, child.extreme_left_sum
-
-
-def _thread_right(children: list[_Node], index: int, node: _Node, total: float) -> None:
-    before, child = children[index - 1], children[index]
-    lowest = child.extreme_right
-    lowest.thread_right = node
-    difference = (total - node.modifier) - child.extreme_right_sum
-    lowest.modifier += difference
-    lowest.preliminary -= difference
-    child.extreme_right, child.extreme_right_sum = before.extreme_right, before.extreme_right_sum
-
-
-def _second_walk(order: Sequence[_Node]) -> None:
+def _add_up(order: Sequence[_Node]) -> None:
     """Add up the modifiers from the top."""
     sums = {id(order[0]): 0.0}
     for node in order:
