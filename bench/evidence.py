@@ -24,9 +24,10 @@ import bare_loops
 from report import Goal, as_data, machine, options, shown
 from robot_log import Robot, battery, fetching, tiny
 
-from btq_lang.evidence import verify
+from btq_lang.evidence.judging import Means
 from btq_lang.evidence.model import NamedLog, Series
 from btq_lang.evidence.readers import read
+from btq_lang.evidence.verifying import verify
 
 # robot_log has put the tests on the path
 from evidence_bags import names_of, tree_log, write_bag  # isort: skip
@@ -36,7 +37,7 @@ Task = Callable[[], object]
 
 
 def judged(robot: Robot, path: Path, samples: Mapping[str, Series]) -> None:
-    report = verify([str(path)], [robot.mission], samples, str)
+    report = verify([str(path)], Means([robot.mission], samples))
     assert report.problems == ()
     assert report.missions[0].runs > 0
 

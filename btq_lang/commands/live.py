@@ -21,6 +21,7 @@ from btq_lang.commands.stored import name_problem, opened, store_of_project
 from btq_lang.commands.verdict_events import events_problem
 from btq_lang.commands.verdict_formats import FORMATS
 from btq_lang.commands.verdict_report import failed, finish
+from btq_lang.evidence.judging import Means
 from btq_lang.evidence.readers.groot2.publisher import NoLive, check_installed
 from btq_lang.evidence.readers.groot2.sessions import sessions
 from btq_lang.evidence.verifying import judged_live
@@ -46,7 +47,8 @@ def run(options: Namespace) -> int:
     with stopped_by_signals() as stop, shown:
         robot = sessions(address, entries, stop, lambda text: watched.tell(text), lambda: shown.refresh(watched))
         watched = Watched(robot, address, shown.show)
-        found = judged_live(watched, address, missions, options.mission, with_timelines=form == "html", keeping=keeping)
+        means = Means(missions, with_timelines=form == "html", keeping=keeping)
+        found = judged_live(watched, address, means, options.mission)
     return finish(options, found, missions, ())
 
 

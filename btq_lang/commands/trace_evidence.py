@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from btq_lang.commands.candidates import candidate, name_of, side_of
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.verify import logs_of
+from btq_lang.evidence.judging import Means
 from btq_lang.evidence.readers.side import side_files_beside
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.evidence.verifying import judged, logs_below
@@ -79,10 +80,7 @@ def _judged(
     with Progress(len(logs), "read") as progress:
         verification = judged(
             logs,
-            missions,
-            ("", {}),
-            sources,
-            of_files,
+            Means(missions, sources=sources, of_files=of_files),
             (),
             progress=lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"),
         )

@@ -19,6 +19,7 @@ from btq_lang.commands.verdict_formats import FORMATS
 from btq_lang.commands.verdict_report import failed, finish
 from btq_lang.commands.verdict_run import print_run
 from btq_lang.commands.verdict_summary import progress_to_editor
+from btq_lang.evidence.judging import Means
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.signal_sources import signal_sources
@@ -59,19 +60,17 @@ def run(options: Namespace) -> int:
         form = form_of(options, FORMATS)
         with Progress(len(logs), "read") as progress:
             to_editor = progress_to_editor(len(logs)) if options.summary is not None else None
-            found = judged(
-                logs,
+            means = Means(
                 missions,
-                (options.signals or "", samples),
+                samples,
                 sources,
                 of_files,
-                options.mission,
                 with_timelines=form == "html",
                 with_measures=options.summary is not None,
-                jobs=options.jobs,
                 keeping=keeping,
-                progress=to_editor or (lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged")),
             )
+            reached = to_editor or (lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"))
+            found = judged(logs, means, options.mission, options.signals or "", options.jobs, reached)
         return finish(options, found, missions, logs)
     return failed(problems)
 

@@ -34,73 +34,14 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.identity import Candidate
-    from btq_lang.evidence.model import Series
-    from btq_lang.evidence.store.sets import Keeping
     from btq_lang.evidence.verdicts import Report
-    from btq_lang.workspace.project_evidence import SignalSource
 
 FORMATS: Final = ("table", "json", "csv", "junit", "markdown")
 _MODULES: Final = {"json": "json_document", "csv": "csv_rows"}  # named otherwise
-
-
-def verify(
-    logs: Sequence[str],
-    missions: Sequence[Candidate],
-    samples: Mapping[str, Series],
-    shown: Callable[[str], str],
-    sources: Sequence[SignalSource] = (),
-    of_files: Mapping[str, Series] | None = None,
-    *,
-    with_timelines: bool = False,
-    with_measures: bool = False,
-    jobs: int = 1,
-    keeping: Keeping | None = None,
-    progress: Callable[[int, int], None] = lambda files, runs: None,
-) -> Report:
-    """Judge missions by logs.
-
-    Args:
-        logs: the files; one that cannot be read is a problem of the report, and the others are judged.
-        samples: samples of signals, by the signal's name or its entry.
-        shown: gives a path as people read it.
-        sources: where further samples come from, with lower priority; topics are read from the bags among the logs.
-        of_files: the samples of those sources that are files.
-        progress: called with how many logs have been read, and how many runs have been judged.
-        with_timelines: include the run of the worst violation of each clause.
-        with_measures: include what is needed to judge clauses with other bounds.
-        keeping: where what is found in each log is kept; None: nowhere.
-        jobs: how many processes judge logs; the report is the same.
-    """
-    from btq_lang.evidence.judging import Judging, Means, judge
-    from btq_lang.evidence.readers import samples_of_bags
-
-    of_bags, remarks, bags = samples_of_bags(logs, sources)
-    of = samples, sources, of_files or {}, of_bags
-    means = Means(missions, *of, remarks, shown, with_timelines, keeping, with_measures=with_measures)
-    judging = Judging(means)
-    wanted = [log for log in logs if log not in bags]
-    if jobs > 1 and len(wanted) > 1:
-        from btq_lang.evidence.parallel import judge_all
-
-        for number, found in enumerate(judge_all(wanted, means, jobs), start=1):
-            judging.add(found)
-            progress(number, judging.runs)
-    else:
-        for number, log in enumerate(wanted):
-            of_log = partial(_progress, progress, number, judging.runs)
-            judging.add(judge(log, means, of_log))
-    return judging.report()
-
-
-def _progress(progress: Callable[[int, int], None], files: int, runs: int, run: int) -> None:
-    progress(files, runs + run)
 
 
 def write(report: Report, form: str, *, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:

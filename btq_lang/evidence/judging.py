@@ -19,6 +19,7 @@ from btq_lang.evidence.signals import by_signal
 from btq_lang.evidence.verdicts import Foreign, Report
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
+from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
@@ -26,33 +27,35 @@ if TYPE_CHECKING:
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.store.sets import Draft, Keeping
     from btq_lang.workspace.project_evidence import SignalSource
+NO_SERIES: Final[Mapping[str, Series]] = {}
 
 
 class Means(Record):
     """What logs are judged by.
 
     Attributes:
-        samples: of `--signals`, by signal or entry.
-        sources: where further samples come from.
+        samples: by signal or entry.
+        sources: where further samples come from, with lower priority; topics are read from the bags among the logs.
         of_files, of_bags: the samples of those sources, by signal, in files and in bags without a log of a tree.
         remarks: notes about these bags.
-        shown: gives a path as people read it.
-        keeping: where what is found is kept; None: nowhere.
+        with_timelines: include the run of the worst violation of each clause.
+        with_measures: include what is needed to judge clauses with other bounds.
+        keeping: where what is found in each log is kept; None: nowhere.
         limits: which limits of probabilities decide.
-        with_measures: as of `MissionEvaluation`.
+        shown: gives a path as people read it.
     """
 
     missions: Sequence[Candidate]
-    samples: Mapping[str, Series]
-    sources: Sequence[SignalSource]
-    of_files: Mapping[str, Series]
-    of_bags: Mapping[str, Series]
-    remarks: Sequence[str]
-    shown: Callable[[str], str]
-    with_timelines: bool
-    keeping: Keeping | None
-    limits: Limits = "one look"
+    samples: Mapping[str, Series] = NO_SERIES
+    sources: Sequence[SignalSource] = ()
+    of_files: Mapping[str, Series] = NO_SERIES
+    of_bags: Mapping[str, Series] = NO_SERIES
+    remarks: Sequence[str] = ()
+    with_timelines: bool = False
     with_measures: bool = False
+    keeping: Keeping | None = None
+    limits: Limits = "one look"
+    shown: Callable[[str], str] = shown
 
 
 class Running(Protocol):

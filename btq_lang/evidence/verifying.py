@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import side_path
-from btq_lang.evidence import verify, write
+from btq_lang.evidence import write
 from btq_lang.evidence.identity import Candidate
-from btq_lang.evidence.notes import (
-    ignored_columns,
-    missing_verdicts,
-    missions_with_errors,
-    other_times,
-)
-from btq_lang.evidence.readers import SUFFIXES, whole_bags
+from btq_lang.evidence.judging import Judging, Means, judge
+from btq_lang.evidence.notes import ignored_columns, missing_verdicts, missions_with_errors, other_times
+from btq_lang.evidence.readers import SUFFIXES, samples_of_bags, whole_bags
 from btq_lang.evidence.readers.bag import METADATA
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
@@ -27,11 +24,8 @@ from btq_lang.workspace.loader import IS_SPECIAL, absolute, collect, is_special,
 
 if TYPE_CHECKING:
     from btq_lang.evidence.judging import Running
-    from btq_lang.evidence.model import Series
-    from btq_lang.evidence.store.sets import Keeping
     from btq_lang.evidence.verdicts import Report
     from btq_lang.workspace.config import Project
-    from btq_lang.workspace.project_evidence import SignalSource
     from btq_lang.workspace.workspace import Workspace
 
 
@@ -96,7 +90,7 @@ def verify_logs(
     sources, of_files = signal_sources(project, shown(project.root), [mission], wrong)
     if wrong:
         raise ValueError("; ".join(wrong))
-    found = judged(readable, [mission], (signals or "", samples), sources, of_files, [path])
+    found = judged(readable, Means([mission], samples, sources, of_files), [path], signals or "")
     return replace(found, problems=(*problems, *(found.problems if readable else ())))
 
 
@@ -112,71 +106,74 @@ def logs_below(paths: Sequence[str], project: Project) -> tuple[Sequence[str], l
 
 def judged(
     logs: Sequence[str],
-    missions: Sequence[Candidate],
-    samples: tuple[str, Mapping[str, Series]],
-    sources: Sequence[SignalSource],
-    of_files: Mapping[str, Series],
+    means: Means,
     requested: Sequence[str],
-    *,
-    with_timelines: bool = False,
-    with_measures: bool = False,
+    file: str = "",
     jobs: int = 1,
-    keeping: Keeping | None = None,
     progress: Callable[[int, int], None] = lambda files, runs: None,
 ) -> Verification:
     """Judge missions, and add notes on what limits the verdicts.
 
     Args:
-        samples: the file that they are from, and the samples by signal or entry.
         requested: the missions as the command line names them; none: all that are known.
-        sources, of_files, with_timelines, with_measures, jobs, keeping, progress: as in `verify`.
+        file: the one that the samples are from.
+        jobs, progress: as in `verify`.
     """
-    file, series = samples
-    report = verify(
-        logs,
-        missions,
-        series,
-        shown,
-        sources,
-        of_files,
-        with_timelines=with_timelines,
-        with_measures=with_measures,
-        jobs=jobs,
-        keeping=keeping,
-        progress=progress,
-    )
-    read_from = [(file, each) for each in series.values()]
-    read_from += [(source.file, of_files[source.signal]) for source in sources if source.signal in of_files]
-    remarks = (*ignored_columns(file, series, missions), *other_times(read_from, report))
+    report = verify(logs, means, jobs, progress)
+    read_from = [(file, each) for each in means.samples.values()]
+    read_from += [(each.file, means.of_files[each.signal]) for each in means.sources if each.signal in means.of_files]
+    remarks = (*ignored_columns(file, means.samples, means.missions), *other_times(read_from, report))
     report = replace(report, remarks=(*remarks, *report.remarks))
-    return _with_problems(report, missions, requested)
+    return _with_problems(report, means.missions, requested)
 
 
-def judged_live(
-    running: Running,
-    address: str,
-    missions: Sequence[Candidate],
-    requested: Sequence[str],
-    *,
-    with_timelines: bool = False,
-    keeping: Keeping | None = None,
-) -> Verification:
+def verify(
+    logs: Sequence[str],
+    means: Means,
+    jobs: int = 1,
+    progress: Callable[[int, int], None] = lambda files, runs: None,
+) -> Report:
+    """Judge missions by logs, of which one that cannot be read is a problem of the report.
+
+    Args:
+        jobs: how many processes judge logs; the report is the same.
+        progress: called with how many logs have been read, and how many runs have been judged.
+    """
+    of_bags, remarks, bags = samples_of_bags(logs, means.sources)
+    means = replace(means, of_bags=of_bags, remarks=remarks)
+    judging = Judging(means)
+    wanted = [log for log in logs if log not in bags]
+    if jobs > 1 and len(wanted) > 1:
+        from btq_lang.evidence.parallel import judge_all
+
+        for number, found in enumerate(judge_all(wanted, means, jobs), start=1):
+            judging.add(found)
+            progress(number, judging.runs)
+    else:
+        for number, log in enumerate(wanted):
+            judging.add(judge(log, means, partial(_progress, progress, number, judging.runs)))
+    return judging.report()
+
+
+def _progress(progress: Callable[[int, int], None], files: int, runs: int, run: int) -> None:
+    progress(files, runs + run)
+
+
+def judged_live(running: Running, address: str, means: Means, requested: Sequence[str]) -> Verification:
     """Judge missions by what a running robot does, until its sessions end.
 
     Args:
         address: of the robot.
-        requested, with_timelines, keeping: as in `judged`.
+        requested: as in `judged`.
     """
-    from btq_lang.evidence.judging import Judging, Means, judge
-
     # The limits must hold at every look, for verdicts are looked at after every run.
-    means = Means(missions, {}, (), {}, {}, (), str, with_timelines, keeping, limits="every look")
+    means = replace(means, limits="every look", shown=str)
     judging = Judging(means)
     judging.add(judge(address, means, running=running))
     report = judging.report()
     if not (report.missions or report.foreign or report.problems):
         return Verification(report, (f"no robot answered at {address}, so there is nothing to judge",))
-    return _with_problems(report, missions, requested)
+    return _with_problems(report, means.missions, requested)
 
 
 def _with_problems(report: Report, missions: Sequence[Candidate], requested: Sequence[str]) -> Verification:

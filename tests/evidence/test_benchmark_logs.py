@@ -9,12 +9,13 @@ import pytest
 import robot_log
 from evidence_logs import btlog, write_db3
 
-from btq_lang.evidence import verify
+from btq_lang.evidence.judging import Means
 from btq_lang.evidence.verdicts import MissionVerdicts
+from btq_lang.evidence.verifying import verify
 
 
 def judged(robot: robot_log.Robot, rows: list[robot_log.Row], log: Path) -> MissionVerdicts:
-    report = verify([str(log)], [robot.mission], robot_log.battery(rows[-1][0]), str)
+    report = verify([str(log)], Means([robot.mission], robot_log.battery(rows[-1][0])))
     assert report.problems == ()
     (mission,) = report.missions
     return mission

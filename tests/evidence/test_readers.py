@@ -13,10 +13,11 @@ import pytest
 from evidence_logs import MAIN, MAIN_XML, START, Verify, btlog, rows, write_db3
 
 from btq_lang.commands.verdict_formats import FORMATS, write
-from btq_lang.evidence import verify as verify_logs
 from btq_lang.evidence.identity import Candidate
+from btq_lang.evidence.judging import Means
 from btq_lang.evidence.readers import read
 from btq_lang.evidence.runs import activations
+from btq_lang.evidence.verifying import verify
 from btq_lang.workspace.workspace import Workspace
 
 TWO_RUNS = "0 1R 2R 5 2S 3S 1S 2I 3I 1I 20 1R 2R 30 2F 1F 2I 1I"
@@ -35,7 +36,7 @@ UNNUMBERED = "the nodes of its tree are not numbered 1, 2, 3 … as BehaviorTree
 
 def problems(path: Path) -> tuple[str, ...]:
     """What cannot be read of a log; the rest is judged, and written in every form."""
-    report = verify_logs([str(path)], [MISSION], {}, lambda each: Path(each).name)
+    report = verify([str(path)], Means([MISSION], shown=lambda each: Path(each).name))
     for form in FORMATS:
         write(report, [MISSION], form, verbose=True)
     return report.problems

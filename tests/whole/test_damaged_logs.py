@@ -22,13 +22,14 @@ from by_day import of_the_day
 from evidence_bags import names_of, number, text, tree_log, write_bag
 from evidence_logs import MAIN, MAIN_XML, START, btlog, rows, write_db3
 
-from btq_lang.evidence import verify
 from btq_lang.evidence.identity import Candidate
+from btq_lang.evidence.judging import Means
 from btq_lang.evidence.model import NamedLog
 from btq_lang.evidence.readers import NotALog, read
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.runs import activations
+from btq_lang.evidence.verifying import verify
 from btq_lang.workspace.project_evidence import SignalSource
 from btq_lang.workspace.workspace import Workspace
 
@@ -107,7 +108,7 @@ def tried(file: Path) -> int:
             return 1
         return 0
     log = {"a.bb.jsonl": file.with_name("a.btlog"), "metadata.yaml": file.parent}.get(file.name, file)
-    report = verify([str(log)], [MISSION], {}, str, SOURCES)
+    report = verify([str(log)], Means([MISSION], sources=SOURCES, shown=str))
     assert len(report.problems) <= 1
     assert all(len(problem) > len(f"{log}: ") for problem in report.problems)
     return len(report.problems)
