@@ -5,12 +5,11 @@ needed.
 
     figure.py    what is drawn: boxes, and what is attached to them
     missions.py  a mission's trees as figures
-    folding.py   figures without folded parts
     layout.py    positions of the boxes: a tidy tree in linear time
     widths.py    widths of texts
     placing.py   a figure with the positions of its parts
     svg.py, dot.py, mermaid.py   the writers
-    picture.py   all of it, for the page beside a text
+    picture.py   all of it, for the page beside a text, where parts are folded
 """
 
 from __future__ import annotations

@@ -147,18 +147,17 @@ class _Part:
         """The line from the parent: along, across in the gap before this layer, along."""
         if parent is None:
             return ()
-        (x, y), (px, py) = at.middle, parent.at.middle
         if self._down:
-            turn = at.y - self._box_y - _LEVEL_GAP // 2
-            start, end = parent.at.y + parent.at.h, at.y
-            if abs(x - px) <= 1:  # positions are rounded
-                return (x, start), (x, end)
-            return (px, start), (px, turn), (x, turn), (x, end)
-        turn = at.x - self._box_x - _LEVEL_GAP // 2
-        start, end = parent.at.x + parent.at.w, at.x
-        if abs(y - py) <= 1:
-            return (start, y), (end, y)
-        return (start, py), (turn, py), (turn, y), (end, y)
+            (own, _), (above, _) = at.middle, parent.at.middle
+            start, end, turn = parent.at.y + parent.at.h, at.y, at.y - self._box_y
+        else:
+            (_, own), (_, above) = at.middle, parent.at.middle
+            start, end, turn = parent.at.x + parent.at.w, at.x, at.x - self._box_x
+        turn -= _LEVEL_GAP // 2
+        line: Line = ((own, start), (own, end))
+        if abs(own - above) > 1:  # positions are rounded
+            line = ((above, start), (above, turn), (own, turn), (own, end))
+        return line if self._down else tuple((y, x) for x, y in line)
 
     def _ties(self, at: Rectangle, notes: list[PlacedNote]) -> Line:
         if not notes:

@@ -118,21 +118,22 @@ def _box(placed: PlacedBox, above: str) -> Iterator[str]:
     state = f" {box.state}" if box.state else ""
     yield f'<g class="box {box.outline}{state}" id="{escape(box.key)}"{data}>'
     yield f"<title>{escape(box.text or box.title)}</title>"
-    yield from _opened(box.link)
+    if box.link:
+        yield f'<a href="{escape(box.link)}">'
     yield _outline(box.outline, at)
     top = at.y + (at.h - len(placed.lines) * LEADING) // 2 + 12
     for number, line in enumerate(placed.lines):
         kind, size = ("title", TITLE) if number == 0 else ("small", SMALL)
         yield f'<text class="{kind}" font-size="{size}" x="{x}" y="{top + number * LEADING}">{escape(line)}</text>'
-    yield from _closed(box.link)
-    yield "</g>"
+    yield from ("</a>", "</g>") if box.link else ("</g>",)
 
 
 def _note(placed: PlacedNote) -> Iterator[str]:
     note, at = placed.note, placed.at
     yield f'<g class="note {note.kind} {note.state}" data-note="{escape(note.key)}">'.replace(' "', '"')
     yield f"<title>{escape(note.text or note.title)}</title>"
-    yield from _opened(note.link)
+    if note.link:
+        yield f'<a href="{escape(note.link)}">'
     radius, left = 3, at.x + 8
     if note.kind == "quality" and len(placed.lines) == 1:
         radius, left = at.h // 2, at.x + (at.w - width(placed.lines[0], SMALL, bold=True)) // 2
@@ -141,18 +142,7 @@ def _note(placed: PlacedNote) -> Iterator[str]:
         kind = "title" if number == 0 else "small"
         y = at.y + 15 + number * LEADING
         yield f'<text class="{kind}" font-size="{SMALL}" x="{left}" y="{y}">{escape(line)}</text>'
-    yield from _closed(note.link)
-    yield "</g>"
-
-
-def _opened(link: str) -> Iterator[str]:
-    if link:
-        yield f'<a href="{escape(link)}">'
-
-
-def _closed(link: str) -> Iterator[str]:
-    if link:
-        yield "</a>"
+    yield from ("</a>", "</g>") if note.link else ("</g>",)
 
 
 def _outline(outline: str, at: Rectangle) -> str:
