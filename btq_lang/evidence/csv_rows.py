@@ -16,23 +16,17 @@ The columns, which later versions add to but do not change:
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator
 from typing import Final
 
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import VIOLATED, Report
-from btq_lang.render.spreadsheet import plain
+from btq_lang.render.spreadsheet import table
 
 
 def render(report: Report) -> str:
     """The verdicts, with a heading."""
-    out = io.StringIO()
-    writer = csv.DictWriter(out, _COLUMNS)
-    writer.writeheader()
-    writer.writerows({key: plain(value) for key, value in row.items()} for row in _rows(report))
-    return out.getvalue()
+    return table(_COLUMNS, _rows(report))
 
 
 def _rows(report: Report) -> Iterator[dict[str, str | float]]:

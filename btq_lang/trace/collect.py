@@ -22,8 +22,8 @@ from btq_lang.requirements.resolved import Requirements
 from btq_lang.syntax.tree import QualityDecl
 from btq_lang.trace.meanings import Meaning, Meanings
 from btq_lang.trace.overview import (
+    WAYS,
     At,
-    Clause,
     Evidence,
     NodeRow,
     Overview,
@@ -244,8 +244,8 @@ class _Collector:
             yield TreeRow(group[0].tree or "", rows[0].tree, tuple(row.key for row in rows), is_bare, drawn)
 
 
-def _with_details(box: Box, clauses_in_words: tuple[tuple[str, ...], str]) -> Box:
-    lines, state = clauses_in_words
+def _with_details(box: Box, details: tuple[tuple[str, ...], str]) -> Box:
+    lines, state = details
     return replace(box, lines=(*box.lines, *lines), text="; ".join((box.text, *lines)), state=state)
 
 
@@ -314,18 +314,9 @@ class _Quality:
         self.concerns: dict[str, None] = {}
 
     def row(self, measured: tuple[str, ...]) -> QualityRow:
-        meaning = self.meaning
-        concerns = tuple(self.concerns)
-        return QualityRow(
-            self.key,
-            self.name,
-            meaning.id,
-            meaning.characteristic,
-            meaning.definition,
-            self.at,
-            concerns,
-            tuple(dict.fromkeys(measured)),
-        )
+        id_, characteristic, definition = self.meaning.id, self.meaning.characteristic, self.meaning.definition
+        concerns, measured = tuple(self.concerns), tuple(dict.fromkeys(measured))
+        return QualityRow(self.key, self.name, id_, characteristic, definition, self.at, concerns, measured)
 
 
 # ---- single rows ----
@@ -440,24 +431,14 @@ def _totals(
     totals: list[TotalRow] = []
     for id_ in (*characteristics, None):
         mine = [row for row, characteristic in zip(rows, meant, strict=True) if characteristic == id_]
-        clauses: list[Clause] = [clause for row in mine for use in row.uses for clause in use.clauses]
+        clauses = [clause for row in mine for use in row.uses for clause in use.clauses]
         concerns = {key for each in quality_rows if each.characteristic == id_ for key in each.concerns}
         if id_ is None and not mine and not concerns:
             continue
         known = get(id_, edition) if id_ is not None else None
         name = known.name if known is not None else id_ or "without a characteristic"
         ways = [clause.way for clause in clauses]
-        totals.append(
-            TotalRow(
-                id_ or "",
-                name,
-                len(concerns),
-                len(mine),
-                ways.count("enforced"),
-                ways.count("monitored"),
-                ways.count("reviewed"),
-            )
-        )
+        totals.append(TotalRow(id_ or "", name, len(concerns), len(mine), *map(ways.count, WAYS)))
     return tuple(totals)
 
 

@@ -20,22 +20,16 @@ Injection"); programs that need the exact texts read the JSON.
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator
 from typing import Final
 
-from btq_lang.render.spreadsheet import plain
+from btq_lang.render.spreadsheet import table
 from btq_lang.trace.overview import At, Clause, Overview, RequirementRow
 
 
 def render(overview: Overview) -> str:
     """The overview as CSV, with a heading."""
-    out = io.StringIO()
-    writer = csv.DictWriter(out, COLUMNS, restval="")
-    writer.writeheader()
-    writer.writerows({key: plain(value) for key, value in row.items()} for row in _rows(overview))
-    return out.getvalue()
+    return table(COLUMNS, _rows(overview))
 
 
 def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
@@ -69,13 +63,8 @@ def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
             yield {"kind": "quality without requirement", **named}
     for node in overview.bare_nodes:
         yield {"kind": "node without quality", "holds_for": node.name, "tree": node.tree, **_source(node.at)}
-    for tree_row in overview.bare_trees:
-        yield {
-            "kind": "tree without quality",
-            "holds_for": tree_row.name,
-            "tree": tree_row.name,
-            **_source(tree_row.at),
-        }
+    for bare in overview.bare_trees:
+        yield {"kind": "tree without quality", "holds_for": bare.name, "tree": bare.name, **_source(bare.at)}
 
 
 def _requirement(each: RequirementRow, characteristic: str) -> dict[str, str | int]:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.graph.placing import place
 from btq_lang.graph.svg import STYLE, colours, part
 from btq_lang.render.page_style import PAGE_STYLE
-from btq_lang.trace.overview import At, NodeRow, Overview, RequirementRow, TreeRow
+from btq_lang.trace.overview import WAYS, At, NodeRow, Overview, RequirementRow, TreeRow
 from btq_lang.trace.page_parts import SCRIPT, TRACE_STYLE
 from btq_lang.trace.verdicts import VERDICT_STYLE, verdicts
 from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
@@ -73,7 +73,7 @@ def _navigation(overview: Overview, has_verdicts: bool) -> Iterator[str]:
     yield f'<nav aria-label="Sections"><ul>{links}</ul></nav>'
     yield '<form class="filter" hidden role="search" aria-label="Filter">'
     yield '<label>Show <input type="search" name="text" placeholder="a name, a node, a clause"></label>'
-    ways = "".join(f"<option>{way}</option>" for way in ("enforced", "monitored", "reviewed", "not attached"))
+    ways = "".join(f"<option>{way}</option>" for way in (*WAYS, "not attached"))
     yield f'<label>How <select name="way"><option value="">all</option>{ways}</select></label>'
     options = "".join(
         f'<option value="{escape(each.id or "-")}">{escape(each.name)}</option>'

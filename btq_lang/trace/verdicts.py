@@ -10,7 +10,7 @@ from html import escape
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.sentences import headline, result
-from btq_lang.evidence.verdicts import VIOLATED, WORST_FIRST
+from btq_lang.evidence.verdicts import OUTCOMES, VIOLATED, WORST_FIRST
 from btq_lang.evidence.wording import duration, quantity, timestamp
 from btq_lang.util.text import counted
 
@@ -158,7 +158,7 @@ def _timeline(timeline: Timeline) -> Iterator[str]:
         yield f'<tr><th scope="row" style="padding-left: {inset:g}rem">{escape(path)}</th><td>'
         for bar in bars:
             at = f"left: {bar.begin / length:.3%}; width: {(bar.end - bar.begin) / length:.3%}"
-            title = f"{_CAME_TO[bar.outcome]}, {duration(bar.end - bar.begin)} from {duration(bar.begin)} on"
+            title = f"{OUTCOMES[bar.outcome]}, {duration(bar.end - bar.begin)} from {duration(bar.begin)} on"
             yield f'<span class="bar {bar.outcome}" style="{at}" title="{title}"></span>'
         yield "</td></tr>"
     yield '</tbody><tfoot><tr><td></td><td class="ends">'
@@ -171,7 +171,6 @@ _GROUND: Final = 92
 _TEXT: Final = 13
 _EDGE: Final = 6
 _DEEPEST: Final = 12  # levels that are indented
-_CAME_TO: Final = {"S": "succeeded", "F": "failed", "H": "halted", "O": "interrupted"}
 
 VERDICT_STYLE: Final = """\
 .verdicts td:first-child { white-space: nowrap; }

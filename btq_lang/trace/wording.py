@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.trace.overview import Overview, QualityRow, RequirementRow, Use
+from btq_lang.trace.overview import WAYS, Overview, QualityRow, RequirementRow, Use
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def summary(overview: Overview) -> str:
     """All counts, in a sentence."""
-    ways = {way: sum(getattr(total, way) for total in overview.totals) for way in ("enforced", "monitored", "reviewed")}
+    ways: dict[str, int] = {way: sum(getattr(total, way) for total in overview.totals) for way in WAYS}
     ways["without a node"] = len(overview.loose)
     held = ", ".join(f"{number} {way}" for way, number in ways.items() if number)
     sentence = f"{counted(len(overview.requirements), 'requirement')}"
