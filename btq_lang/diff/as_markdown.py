@@ -46,8 +46,8 @@ def _change(comparison: Comparison, change: Change) -> Iterator[str]:
     what, _, more = happened.partition(" ")
     said = [thing, code(name) if name else "", f"**{what}**", _more(more), f"({code(comparison.line(change))})"]
     yield f"- {' '.join(word for word in said if word)}"
-    for line in lines(change):
-        yield f"  - {_WORDS[line.sign]}{code(line.text)}"
+    for sign, text in lines(change):
+        yield f"  - {_WORDS[sign]}{code(text)}"
 
 
 def _more(more: str) -> str:

@@ -41,5 +41,5 @@ def _change(comparison: Comparison, change: Change, paint: Paint) -> Iterator[st
     sign = SIGNS[change.what]
     said = " ".join(word for word in (sign, thing, name, happened) if word)
     yield f"{paint(sign, said)}  {paint('gutter', comparison.line(change))}"
-    for line in lines(change):
-        yield "    " + paint(line.sign, f"{line.sign} {line.text}")
+    for sign, text in lines(change):
+        yield "    " + paint(sign, f"{sign} {text}")

@@ -26,8 +26,7 @@ class Detail(Record):
 
     Attributes:
         aspect: `station`, `name`, `kind`, `takes`, `quality safety`, `requirement rq1`, `port battery`.
-        old: the old value, in one line; None if there was none.
-        new: the new value, likewise.
+        old, new: its value, in one line; None if there is none.
     """
 
     aspect: str

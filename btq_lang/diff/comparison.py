@@ -118,15 +118,12 @@ def without_made_models(comparison: Comparison) -> Comparison:
 
 
 def _manual_edits(old: Side, new: Side) -> Iterator[Change]:
-    known = (
-        {(each.name, each.contents) for each in old.manual_edits},
-        {(each.name, each.contents) for each in new.manual_edits},
-    )
+    before, after = ({(each.name, each.contents): each for each in side.manual_edits} for side in (old, new))
     for each in old.manual_edits:
-        if (each.name, each.contents) not in known[1]:
+        if (each.name, each.contents) not in after:
             yield Change("changed", GUARD, each.name, each.place, None, (Detail("by hand", each.message, None),))
     for each in new.manual_edits:
-        if (each.name, each.contents) not in known[0]:
+        if (each.name, each.contents) not in before:
             yield Change("changed", GUARD, each.name, None, each.place, (Detail("by hand", None, each.message),))
 
 

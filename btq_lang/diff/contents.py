@@ -62,7 +62,6 @@ class Part:
         category: `Action`, `Condition`, … if it is written.
         values: all else, by aspect: `station`, `quality safety`, `requirement rq1`, `tag heavy`.
         requirements: the IDs of the attached ones.
-        children: its nodes.
     """
 
     __slots__ = ("category", "children", "kind", "name", "place", "requirements", "target", "values", "word")

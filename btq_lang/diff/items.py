@@ -5,6 +5,7 @@ One invariant: things are matched by name; those with equal contents and another
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Sequence
 from typing import Final
 
@@ -55,7 +56,7 @@ def item_changes(
             values = {**values, MAIN: Value(main, values[MAIN].text)}
         differences = [*details(values, item.values)]
         if thing == "requirement":
-            counts = attached[0].get(was.name, 0), attached[1].get(name, 0)
+            counts = attached[0][was.name], attached[1][name]
             if (counts[0] == 0) != (counts[1] == 0):
                 differences.append(Detail("attached to", _nodes(counts[0]), _nodes(counts[1])))
         if differences:
@@ -113,12 +114,8 @@ def _by_content(items: Iterable[Item]) -> dict[Hashable, list[Item]]:
     return found
 
 
-def _attached(nodes: Iterable[Part]) -> dict[str, int]:
-    counts: dict[str, int] = {}
-    for node in nodes:
-        for name in dict.fromkeys(node.requirements):
-            counts[name] = counts.get(name, 0) + 1
-    return counts
+def _attached(nodes: Iterable[Part]) -> Counter[str]:
+    return Counter(name for node in nodes for name in dict.fromkeys(node.requirements))
 
 
 def _nodes(number: int) -> str:

@@ -189,10 +189,8 @@ def _nodes(forest: Forest, top: int) -> list[int]:
 def _identical(old: Forest, new: Forest, left: range, right: range) -> None:
     """Pair subtrees that are identical and occur once on either side; a larger one precedes what is in it."""
     numbers = Counter(old.whole[index] for index in left)
-    places: dict[int, int] = {}
     others = Counter(new.whole[index] for index in right)
-    for index in right:
-        places[new.whole[index]] = index
+    places = {new.whole[index]: index for index in right}
     for index in left:
         whole = old.whole[index]
         if old.match[index] < 0 and numbers[whole] == 1 and others.get(whole) == 1 and new.match[places[whole]] < 0:

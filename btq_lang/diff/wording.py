@@ -5,11 +5,11 @@ One invariant: the words are complete; colour and marks add nothing.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import Final
 
 from btq_lang.diff.changes import Change, Detail
-from btq_lang.util.record import Record
 from btq_lang.util.text import counted
 
 SIGNS: Final = {"added": "+", "removed": "-", "moved": ">", "changed": "~", "renamed": "~"}
@@ -31,13 +31,6 @@ _IN_WORDS: Final = ("title", "quality", "attached to", "category", "kind", "tree
 _MOST: Final = 3  # names in a list
 
 
-class Line(Record):
-    """A line below a headline; sign: `+`, `-` or `~`."""
-
-    sign: str
-    text: str
-
-
 def headline(change: Change) -> tuple[str, str, str]:
     """The thing, its name, and what happened to it."""
     if change.what == "renamed":
@@ -52,37 +45,32 @@ def headline(change: Change) -> tuple[str, str, str]:
     return change.thing, change.name.removeprefix("apply ") if change.thing == "apply" else change.name, " ".join(words)
 
 
-def lines(change: Change) -> Iterator[Line]:
-    """The differences."""
+def lines(change: Change) -> Iterator[tuple[str, str]]:
+    """The differences, each with its sign: `+`, `-` or `~`."""
     for detail in change.details:
         yield from _lines(change, detail)
 
 
 def summary(changes: Iterable[Change]) -> str:
     """`2 requirements changed, 1 node added`."""
-    counts: dict[tuple[str, str], int] = {}
-    for change in changes:
-        counts[change.thing, change.what] = counts.get((change.thing, change.what), 0) + 1
+    counts = Counter((change.thing, change.what) for change in changes)
     return ", ".join(f"{number} {_plural(thing, number)} {what}" for (thing, what), number in counts.items())
 
 
-def _lines(change: Change, detail: Detail) -> Iterator[Line]:
+def _lines(change: Change, detail: Detail) -> Iterator[tuple[str, str]]:
     kind, _, name = detail.aspect.partition(" ")
+    sides = [(sign, text) for sign, text in (("-", detail.old), ("+", detail.new)) if text is not None]
     if change.thing in ("node", "tree") and kind in _CLAUSES and name:
-        for sign, text in (("-", detail.old), ("+", detail.new)):
-            if text is not None:
-                yield Line(sign, f"{_CLAUSES[kind]} {name}{f'({text})' if text not in ('', 'attached') else ''}")
+        for sign, text in sides:
+            yield sign, f"{_CLAUSES[kind]} {name}{f'({text})' if text not in ('', 'attached') else ''}"
     elif kind == "port" or (change.thing == "requirement" and detail.aspect not in _IN_WORDS):  # they are whole lines
-        for sign, text in (("-", detail.old), ("+", detail.new)):
-            if text is not None:
-                yield Line(sign, text or detail.aspect)
+        yield from ((sign, text or detail.aspect) for sign, text in sides)
     elif detail.aspect in _IN_WORDS or (detail.old is not None and detail.new is not None):
-        sign = "-" if detail.new is None else "+" if detail.old is None else "~"
-        said = " -> ".join(text for text in (detail.old, detail.new) if text is not None)
-        yield Line(sign, f"{detail.aspect}: {said}")
+        sign = sides[0][0] if len(sides) == 1 else "~"
+        yield sign, f"{detail.aspect}: {' -> '.join(text for _, text in sides)}"
     else:
-        sign, text = ("-", detail.old) if detail.new is None else ("+", detail.new)
-        yield Line(sign, f"{detail.aspect} = {text}" if text not in (None, "") else detail.aspect)
+        ((sign, text),) = sides
+        yield sign, f"{detail.aspect} = {text}" if text else detail.aspect
 
 
 def _row(names: tuple[str, ...]) -> str:
