@@ -19,7 +19,6 @@ class AttributeKind(Record):
     Attributes:
         group: pre: a pre-condition; post: a post-condition; engine: others that the engine reads; tool: those it
             ignores.
-        doc: one line.
     """
 
     name: str

@@ -98,7 +98,6 @@ class PortKind(Record):
         default: the value of an absent port; None if there is none.
         required: whether the engine reports its absence, at load or when the node is ticked.
         unit: the unit of a number in it, if known.
-        doc: one line.
         role: of its value in the flow of its node.
         removes: whether the node removes the entry that it names.
         literal: the type as which a literal is read, if not `type`.
@@ -125,11 +124,9 @@ class NodeKind(Record):
     Attributes:
         tag: its XML tag, which is also its name in a file.
         children: minimum and maximum number of children; None: any number.
-        doc: one line.
-        semantics: what it does, in a paragraph.
+        doc, semantics: what it does, in a line and in a paragraph.
         symbols: its symbols, the canonical one first.
         aliases: other words for it.
-        flow: what it does with its children.
         reactive: whether it begins with its first child at every tick, and halts a running one that it does not reach.
         keeps_place: whether it stays at its child after a failure or a halt.
         inspects_children: whether the engine looks up the tags of its children at load, and refuses what
@@ -167,10 +164,7 @@ class NodeKind(Record):
 
     def port_for(self, role: Role) -> PortKind | None:
         """Its port of that role."""
-        for port in self.ports:
-            if port.role == role:
-                return port
-        return None
+        return next((port for port in self.ports if port.role == role), None)
 
     @property
     def pauses(self) -> bool:

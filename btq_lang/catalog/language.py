@@ -19,7 +19,6 @@ class Phrase(Record):
 
     Attributes:
         part: the group that it belongs to: `claim`, `part of a model` …
-        form: how it is written.
         brief: shown beside it in a list.
         meaning: what it means; for a claim, when it is violated.
     """

@@ -10,41 +10,23 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.engine_nodes import ENGINE_NODES
-from btq_lang.catalog.kinds import Category, Direction, Execution, NodeKind, PortKind
+from btq_lang.catalog.kinds import NodeKind as NodeKind
+from btq_lang.catalog.kinds import PortKind as PortKind
 from btq_lang.catalog.versions import at_least
-from btq_lang.catalog.words import KNOWN_WORDS, OLD_PORTS, PLACEHOLDERS, KnownWord
+from btq_lang.catalog.words import KNOWN_WORDS as KNOWN_WORDS
+from btq_lang.catalog.words import OLD_PORTS as OLD_PORTS
+from btq_lang.catalog.words import PLACEHOLDERS as PLACEHOLDERS
+from btq_lang.catalog.words import KnownWord as KnownWord
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Flow
-
-__all__ = [
-    "BUILTINS",
-    "KNOWN_WORDS",
-    "OLD_PORTS",
-    "PLACEHOLDERS",
-    "Category",
-    "Direction",
-    "Execution",
-    "KnownWord",
-    "NodeKind",
-    "PortKind",
-    "available",
-    "inspects_children",
-    "is_by_children",
-    "lookup",
-    "port_type",
-    "spellings",
-    "tags_of",
-    "xml_tag",
-]
 
 
 def lookup(word: str, quoted: bool = False, child_count: int | None = None) -> NodeKind | None:
     """The built-in that a node's kind names; None for a custom node.
 
     Args:
-        quoted: whether the kind is in quotes.
-        child_count: number of the node's children; it chooses among kinds that share a word, the nearest if none fits.
+        child_count: number of the node's children: it chooses among kinds that share a word, the nearest if none fits.
     """
     if quoted:
         return BUILTINS.get(word)

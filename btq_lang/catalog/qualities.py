@@ -12,7 +12,7 @@ understood is an alias (of the whole name or its front), another edition's name,
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Final, Literal, TypeAlias
 
 from btq_lang.catalog.quality_model import AI, MODELS, NAMES, NO_EQUAL, ROBOTICS, SUCCESSORS
@@ -88,8 +88,7 @@ def find(words: tuple[str, ...], edition: Edition = DEFAULT_EDITION) -> QualityM
     if exact is not None:
         return QualityMatch("exact", exact, explanation=_remark(keys))
     if keys in _PAPER_NAMES:
-        paper = get(_PAPER_NAMES[keys], edition)
-        return QualityMatch("exact", paper)
+        return QualityMatch("exact", get(_PAPER_NAMES[keys], edition))
     match = _find_word(words[0], keys[0], index) if len(words) == 1 else _find_path(words, keys, index)
     return match or QualityMatch("unknown", near=_near(words, keys, index))
 
@@ -277,11 +276,10 @@ class _Index:
 
 def _of_edition(edition: Edition) -> Iterable[Quality]:
     for its, kind, source, model in MODELS:
-        if its == edition:
-            for id_, definition, below in model:
-                yield Quality(id_, _name(id_), definition, None, kind, (edition,), source)
-                for part, part_definition in below:
-                    yield Quality(f"{id_}.{part}", _name(part), part_definition, id_, kind, (edition,), source)
+        for id_, definition, below in model if its == edition else ():
+            yield Quality(id_, _name(id_), definition, None, kind, (edition,), source)
+            for part, part_definition in below:
+                yield Quality(f"{id_}.{part}", _name(part), part_definition, id_, kind, (edition,), source)
     both: tuple[Edition, ...] = ("2011", "2023")
     for id_, definition, nearest, measures in ROBOTICS:
         name = id_.replace("-", " ")
@@ -300,14 +298,10 @@ def _american(key: str) -> str:
     return key
 
 
-_indexes: Final[dict[Edition, _Index]] = {}
-
-
+@cache
 def _index(edition: Edition) -> _Index:
     """An edition's index, made on demand: most files need one edition, many none."""
-    if edition not in _indexes:
-        _indexes[edition] = _Index(edition)
-    return _indexes[edition]
+    return _Index(edition)
 
 
 _BLANKS: Final = dict.fromkeys(map(ord, "-_ \t\r\n"))

@@ -11,6 +11,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from itertools import accumulate
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from btq_lang.util.text import Span
@@ -54,8 +55,9 @@ class Places:
         """The pieces in the lines of a span of the generated text, and the last one before them."""
         if not self._lines or self._located is None:
             return self.pieces
-        first = bisect_left(self._marks, bisect_right(self._starts, span.start) - 1, key=_line)
-        end = bisect_right(self._marks, bisect_right(self._starts, span.end) - 1, lo=first, key=_line)
+        line = itemgetter(0)
+        first = bisect_left(self._marks, bisect_right(self._starts, span.start) - 1, key=line)
+        end = bisect_right(self._marks, bisect_right(self._starts, span.end) - 1, lo=first, key=line)
         return self._located(self._marks[max(first - 1, 0) : end], self._starts)
 
     def made(self, offset: int, exact: bool = True) -> int | None:
@@ -74,8 +76,8 @@ class Places:
     def containing(self, span: Span) -> Sequence[Piece]:
         """The pieces around a span of the generated text: more than one only if some are empty."""
         pieces = self._near(span)
-        first = bisect_left(pieces, span.end, key=_end)
-        return pieces[first : bisect_right(pieces, span.start, lo=first, key=_begin)]
+        first = bisect_left(pieces, span.end, key=_END)
+        return pieces[first : bisect_right(pieces, span.start, lo=first, key=_BEGIN)]
 
     def __reduce__(self) -> tuple[object, ...]:
         return Places, (self.pieces, (), _as_they_are)
@@ -87,10 +89,10 @@ class Places:
         the nearest one before it, or to the start.
         """
         pieces = self._near(span)
-        first = bisect_right(pieces, span.start, key=_end)
+        first = bisect_right(pieces, span.start, key=_END)
         if first < len(pieces) and pieces[first][0] == pieces[first][1] == span.start:
             return Span(*pieces[first][2:])
-        last = bisect_left(pieces, max(span.end, span.start + 1), key=_begin) - 1
+        last = bisect_left(pieces, max(span.end, span.start + 1), key=_BEGIN) - 1
         if last < first:
             before = max(first - 1, 0)
             return Span(*pieces[before][2:]) if pieces else Span(0, 0)
@@ -118,13 +120,4 @@ def _is_same(piece: Piece) -> bool:
     return end - start == original_end - original_start
 
 
-def _line(mark: Sequence[Any]) -> Any:
-    return mark[0]
-
-
-def _begin(piece: Piece) -> int:
-    return piece[0]
-
-
-def _end(piece: Piece) -> int:
-    return piece[1]
+_BEGIN, _END = itemgetter(0), itemgetter(1)

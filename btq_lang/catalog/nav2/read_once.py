@@ -52,21 +52,12 @@ SET_BEFORE: Final = ENTRIES.keys() - {"goal", "goals", "path", "waypoint_statuse
 
 
 def is_read_once(distribution: str, node: str, port: str, ports: Container[str]) -> bool:
-    """Whether a node reads an input only when the tree is created.
-
-    Args:
-        ports: all ports of the node.
-    """
+    """Whether a node with these ports reads an input only when the tree is created."""
     letter = distribution[0]
     if letter in READ_ONCE.get(node, {}).get(port, ""):
         return True
     if port == "service_name":
         return letter in "hij"
     # Nodes of actions read it once; nodes of services, from Kilted on, each time that they start.
-    return port == "server_name" or (
-        port == "server_timeout" and ("server_name" in ports or _is_of_service(letter, ports))
-    )
-
-
-def _is_of_service(letter: str, ports: Container[str]) -> bool:
-    return letter in "hij" and "service_name" in ports
+    is_of_service = letter in "hij" and "service_name" in ports
+    return port == "server_name" or (port == "server_timeout" and ("server_name" in ports or is_of_service))
