@@ -14,7 +14,8 @@ from btq_lang.btcpp.outputs import as_xml
 from btq_lang.checks import findings
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.json_document import render
-from btq_lang.evidence.verifying import judged
+from btq_lang.evidence.judging import Means
+from btq_lang.evidence.verifying import verify
 from btq_lang.evidence.written_verdicts import read_verdicts
 from btq_lang.ide.verdicts import Evidence, verdict_findings
 from btq_lang.util.text import LineIndex
@@ -33,7 +34,7 @@ def assert_marked_by_log(page: str, text: str, folder: Path) -> None:
     (folder / "run.btlog").write_bytes(btlog(xml, rows(log["rows"])))
     mission = Candidate(workspace, "main.btq", "main", None)
     logs = [str(folder / "run.btlog")]
-    report = judged(logs, [mission], ("", {}), (), {}, (), with_measures=True).report
+    report = verify(logs, Means([mission], with_measures=True))
     (found,) = read_verdicts(render(report))
     seen = verdict_findings(workspace, "main.btq", Evidence(str(folder), {"main.btq": found}))
     shown: Announced = Counter(

@@ -14,6 +14,7 @@ from groot2_robot import KEPT, Publisher
 from btq_lang.cli import main
 from btq_lang.commands.candidates import candidates
 from btq_lang.evidence.json_document import render
+from btq_lang.evidence.judging import Means
 from btq_lang.evidence.model import GAP, PAUSE, Session
 from btq_lang.evidence.readers import read
 from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Notice, Sampled
@@ -318,7 +319,7 @@ def test_a_log_judged_live_has_the_verdicts_of_its_file(
 
     news: list[object] = []
     watched = Watched(sessions_of(events(), lambda text: watched.tell(text)), "tcp://robot:1667", news.append)
-    found = judged_live(watched, "tcp://robot:1667", candidates([str(mission)], (), []), [str(mission)])
+    found = judged_live(watched, "tcp://robot:1667", Means(candidates([str(mission)], (), [])), [str(mission)])
     live = json.loads(render(found.report))
     assert found.problems == ()
     assert live["runs"] == of_file["runs"] == 200

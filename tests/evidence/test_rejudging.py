@@ -17,12 +17,13 @@ from btq_lang.evidence.edges import edge_of
 from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.identity import Candidate, join
 from btq_lang.evidence.json_document import render
+from btq_lang.evidence.judging import Means
 from btq_lang.evidence.margins import Margins
 from btq_lang.evidence.model import Session
 from btq_lang.evidence.outline import demands, outline
 from btq_lang.evidence.rejudging import shown_now
 from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report
-from btq_lang.evidence.verifying import judged as judged_logs
+from btq_lang.evidence.verifying import verify
 from btq_lang.evidence.written_verdicts import WrittenMission, read_verdicts
 
 KEPT, VIOLATED = 0, 1
@@ -152,7 +153,7 @@ def test_edited_odds_and_scopes(before: str, after: str, seen: tuple[object, ...
     old, new = (Candidate(workspace_of({"main.btq": text}), "main.btq", "main", None) for text in texts)
     (tmp_path / "run.btlog").write_bytes(btlog(MAIN_XML, rows("0 1R 2R 20 2S 3R 60 3S 1S 1I 100 1R 2R 140 2F 1F")))
     log = [str(tmp_path / "run.btlog")]
-    (mission,) = judged_logs(log, [old], ("", {}), (), {}, (), with_measures=True).report.missions
+    (mission,) = verify(log, Means([old], with_measures=True)).missions
     (shown,) = shown_now(new.requirements, written(mission).requirements)
     verdict = shown.verdict
     assert (None if verdict is None else (verdict.verdict, verdict.counted, verdict.violated)) == seen
