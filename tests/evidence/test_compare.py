@@ -24,7 +24,7 @@ SCHEMA = json.loads(
     (Path(__file__).parents[2] / "btq_lang/evidence/compare/comparison.schema.json").read_text(encoding="utf-8")
 )
 Run = tuple[float, float, bool]  # seconds of Move, seconds of Dock, whether Dock succeeded
-CLAUSE = ("quick", "Be quick", "Move takes at most 12 s", "Move", "", "activations", "s")
+QUICK = ("quick", "Be quick")
 
 TABLE = (
     "main: 60 runs of v1, 50 runs of v2, durations compared by runs\n"
@@ -65,13 +65,14 @@ FEW = (
 )
 
 
-def keep(store: Path, label: str, runs: Sequence[Run], robot: str = "") -> None:
-    """Keep runs of a mission of two nodes as one log."""
+def keep(store: Path, label: str, runs: Sequence[Run], robot: str = "", bound: float = 12) -> None:
+    """Keep runs of a mission of two nodes as one log, judged by a bound in seconds."""
     folder = store / f"{len([*store.glob('*')]):064x}"
     folder.mkdir(parents=True)
     tables: dict[str, list[tuple[object, ...]]] = {name: [] for name in ROWS}
     of = ("main", robot)
-    tables["clauses"].append((*of, 0, *CLAUSE, *[None] * 7, True, 0, ""))
+    clause = (*QUICK, f"Move takes at most {bound:g} s", "Move", "", "activations", "s")
+    tables["clauses"].append((*of, 0, *clause, *[None] * 7, True, 0, ""))
     for number, (move, dock, succeeded) in enumerate(runs, start=1):
         begin = number * 60_000_000
         middle, end = begin + round(move * 1e6), begin + round((move + dock) * 1e6)
@@ -81,8 +82,8 @@ def keep(store: Path, label: str, runs: Sequence[Run], robot: str = "") -> None:
             (*of, number, 2, "Move::2", "Move", "Move", True, begin, middle, "succeeded", "exact")
         )
         tables["activations"].append((*of, number, 3, "Dock::3", "Dock", "Dock", True, middle, end, outcome, "exact"))
-        verdict, at = ("violated", middle) if move > 12 else ("satisfied", None)
-        tables["verdicts"].append((0, number, "Move::2", begin, middle, verdict, True, at, move, 12.0, None))
+        verdict, at = ("violated", middle) if move > bound else ("satisfied", None)
+        tables["verdicts"].append((0, number, "Move::2", begin, middle, verdict, True, at, move, bound, None))
     for name, found in tables.items():
         with open(file_of(str(folder), name), "w", encoding="utf-8", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows(found)
@@ -142,6 +143,31 @@ def test_a_single_violation_may_be_chance(tmp_path: Path) -> None:
     assert (code, errors) == (1, "")
     line = "  newly violated  quick  Be quick  was satisfied, 0 of 50 → 1 of 50, which chance may explain"
     assert line in output.splitlines()
+
+
+def test_an_edited_bound_is_no_change_of_the_robot(tmp_path: Path) -> None:
+    """The verdicts of both sides are named, and what was measured is compared under the later clause."""
+    keep(tmp_path / "kept", "a", [(10, 5, True), (11, 5, True)] * 30, bound=12)
+    keep(tmp_path / "kept", "b", [(10, 5, True), (11, 5, True)] * 30, bound=10.5)
+    code, output, errors = run_btq("compare", "kept", "a", "b", cwd=tmp_path)
+    assert (code, errors) == (0, "")
+    assert output == (
+        "main: 60 runs of a, 60 runs of b, durations compared by runs\n"
+        "\n"
+        "8 of 8 comparisons without a change that chance does not explain\n"
+        "the bound of quick at Move was changed from Move takes at most 12 s (0 of 60 violated) to"
+        " Move takes at most 10.5 s (30 of 60 violated), so this says nothing about the robots\n"
+    )
+    _, output, _ = run_btq("compare", "kept", "b", "a", "--format", "json", cwd=tmp_path)
+    document = json.loads(output)
+    assert list(violations(document, SCHEMA)) == []
+    (found,) = document["missions"]
+    texts = {"before": "Move takes at most 10.5 s", "after": "Move takes at most 12 s"}
+    of = {"requirement": "quick", "node": "Move"}
+    assert found["edited"] == [{**of, **texts, "violated": [30, 0], "counted": [60, 60]}]
+    assert (found["newly"], found["no_longer"]) == ([], [])
+    compared = [(each["clause"], each["what"]) for each in found["changes"] if each["requirement"]]
+    assert compared == [("Move takes at most 12 s", "median"), ("Move takes at most 12 s", "p95")]
 
 
 def test_json_is_as_its_schema_says(changed: Path) -> None:

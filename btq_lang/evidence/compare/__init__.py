@@ -4,6 +4,7 @@ One invariant: only what chance hardly explains is called a change, whatever the
 
     questions.py    what is asked of the store, as SQL
     chance.py       how likely a difference is without a change
+    requirements.py what changed in the verdicts on requirements
     comparison.py   what changed, as data
     words.py        a change in words
     table.py, json_document.py, markdown.py   the writers

@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 from btq_lang.catalog.units import parse_unit
 from btq_lang.evidence.compare import questions
 from btq_lang.evidence.compare.chance import LEVEL, Shuffles, fisher, holm, is_too_few, shuffles_for
-from btq_lang.evidence.store.queries import only
-from btq_lang.evidence.store.summary import summary
+from btq_lang.evidence.compare.requirements import edited, turned, verdicts
 from btq_lang.evidence.store.tables import quoted
 from btq_lang.evidence.verdicts import VIOLATED
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.compare.requirements import Edited, Newly, Verdicts
+
     Ask: TypeAlias = Callable[[str], Sequence[Mapping[str, Any]]]
     Key: TypeAlias = tuple[str, str, str]  # requirement, clause, node
     Unit: TypeAlias = tuple[str, str, Any]  # side, stratum, and which of these
@@ -56,24 +57,6 @@ class Change(Record):
     finding: Finding
 
 
-class Newly(Record):
-    """A requirement that only one side violates.
-
-    Attributes:
-        before, after: the verdict of each side.
-        violated, counted: how many judgements of each side are violations, and how many count.
-        may_be_chance: whether chance may explain it: of the runs of both sides, no more are violated than by chance.
-    """
-
-    id: str
-    title: str
-    before: str
-    after: str
-    violated: tuple[int, int]
-    counted: tuple[int, int]
-    may_be_chance: bool
-
-
 class Comparison(Record):
     """What changed in a mission.
 
@@ -84,6 +67,7 @@ class Comparison(Record):
         group: how many runs are shuffled together; 1 without groups.
         one_sided: how many nodes were active on each side and not on the other, so that nothing compares them.
         newly, no_longer: the requirements that only the second side violates, and only the first.
+        edited: the clauses whose bounds differ, so that their verdicts are no changes.
         changes: all that was compared.
     """
 
@@ -95,6 +79,7 @@ class Comparison(Record):
     one_sided: tuple[int, int]
     newly: tuple[Newly, ...]
     no_longer: tuple[Newly, ...]
+    edited: tuple[Edited, ...]
     changes: tuple[Change, ...]
 
     @property
@@ -122,17 +107,19 @@ def compare(ask: Ask, by: str, sides: tuple[str, str]) -> tuple[Comparison, ...]
     runs: dict[str, dict[str, Mapping[str, Any]]] = {}
     for row in ask(questions.RUNS.format(**words)):
         runs.setdefault(row["mission"], {})[row["side"]] = row
-    missions = [_Mission(ask, words, sides, name, rows) for name, rows in runs.items() if len(rows) == len(sides)]
+    before, after = (verdicts(ask, by, side) for side in sides)
+    missions = [
+        _Mission(ask, words, sides, name, rows, (before[name], after[name]))
+        for name, rows in runs.items()
+        if len(rows) == len(sides)
+    ]
     if not missions:
         raise Unknown(f"no mission was run with both {sides[0]} and {sides[1]}")
     number = sum(mission.comparisons for mission in missions)
     found = [mission.changes(number) for mission in missions]
     adjusted = iter(holm([each.p for changes in found for each in changes]))
     judged = [tuple(_judged(each, next(adjusted)) for each in changes) for changes in found]
-    turned = _turned(ask, by, sides)
-    return tuple(
-        mission.result(turned.get(mission.name, ()), changes) for mission, changes in zip(missions, judged, strict=True)
-    )
+    return tuple(mission.result(changes) for mission, changes in zip(missions, judged, strict=True))
 
 
 class _Mission:
@@ -145,8 +132,11 @@ class _Mission:
         sides: tuple[str, str],
         name: str,
         runs: Mapping[str, Mapping[str, Any]],
+        judged: tuple[Verdicts, Verdicts],
     ) -> None:
-        self.name: Final = name
+        self._name: Final = name
+        self._edited: Final = edited(*judged)
+        self._turned: Final = turned(*judged, self._edited)
         self._sides: Final = sides
         self._runs: Final = (runs[sides[0]]["runs"], runs[sides[1]]["runs"])
         robots = set(runs[sides[0]]["robots"]), set(runs[sides[1]]["robots"])
@@ -157,6 +147,7 @@ class _Mission:
         by_run = questions.BY_RUN.format(by=words["by"], stratum=stratum, size=self._size)
         unit = "robot" if self._over == "robots" else by_run
         words = {**words, "mission": quoted(name), "stratum": stratum, "unit": unit}
+        words["clause"] = questions.clause_of(self._edited)
 
         def asked(question: str) -> Sequence[Mapping[str, Any]]:
             return ask(question.format(**words))
@@ -200,24 +191,23 @@ class _Mission:
             found.append(Change(*key, "failures", "%", *shares, counts, failed, p, too_few, ""))
         return found
 
-    def result(self, turned: Sequence[Newly], changes: tuple[Change, ...]) -> Comparison:
+    def result(self, changes: tuple[Change, ...]) -> Comparison:
         """The comparison, with p-values after Holm."""
         tested: dict[str, float] = {}
         for change in changes:
             if change.failed is not None:
                 tested[change.requirement] = min(change.p, tested.get(change.requirement, 1.0))
-        turned = [replace(each, may_be_chance=tested.get(each.id, 0.0) > LEVEL) for each in turned]
-        newly = tuple(each for each in turned if each.after == VIOLATED)
-        no_longer = tuple(each for each in turned if each.after != VIOLATED)
+        found = [replace(each, may_be_chance=tested.get(each.id, 0.0) > LEVEL) for each in self._turned]
         return Comparison(
-            mission=self.name,
+            mission=self._name,
             runs=self._runs,
             robots=self._robots,
             over=self._over,
             group=self._size,
             one_sided=self._one_sided,
-            newly=newly,
-            no_longer=no_longer,
+            newly=tuple(each for each in found if each.after == VIOLATED),
+            no_longer=tuple(each for each in found if each.after != VIOLATED),
+            edited=self._edited,
             changes=changes,
         )
 
@@ -280,33 +270,5 @@ def is_time(symbol: str) -> bool:
     return unit is not None and second is not None and unit.dimension == second.dimension
 
 
-def _turned(ask: Ask, by: str, sides: tuple[str, str]) -> dict[str, list[Newly]]:
-    """The requirements that only one side violates, by mission."""
-    before, after = (
-        {
-            (mission.name, each.id): each
-            for mission in summary(only(ask, f"{by} = {quoted(side)}"), "").missions
-            for each in mission.requirements
-        }
-        for side in sides
-    )
-    found: dict[str, list[Newly]] = {}
-    for at in {**after, **before}:
-        pair = before.get(at), after.get(at)
-        verdicts = [each.verdict if each is not None else _NOT_JUDGED for each in pair]
-        if (verdicts[0] == VIOLATED) != (verdicts[1] == VIOLATED):
-            clauses = [each.clauses if each is not None else () for each in pair]
-            violated, counts = (
-                [sum(getattr(c, name) for c in of) for of in clauses] for name in ("violated", "counted")
-            )
-            title = next(each.title for each in reversed(pair) if each is not None)
-            turned = Newly(
-                at[1], title, verdicts[0], verdicts[1], (violated[0], violated[1]), (counts[0], counts[1]), False
-            )
-            found.setdefault(at[0], []).append(turned)
-    return found
-
-
-_NOT_JUDGED: Final = "not judged"
 WORSE: Final = ("slower", "less reliable")
 _MOST_UNITS: Final = 256  # of the smaller side: more show hardly more, and each shuffle takes as much longer

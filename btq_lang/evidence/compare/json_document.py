@@ -23,9 +23,7 @@ def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
         "missions": [
             {
                 **_fields(each),
-                "newly": [_fields(newly) for newly in each.newly],
-                "no_longer": [_fields(turned) for turned in each.no_longer],
-                "changes": [_fields(change) for change in each.changes],
+                **{name: [_fields(one) for one in getattr(each, name)] for name in _LISTS},
             }
             for each in found
         ],
@@ -36,3 +34,6 @@ def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
 def _fields(record: object) -> dict[str, object]:
     """The fields of a record by name; the schema has them."""
     return {name: getattr(record, name) for name in fields_of(record)}
+
+
+_LISTS: Final = ("newly", "no_longer", "edited", "changes")

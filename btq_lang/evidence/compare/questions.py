@@ -1,11 +1,29 @@
 """The questions that a comparison asks of a store, in DuckDB's SQL.
 
-`{by}` is the column that names the sides, `{sides}` their names, `{unit}` what is shuffled, `{stratum}` within what.
+`{by}` is the column that names the sides, `{sides}` their names, `{unit}` what is shuffled, `{stratum}` within what,
+`{clause}` a clause as both sides have it.
 """
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.evidence.store.tables import quoted
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.compare.requirements import Edited
+
+
+def clause_of(edited: Sequence[Edited]) -> str:
+    """A clause in the words of the second side: what is measured is the same, whatever the bound."""
+    cases = [
+        f"WHEN (requirement, clause, node) = ({quoted(each.requirement)}, {quoted(each.before)}, {quoted(each.node)})"
+        f" THEN {quoted(each.after)}"
+        for each in edited
+    ]
+    return f"CASE {' '.join(cases)} ELSE clause END" if cases else "clause"
+
 
 RUNS: Final = """
     SELECT mission, {by} AS side, COUNT(*) AS runs, list(DISTINCT robot ORDER BY robot) AS robots
@@ -23,7 +41,7 @@ _PLACED: Final = """
         SELECT '' AS requirement, '' AS clause, node, log, run, (end_us - start_us) / 1e6 AS value
         FROM activations WHERE mission = {mission} AND timing = 'exact' AND outcome IN ('succeeded', 'failed')
         UNION ALL
-        SELECT requirement, clause, node, log, run, measured_si AS value
+        SELECT requirement, {clause} AS clause, node, log, run, measured_si AS value
         FROM verdicts WHERE mission = {mission} AND measured_si IS NOT NULL
     ),
     measured AS (SELECT measures.*, side, stratum, unit FROM measures JOIN placed USING (log, run))
@@ -79,6 +97,6 @@ ONE_SIDED: Final = """
     GROUP BY side
 """
 UNITS: Final = """
-    SELECT requirement, clause, node, MAX(unit) AS unit FROM clauses
+    SELECT requirement, {clause} AS clause, node, MAX(unit) AS unit FROM clauses
     WHERE mission = {mission} AND {by} IN ({sides}) GROUP BY ALL
 """

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from btq_lang.catalog.units import parse_unit
-from btq_lang.evidence.compare.comparison import Change, Comparison, Newly, is_time
+from btq_lang.evidence.compare.comparison import Change, Comparison, is_time
 from btq_lang.evidence.verdicts import VIOLATED
 from btq_lang.evidence.wording import duration, quantity
 from btq_lang.util.text import counted
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.compare.requirements import Newly
 
 
 def heading(comparison: Comparison, sides: tuple[str, str]) -> str:
@@ -50,6 +54,13 @@ def remarks(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
     changes = comparison.changes
     same = sum(not each.finding for each in changes)
     yield f"{same} of {counted(len(changes), 'comparison')} without a change that chance does not explain"
+    for each in comparison.edited:
+        whose = f"{each.requirement} at {each.node}" if each.node else each.requirement
+        old, new = (
+            f"{text} ({k:,} of {n:,} violated)"
+            for text, k, n in zip((each.before, each.after), each.violated, each.counted, strict=True)
+        )
+        yield f"the bound of {whose} was changed from {old} to {new}, so this says nothing about the robots"
     alone = zip(comparison.one_sided, sides, strict=True)
     if found := ", ".join(f"{counted(number, 'node')} active only in {side}" for number, side in alone if number):
         yield f"not compared: {found}"

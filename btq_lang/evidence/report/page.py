@@ -20,7 +20,8 @@ from btq_lang.util.record import replace
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.compare.comparison import Change, Comparison, Newly
+    from btq_lang.evidence.compare.comparison import Change, Comparison
+    from btq_lang.evidence.compare.requirements import Newly
     from btq_lang.evidence.report.overview import MissionOverview, Node, Overview, Part
     from btq_lang.evidence.report.trends import Values
     from btq_lang.evidence.verdicts import ClauseVerdict, RequirementVerdict

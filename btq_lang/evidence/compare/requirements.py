@@ -1,0 +1,109 @@
+"""What changed in the verdicts on requirements, between two sides of a store.
+
+One invariant: a clause whose bound was edited says nothing about the robot, so no verdict on it counts as a change.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+from btq_lang.evidence.store.queries import only
+from btq_lang.evidence.store.summary import summary
+from btq_lang.evidence.store.tables import quoted
+from btq_lang.evidence.verdicts import VIOLATED, worst_of
+from btq_lang.util.record import Record
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.verdicts import ClauseVerdict, RequirementVerdict
+
+    Verdicts: TypeAlias = Mapping[str, RequirementVerdict]  # of a mission, by requirement
+
+
+class Newly(Record):
+    """A requirement that only one side violates.
+
+    Attributes:
+        before, after: the verdict of each side.
+        violated, counted: how many judgements of each side are violations, and how many count.
+        may_be_chance: whether chance may explain it: of the runs of both sides, no more are violated than by chance.
+    """
+
+    id: str
+    title: str
+    before: str
+    after: str
+    violated: tuple[int, int]
+    counted: tuple[int, int]
+    may_be_chance: bool
+
+
+class Edited(Record):
+    """A clause that has another bound, or other odds, on each side.
+
+    Attributes:
+        before, after: the clause of each side.
+        violated, counted: as in `Newly`, each side by its own clause.
+    """
+
+    requirement: str
+    node: str
+    before: str
+    after: str
+    violated: tuple[int, int]
+    counted: tuple[int, int]
+
+
+def verdicts(ask: Callable[[str], Sequence[Mapping[str, Any]]], by: str, side: str) -> Mapping[str, Verdicts]:
+    """The verdicts of a side, by mission."""
+    found = summary(only(ask, f"{by} = {quoted(side)}"), "").missions
+    return {mission.name: {each.id: each for each in mission.requirements} for mission in found}
+
+
+def edited(before: Verdicts, after: Verdicts) -> tuple[Edited, ...]:
+    """The clauses of a mission that differ in their numbers only, at the same nodes."""
+    found = []
+    for name in before.keys() & after.keys():
+        texts = [{(clause.path, clause.text) for clause in side[name].clauses} for side in (before, after)]
+        old = {
+            (clause.path, _without_numbers(clause)): clause
+            for clause in before[name].clauses
+            if (clause.path, clause.text) not in texts[1]
+        }
+        for clause in after[name].clauses:
+            key = clause.path, _without_numbers(clause)
+            if (clause.path, clause.text) not in texts[0] and key in old:
+                was = old.pop(key)
+                counts = (was.violated, clause.violated), (was.counted, clause.counted)
+                found.append(Edited(name, clause.path, was.text, clause.text, *counts))
+    return tuple(sorted(found, key=lambda each: (each.requirement, each.node)))
+
+
+def turned(before: Verdicts, after: Verdicts, edits: Sequence[Edited]) -> list[Newly]:
+    """The requirements of a mission that only one side violates, by clauses that were not edited."""
+    old = {(each.requirement, each.node, each.before) for each in edits}
+    new = {(each.requirement, each.node, each.after) for each in edits}
+    found = []
+    for name in {**after, **before}:
+        pair = [
+            [each for each in side[name].clauses if (name, each.path, each.text) not in left] if name in side else None
+            for side, left in ((before, old), (after, new))
+        ]
+        first, second = (worst_of(each.verdict for each in of) if of else _NOT_JUDGED for of in pair)
+        if (first == VIOLATED) != (second == VIOLATED):
+            title = (after.get(name) or before[name]).title
+            violated, counts = (
+                [sum(getattr(each, what) for each in of or ()) for of in pair] for what in ("violated", "counted")
+            )
+            numbers = (violated[0], violated[1]), (counts[0], counts[1])
+            found.append(Newly(name, title, first, second, *numbers, False))
+    return found
+
+
+def _without_numbers(clause: ClauseVerdict) -> str:
+    return _QUANTITY.sub("…", clause.text)
+
+
+_QUANTITY: Final = re.compile(r"\d[\d.]* ?(?:%|[^\W\d][\w/]*)?")  # a number with its unit, or the next word
+_NOT_JUDGED: Final = "not judged"
