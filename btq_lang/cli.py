@@ -55,6 +55,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _plain_check(given[1:])
     if given[:1] == ["explain"]:  # `->` is a node, not an option
         given[1:] = [f" {word}" if word in _SYMBOLS_LIKE_OPTIONS else word for word in given[1:]]
+    # argparse would take the path in `--add-ignore FILE` as the reason, and change all files of the folder.
+    given = ["--add-ignore=" if word == "--add-ignore" else word for word in given]
     from btq_lang.commands.arguments import build_parser
 
     parser = build_parser()

@@ -87,6 +87,15 @@ def test_xml_is_silenced_with_a_reason(check: Check, tmp_path: Path) -> None:
     assert check() == (0, "No problems found in 1 file\n", "")
 
 
+def test_a_path_is_not_a_reason_and_an_empty_text_ends_on_its_line(check: Check, tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(MISSION)
+    (tmp_path / "titles.btq").write_text('QualityReq rq : sefety ""\n')
+    silenced = 'QualityReq rq : sefety ""  # btq: ignore[requirement-without-text, unknown-quality]\n'
+    assert check("--add-ignore", "titles.btq") == (0, "No problems found in 1 file\n", "Added 1 comment\n")
+    assert (tmp_path / "titles.btq").read_text() == silenced
+    assert (tmp_path / "main.btq").read_text() == MISSION
+
+
 @pytest.mark.parametrize("name", ["main.btq", "tree.xml"])
 def test_no_comment_is_useless(check: Check, tmp_path: Path, name: str) -> None:
     """Without any one of them, what it silences is found again."""
