@@ -47,7 +47,7 @@ def parse_unit(text: str) -> Unit | None:
     only: in a compound a temperature is a difference, written `K`.
     """
     if text == "1":
-        return Unit("1", _NO_DIMENSION, 1.0)
+        return ONE
     factor = 1.0
     dimension = list(_NO_DIMENSION)
     written: list[str] = []
@@ -238,6 +238,7 @@ def _dimension(
 
 
 _NO_DIMENSION: Final = _dimension()
+ONE: Final = Unit("1", _NO_DIMENSION, 1.0)  # the unit of a plain number
 _LENGTH: Final = _dimension(length=1)
 _MASS: Final = _dimension(mass=1)
 _TIME: Final = _dimension(time=1)

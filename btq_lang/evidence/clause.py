@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.btcpp.around import LIMITING, WATCHING
 from btq_lang.catalog.verbs import VERBS, words
+from btq_lang.evidence import margins
 from btq_lang.evidence.edges import WHILE_IT_RUNS, edge_of, key_of
 from btq_lang.evidence.history import History, Nearby, near
 from btq_lang.evidence.margins import Margins
@@ -194,7 +195,7 @@ class JudgedClause:
             lost = Judgement(None, root.end, ROWS_LOST)
             self._add(lost, next(iter(self._paths)), root.end, root.end, ())
             if self._margins is not None:
-                self._margins.add(_UNKNOWN, _UNKNOWN, None)
+                self._margins.add(margins.UNKNOWN, margins.UNKNOWN, None)
         self._tally.end_run(run)
         if self._margins is not None:
             self._margins.end_run(run.number)
@@ -445,11 +446,11 @@ class JudgedClause:
         return " ".join([*parts, f"goal {requirement.goal.text}"] if requirement.goal is not None else parts)
 
 
-def _kind(judgement: Judgement | None, of: Activation) -> int | None:
-    """What a judgement is, as an index of `Counts`; None: it does not count."""
+def _kind(judgement: Judgement | None, of: Activation) -> int:
+    """What a judgement is for margins."""
     if judgement is None:
-        return _CUT_OFF if of.outcome == "O" else None
-    return _UNKNOWN if judgement.holds is None else _KEPT if judgement.holds else _VIOLATED
+        return margins.CUT_OFF if of.outcome == "O" else margins.NOTHING
+    return margins.UNKNOWN if judgement.holds is None else margins.KEPT if judgement.holds else margins.VIOLATED
 
 
 def verdict_of(tally: Tally, missing: str, has_run: bool) -> tuple[Verdict, str]:
@@ -490,7 +491,6 @@ def _clocked(judgement: Judgement | None, root: Activation) -> Judgement | None:
     return Judgement(None, judgement.at, CLOCK_SET_BACK)
 
 
-_KEPT, _VIOLATED, _UNKNOWN, _CUT_OFF = range(4)
 # The kinds of guards that halt a node for each verb; other guards around it belong to other clauses.
 _STOPPED_BY: Final = {
     LIMITING: words(enforced="limit"),

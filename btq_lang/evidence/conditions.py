@@ -10,7 +10,7 @@ import operator
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
-from btq_lang.catalog.units import Unit, parse_unit
+from btq_lang.catalog.units import ONE, Unit, parse_unit
 from btq_lang.evidence.signals import Unknown
 from btq_lang.requirements.model import (
     Aggregate,
@@ -30,7 +30,6 @@ from btq_lang.requirements.model import (
     Text,
     Value,
 )
-from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Moment, SampleValue
@@ -40,31 +39,18 @@ if TYPE_CHECKING:
     Truth: TypeAlias = bool | Unknown
 
 
-class Bound(Record):
-    """The value, at a moment, of a bound that is not a constant.
-
-    Attributes:
-        text: as typed.
-    """
-
-    si: float
-    unit: Unit | None
-    text: str
-
-
 class Reading(NamedTuple):  # not a Record, which takes longer to make: a log has many, as of Measure
     """A signal, or an aggregate of it, compared with a bound, as in `battery >= 3 %`.
 
     Attributes:
         name: as typed: `battery`, `max(force)`.
         excess: how far the value is on the wrong side of the bound, in SI; negative on the right side.
-        holds: whether the condition holds.
     """
 
     name: str
     unit: Unit | None
     si: float
-    bound: Value | Bound
+    bound: Value
     excess: float
     holds: bool
 
@@ -94,11 +80,11 @@ def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
         value = observed.reading(condition.signal, moment)
         return value if isinstance(value, bool | Unknown) else Unknown(f"`{condition.signal.name}` is not a bool")
     if isinstance(condition, Running):
-        return observed.runs(condition.target, moment)
+        return observed.nodes.runs(condition.target, moment)
     return Unknown(_not_judged(condition))
 
 
-def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Value | Bound | Unknown:
+def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Value | Unknown:
     """The value of a bound at a moment; for a table, that of the first case that holds then."""
     if isinstance(bounded, Table):
         for case in bounded.cases:
@@ -113,7 +99,8 @@ def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Value | Bo
     value = _number(bounded, observed, moment)
     if isinstance(value, Unknown) or not isinstance(value, float):
         return value if isinstance(value, Unknown) else Unknown(f"`{bounded.text}` is not a number")
-    return Bound(value, bounded.signal.unit if isinstance(bounded, Read) else None, bounded.text)
+    unit = bounded.signal.unit if isinstance(bounded, Read) else None
+    return Value(bounded.text, value, unit or ONE)
 
 
 def reading_of(condition: Condition, observed: Observed, moment: Moment) -> Reading | None:
@@ -147,7 +134,7 @@ def _compared_with_bound(condition: Compare, observed: Observed, moment: Moment)
     if not isinstance(left, _MEASURED) or not isinstance(right, _BOUNDS):
         return None
     value = _number(left, observed, moment)
-    bound = right if isinstance(right, Value) else bound_at(right, observed, moment)
+    bound = bound_at(right, observed, moment)
     if not isinstance(value, float) or isinstance(bound, Unknown):
         return None
     name = left.signal.name if isinstance(left, Read) else f"{left.function}({left.signal.name})"

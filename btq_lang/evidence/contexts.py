@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
@@ -21,13 +22,10 @@ class Contexts:
     """Counts the runs of a mission's contexts while its logs are read."""
 
     def __init__(self, contexts: Mapping[str, Condition | None]) -> None:
-        """
-        Args:
-            contexts: by name; None for one that could not be resolved.
-        """
+        """Count nothing yet; a context that could not be resolved is None."""
         self._contexts: Final = [InContext(name, each) for name, each in contexts.items() if each is not None]
-        self._held: Final = dict.fromkeys(contexts, 0)
-        self._unknown: Final = dict.fromkeys(contexts, 0)
+        self._held: Final = Counter(dict.fromkeys(contexts, 0))
+        self._unknown: Final = Counter(dict.fromkeys(contexts, 0))
 
     def join(self, joined: Joined, signals: Signals, history: History) -> None:
         """Begin another log."""
@@ -38,11 +36,7 @@ class Contexts:
                     self._nodes.find(part.target)
 
     def end_run(self, root: Activation) -> None:
-        """Count the open run, which has ended.
-
-        Args:
-            root: the activation of the run's root.
-        """
+        """Count the open run, which has ended; `root`: the activation of its root."""
         observed = Observed(self._signals, self._nodes, root.started, root.ended, root.timing != "latest")
         for context in self._contexts:
             is_unknown = False
@@ -55,15 +49,14 @@ class Contexts:
             else:
                 self._unknown[context.name] += is_unknown
 
-    def counts(self) -> tuple[dict[str, int], dict[str, int]]:
+    def counts(self) -> tuple[Counter[str], Counter[str]]:
         """In how many runs each context held, and in how many others that is unknown."""
         return self._held, self._unknown
 
-    def add_all(self, counts: tuple[dict[str, int], dict[str, int]]) -> None:
+    def add_all(self, counts: tuple[Counter[str], Counter[str]]) -> None:
         """Add the counts of other logs."""
-        for own, others in zip((self._held, self._unknown), counts, strict=True):
-            for name, number in others.items():
-                own[name] += number
+        self._held.update(counts[0])
+        self._unknown.update(counts[1])
 
     def summary(self) -> tuple[ContextSummary, ...]:
         """The counts of each context, in the order of definition."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from array import array
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
@@ -116,7 +117,7 @@ class _Node:
         self._kind: Final = kind
         self._is_leaf: Final = is_leaf
         self._written: Final = written
-        self.outcomes: Final[dict[Outcome, int]] = {"S": 0, "F": 0, "H": 0, "O": 0}
+        self.outcomes: Final[Counter[Outcome]] = Counter()
         self.times: Final = array("q")
         self.runs = self.run = 0
 
@@ -125,8 +126,7 @@ class _Node:
         self.runs += other.runs
         self.times.extend(other.times)
         self.ticks.extend(other.ticks)
-        for outcome, number in other.outcomes.items():
-            self.outcomes[outcome] += number
+        self.outcomes.update(other.outcomes)
 
     def summary(self, written: Sequence[ResolvedNode]) -> NodeSummary:
         times, ticks = sorted(self.times), sorted(self.ticks)

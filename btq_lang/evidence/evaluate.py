@@ -5,6 +5,7 @@ One invariant: the only state is open activations, the current run, and counts.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from typing import TYPE_CHECKING, Final, Protocol
@@ -52,9 +53,9 @@ class Findings(Record):
 
     clauses: tuple[ClauseFindings, ...]
     sources: tuple[Source, ...]
-    outcomes: dict[Outcome, int]
+    outcomes: Counter[Outcome]
     coverage: Coverage
-    contexts: tuple[dict[str, int], dict[str, int]]
+    contexts: tuple[Counter[str], Counter[str]]
     timelines: dict[int, Timeline]
 
 
@@ -105,7 +106,7 @@ class MissionEvaluation:
         self._with_measures: Final = with_measures
         self._clauses: Final = clauses
         self._sources: Final[list[Source]] = []
-        self._outcomes: Final[dict[Outcome, int]] = dict.fromkeys(OUTCOMES, 0)
+        self._outcomes: Final[Counter[Outcome]] = Counter(dict.fromkeys(OUTCOMES, 0))
         self._coverage: Final = Coverage()
         self._contexts: Final = Contexts(found.contexts)
         self._timelines: Final = Timelines() if with_timelines else None
@@ -179,9 +180,7 @@ class MissionEvaluation:
                     self._timelines.end_run(run, tree, [each for each in self._clauses if each.is_worst_in(run)])
                 signals.forget_before(end)
                 self._ran(run.number)
-        session.remarks.extend(
-            [found for each in self._clauses if (found := each.remark(tree, log.keeping)) is not None]
-        )
+        session.remarks.extend([found for each in self._clauses if (found := each.remark(tree, log.keeping))])
         self._add(
             Source(
                 file=source,
@@ -228,8 +227,7 @@ class MissionEvaluation:
             clause.add(found, runs)
         for source in findings.sources:
             self._add(replace(source, first_run=source.first_run + runs))
-        for outcome, number in findings.outcomes.items():
-            self._outcomes[outcome] += number
+        self._outcomes.update(findings.outcomes)
         self._coverage.add_all(findings.coverage, runs)
         self._contexts.add_all(findings.contexts)
 

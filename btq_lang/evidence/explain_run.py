@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.over_run import OverRun, target_of
@@ -68,8 +69,8 @@ class RunExplainer:
         found: list[tuple[int, int, list[Activation]]] = []
         for uid in leaves:
             kept = self._leaves.get(uid, [])
-            first = max(bisect_right(kept, begin, key=_begin) - 1, 0)
-            inside = [each for each in kept[first : bisect_left(kept, end, key=_begin)] if each.end > begin]
+            first = max(bisect_right(kept, begin, key=_BEGIN) - 1, 0)
+            inside = [each for each in kept[first : bisect_left(kept, end, key=_BEGIN)] if each.end > begin]
             time = sum(min(each.end, end) - max(each.begin, begin) for each in inside)
             if time > 0 and time * 20 >= end - begin:
                 found.append((-time, uid, inside))
@@ -155,10 +156,7 @@ def ago(time: int) -> str:
     return f"{duration(time / 1e6)} before" if time >= _JUST_BEFORE else "just before"
 
 
-def _begin(activation: Activation) -> int:
-    return activation.begin
-
-
+_BEGIN: Final = attrgetter("begin")
 _CAME_TO: Final = {"S": "had succeeded", "F": "had failed", "H": "had been halted"}
 _ENDED: Final = {"F": "failed", "H": "halted", "O": "still running", "S": "succeeded"}
 _JUST_BEFORE: Final = 1000  # µs

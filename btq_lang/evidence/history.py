@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import UNKNOWN_END
@@ -39,12 +40,12 @@ class History:
     def of(self, uids: Sequence[int]) -> list[Activation]:
         """The activations of nodes, in the order of their starts."""
         found = [activation for uid in uids for activation in self._by_node[uid]]
-        return sorted(found, key=_started) if len(uids) > 1 else found
+        return sorted(found, key=_STARTED) if len(uids) > 1 else found
 
     def runs(self, uid: int, moment: Moment) -> bool | Unknown:
         """Whether a node is active at a moment: from the row of its start to the row of its end."""
         kept = self._by_node[uid]
-        index = bisect_right(kept, moment, key=_started) - 1
+        index = bisect_right(kept, moment, key=_STARTED) - 1
         if index < 0 or moment > kept[index].ended:
             return False
         is_known = kept[index].timing != "latest" or moment == kept[index].started
@@ -112,5 +113,4 @@ def _use_around(uid: int, tree: LoggedTree) -> int:
     return next((above for above in tree.above(uid) if path.startswith(f"{tree.nodes[above].path}/")), 0)
 
 
-def _started(activation: Activation) -> Moment:
-    return activation.started
+_STARTED: Final = attrgetter("started")

@@ -78,20 +78,9 @@ def _requirement(requirement: RequirementVerdict, mission: MissionVerdicts) -> J
 
 def _clause(clause: ClauseVerdict) -> Json:
     return {
-        "text": clause.text,
-        "path": clause.path,
-        "verdict": clause.verdict,
-        "why": clause.why,
-        "unit": clause.unit,
-        "counted": clause.counted,
-        "violated": clause.violated,
-        "unknown": clause.unknown,
-        "cut_off": clause.cut_off,
+        **_fields(clause, but=("of", "histogram", "timeline", "measures")),
         "worst": _fields(clause.worst) if clause.worst is not None else None,
-        "interval": list(clause.interval) if clause.interval is not None else None,
         "limits": clause.limits if clause.interval is not None else None,
-        "confidence": clause.confidence,
-        "more": clause.more,
         "violations": [
             {
                 **_fields(each),

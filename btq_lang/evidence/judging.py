@@ -7,8 +7,8 @@ up in their order.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Final, Protocol
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.evaluate import Findings, MissionEvaluation
 from btq_lang.evidence.identity import difference
@@ -23,9 +23,10 @@ from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
-    from btq_lang.evidence.model import NamedLog, Series, Session
+    from btq_lang.evidence.model import Series
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.store.sets import Draft, Keeping
+    from btq_lang.evidence.watching import Watched
     from btq_lang.workspace.project_evidence import SignalSource
 NO_SERIES: Final[Mapping[str, Series]] = {}
 
@@ -58,24 +59,6 @@ class Means(Record):
     shown: Callable[[str], str] = shown
 
 
-class Running(Protocol):
-    """A running robot whose transitions are judged as they come."""
-
-    @property
-    def id(self) -> str:
-        """Unique to these runs, in 64 hexadecimal digits."""
-
-    @property
-    def sessions(self) -> Iterable[Session | NamedLog]:
-        """They end when the robot is no longer watched."""
-
-    def judged_by(self, evaluation: MissionEvaluation) -> None:
-        """Its next session is judged by a mission that none before was judged by."""
-
-    def foreign(self, difference: str) -> None:
-        """Its next session belongs to no mission; `difference`: as in `Foreign`."""
-
-
 class JudgedLog(Record):
     """What was found in a log.
 
@@ -95,7 +78,7 @@ class JudgedLog(Record):
 
 
 def judge(
-    log: str, means: Means, ran: Callable[[int], None] = lambda number: None, running: Running | None = None
+    log: str, means: Means, ran: Callable[[int], None] = lambda number: None, running: Watched | None = None
 ) -> JudgedLog:
     """Judge the runs of a log, and keep what was found in the store, if there is one.
 
@@ -120,7 +103,7 @@ def judge(
 
 
 def _judged(
-    log: str, means: Means, ran: Callable[[int], None], written: Draft | None, running: Running | None
+    log: str, means: Means, ran: Callable[[int], None], written: Draft | None, running: Watched | None
 ) -> JudgedLog:
     missions, shown = means.missions, means.shown
     evaluations: dict[tuple[str, str], MissionEvaluation] = {}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.conditions import Bound, bound_at
+from btq_lang.evidence.conditions import bound_at
 from btq_lang.evidence.signals import Unknown
 from btq_lang.requirements.model import Limit, Value
 
@@ -26,7 +26,7 @@ class Measure:
     # Not a Record: a log has as many as it has judgements, and a Record takes three times as long to make.
     __slots__ = ("bound", "excess", "is_upper", "si", "unit")
 
-    def __init__(self, si: float, bound: Value | Bound, excess: float, is_upper: bool) -> None:
+    def __init__(self, si: float, bound: Value, excess: float, is_upper: bool) -> None:
         self.si: Final = si
         self.unit: Unit | None = bound.unit
         self.bound: Final = bound
@@ -45,13 +45,9 @@ class Measure:
 
 
 def compared(limit: Limit, si: float, observed: Observed, moment: Moment) -> Measure | Unknown:
-    """Compare a measure with its bound, which is evaluated at a moment.
-
-    Args:
-        si: the measured value.
-    """
-    relation, bounded = limit.relation, limit.value
-    bound = bounded if isinstance(bounded, Value) else bound_at(bounded, observed, moment)
+    """Compare a measured value with its bound, which is evaluated at a moment."""
+    relation = limit.relation
+    bound = bound_at(limit.value, observed, moment)
     if isinstance(bound, Unknown):
         return bound
     is_upper = relation in ("<=", "<")

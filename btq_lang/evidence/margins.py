@@ -10,6 +10,7 @@ there are too many, neighbours become one, which then begins and ends at differe
 from __future__ import annotations
 
 from collections.abc import Iterable
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 if TYPE_CHECKING:
@@ -46,10 +47,7 @@ class Margins:
     """
 
     def __init__(self, of_runs: bool) -> None:
-        """
-        Args:
-            of_runs: runs are counted, each as its judgements together.
-        """
+        """Count nothing yet; `of_runs`: runs are counted, each as its judgements together."""
         self.is_exact = True
         self._of_runs: Final = of_runs
         self._base = Counts(0, 0, 0, 0)  # with a bound that all keep
@@ -58,26 +56,25 @@ class Margins:
         self._worst: tuple[float, int] | None = None  # of those that keep some bound, with its run
         self._furthest: tuple[float, int] | None = None  # of those that break some bound
 
-    def add(self, within: int | None, beyond: int | None, value: float | None) -> None:
+    def add(self, within: int, beyond: int, value: float | None) -> None:
         """Count a judgement in the open run.
 
         Args:
-            within, beyond: what it is with a bound that it keeps, and with one that it breaks, as indices of `Counts`;
-                None: it does not count.
+            within, beyond: what it is with a bound that it keeps, and with one that it breaks: KEPT to NOTHING.
             value: where it changes; None: unknown.
         """
         if value is None and within != beyond:
             self.is_exact = False
         else:
-            self._open.append((_index(within), _index(beyond), value if value is not None else _NEVER))
+            self._open.append((within, beyond, value if value is not None else _NEVER))
 
     def end_run(self, run: int) -> None:
         """Close the open run, which has this number."""
         for within, beyond, value in self._open:
-            if value != _NEVER and within == _KEPT:
-                self._worst = max(self._worst or (value, run), (value, run), key=_value)
-            if value != _NEVER and beyond == _VIOLATED:
-                self._furthest = max(self._furthest or (value, run), (value, run), key=_value)
+            if value != _NEVER and within == KEPT:
+                self._worst = max(self._worst or (value, run), (value, run), key=itemgetter(0))
+            if value != _NEVER and beyond == VIOLATED:
+                self._furthest = max(self._furthest or (value, run), (value, run), key=itemgetter(0))
         if self._of_runs and self._open:
             self._end_whole_run()
         else:
@@ -96,7 +93,7 @@ class Margins:
             now[within] += 1
         before = _of_run(now)
         self._base = _sum(self._base, before)
-        for within, beyond, value in sorted(self._open, key=_where, reverse=True):
+        for within, beyond, value in sorted(self._open, key=itemgetter(2), reverse=True):
             if value == _NEVER:
                 break
             now[within] -= 1
@@ -134,7 +131,7 @@ class Margins:
         found = [each for each in (self._worst,) if each is not None]
         if self._furthest is not None and (self._furthest[0] > at or (edge.is_strict and self._furthest[0] == at)):
             found.append(self._furthest)
-        value, run = max(found, key=_value, default=(None, 0))
+        value, run = max(found, key=itemgetter(0), default=(None, 0))
         return (edge.across(value), run) if value is not None else None
 
     # ---- as JSON ----
@@ -156,8 +153,8 @@ class Margins:
 
 def _of_run(counts: list[int]) -> Counts:
     """What a run is, if it has so many judgements of each kind."""
-    of_run = _VIOLATED if counts[_VIOLATED] else _UNKNOWN if counts[_UNKNOWN] else _KEPT if counts[_KEPT] else _NOTHING
-    return _sum(_UNITS[of_run], Counts(0, 0, 0, counts[_CUT_OFF]))
+    of_run = next((kind for kind in (VIOLATED, UNKNOWN, KEPT) if counts[kind]), NOTHING)
+    return _sum(_UNITS[of_run], Counts(0, 0, 0, counts[CUT_OFF]))
 
 
 def _compacted(steps: Iterable[Step]) -> list[Step]:
@@ -194,19 +191,7 @@ def _difference(one: Counts, other: Counts) -> Counts:
     return Counts(one[0] - other[0], one[1] - other[1], one[2] - other[2], one[3] - other[3])
 
 
-def _index(kind: int | None) -> int:
-    return _NOTHING if kind is None else kind
-
-
-def _value(found: tuple[float, int]) -> float:
-    return found[0]
-
-
-def _where(judgement: tuple[int, int, float]) -> float:
-    return judgement[2]
-
-
 MOST_STEPS: Final = 1000
-_KEPT, _VIOLATED, _UNKNOWN, _CUT_OFF, _NOTHING = range(5)
+KEPT, VIOLATED, UNKNOWN, CUT_OFF, NOTHING = range(5)  # what judgements are: indices of `Counts`, or not counted
 _UNITS: Final = (Counts(1, 0, 0, 0), Counts(0, 1, 0, 0), Counts(0, 0, 1, 0), Counts(0, 0, 0, 1), Counts(0, 0, 0, 0))
 _NEVER: Final = float("-inf")  # the value of a judgement that no bound changes

@@ -30,26 +30,23 @@ from btq_lang.requirements.model import (
 if TYPE_CHECKING:
     from btq_lang.evidence.history import Nearby
     from btq_lang.evidence.model import Activation, Moment, SampleValue
-    from btq_lang.requirements.model import Signal, Target
+    from btq_lang.requirements.model import Signal
 
 
 class Observed:
     """The observations from one moment to another.
 
     Attributes:
+        nodes: complete only when the run has ended.
         begin, end: of the activation, or of the run.
         is_end_known: otherwise the activation ended at `end` or before.
     """
 
-    __slots__ = ("_contexts", "_nodes", "_signals", "begin", "end", "is_end_known")
+    __slots__ = ("_contexts", "_signals", "begin", "end", "is_end_known", "nodes")
 
     def __init__(self, signals: Signals, nodes: Nearby, begin: Moment, end: Moment, is_end_known: bool = True) -> None:
-        """
-        Args:
-            nodes: complete only when the run has ended.
-        """
         self._signals: Final = signals
-        self._nodes: Final = nodes
+        self.nodes: Final = nodes
         self._contexts: dict[tuple[str, Moment], bool | Unknown] | None = None
         self.begin: Final = begin
         self.end: Final = end
@@ -58,11 +55,11 @@ class Observed:
     def during(self, activation: Activation) -> Observed:
         """The observations during an activation."""
         is_end_known = activation.timing != "latest"
-        return Observed(self._signals, self._nodes, activation.started, activation.ended, is_end_known)
+        return Observed(self._signals, self.nodes, activation.started, activation.ended, is_end_known)
 
     def between(self, begin: Moment, end: Moment) -> Observed:
         """The observations from one moment to another, within these."""
-        return Observed(self._signals, self._nodes, begin, end)
+        return Observed(self._signals, self.nodes, begin, end)
 
     def reading(self, signal: Signal, moment: Moment) -> SampleValue | Unknown:
         """The value of a signal at a moment."""
@@ -87,14 +84,6 @@ class Observed:
             self._contexts[key] = truth()
         return self._contexts[key]
 
-    def runs(self, target: Target, moment: Moment) -> bool | Unknown:
-        """Whether a node is active at a moment."""
-        return self._nodes.runs(target, moment)
-
-    def activations(self, target: Target) -> list[Activation]:
-        """The activations of a node in the whole run, in the order of their starts."""
-        return self._nodes.activations(target)
-
     def moments(self, *parts: object) -> list[Moment]:
         """The moments, from the beginning to the end, at which conditions and bounds may change."""
         found = {self.begin}
@@ -104,12 +93,9 @@ class Observed:
                 if isinstance(each, Read):
                     found.update([(time, 0) for time in self._signals.changes(each.signal, begin[0], end[0])])
                 elif isinstance(each, Running):
-                    for activation in self._nodes.activations(each.target):
+                    for activation in self.nodes.activations(each.target):
                         stopped = activation.end, activation.ended[1] + 1
-                        since = (
-                            activation.begin,
-                            activation.started[1] + 1,
-                        )  # unknown from here on if the end is unknown
+                        since = activation.begin, activation.started[1] + 1  # unknown from then on if the end is
                         found.update([at for at in (activation.started, since, stopped) if begin < at <= end])
         return sorted(found)
 

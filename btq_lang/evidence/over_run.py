@@ -115,7 +115,7 @@ class OverRun(Record):
                 ended = part.end if part.why else None
             return found
         outcomes = _OUTCOMES.get(event.happening)
-        for each in of if of is not None else self.observed.activations(target_of(event)):
+        for each in of if of is not None else self.observed.nodes.activations(target_of(event)):
             if outcomes is None:
                 found.append(Happening(each.started, each.started))
             elif each.outcome in outcomes and each.timing == "latest":

@@ -6,6 +6,7 @@ One invariant: only the judgements in the window, the latest ones, are kept, wha
 from __future__ import annotations
 
 from bisect import insort
+from operator import itemgetter
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.tally import Run, Tally
@@ -47,7 +48,7 @@ class Recent:
         """Close the open run."""
         self._end = max(self._end, run.end)
         if self._now:
-            found = sorted(self._now, key=_end)
+            found = sorted(self._now, key=_END)
             insort(self._kept, (run, found), key=_begin)
             self._now.clear()
         self._leave_out()
@@ -90,7 +91,7 @@ class Recent:
             assert self._window.seconds is not None, "a window is a number or a time"
             begin = self._end - round(self._window.seconds * 1e6)
             for _, judgements in kept:
-                judgements[:] = [each for each in judgements if _end(each) >= begin]
+                judgements[:] = [each for each in judgements if _END(each) >= begin]
             kept[:] = [each for each in kept if each[1]]
         elif self._window.experiments == "runs":
             del kept[: max(len(kept) - count, 0)]
@@ -108,5 +109,4 @@ def _begin(kept: tuple[Run, list[_Entry]]) -> int:
     return kept[0].begin
 
 
-def _end(entry: _Entry) -> int:
-    return entry[2]
+_END: Final = itemgetter(2)

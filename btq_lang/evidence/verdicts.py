@@ -162,16 +162,16 @@ class ClauseVerdict(Record):
         text: as typed, with its scopes and odds.
         path: of the node, as the engine names it; all paths for a subtree that is used several times.
         of: what it measures if that is more than a node: `from … to …`, `sum of …`; else empty.
+        why: why the verdict is unknown or never exercised, or why parts of an undecided one are unknown; else empty.
+        unit: what is counted: `activations` or `runs`.
         counted: how many activations (or runs, for odds of runs, sums, and tries in a run) were judged true or false.
         violated, unknown: how many of these are violations, and how many more are unknown.
         cut_off: activations left out because the log ends while they are open.
-        unit: what is counted: `activations` or `runs`.
         interval: the lower and the upper limit of the probability that it holds; None without odds.
         limits: which ones these are, as in `odds.py`.
         confidence: that the requirement names; None if it names none, and each limit has 95 %.
         more: how many more runs (or activations) without a violation would decide; None: no known number would.
         violations: the first thousand of them.
-        why: why the verdict is unknown or never exercised, or why parts of an undecided one are unknown; else empty.
         histogram: of the measures; None without any.
         timeline: the run of the worst violation; None without any.
         measures: to judge it again; None: not kept.
@@ -181,18 +181,18 @@ class ClauseVerdict(Record):
     path: str
     of: str
     verdict: Verdict
+    why: str
+    unit: Literal["activations", "runs"]
     counted: int
     violated: int
     unknown: int
     cut_off: int
-    unit: Literal["activations", "runs"]
     worst: Worst | None
     interval: tuple[float, float] | None
     limits: Limits
     confidence: float | None
     more: int | None
     violations: tuple[Violation, ...]
-    why: str
     histogram: Histogram | None
     timeline: Timeline | None = None
     measures: Measures | None = None

@@ -23,8 +23,8 @@ from btq_lang.util.record import Record, replace
 from btq_lang.workspace.loader import IS_SPECIAL, absolute, collect, is_special, shown
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.judging import Running
     from btq_lang.evidence.verdicts import Report
+    from btq_lang.evidence.watching import Watched
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.workspace import Workspace
 
@@ -159,7 +159,7 @@ def _progress(progress: Callable[[int, int], None], files: int, runs: int, run: 
     progress(files, runs + run)
 
 
-def judged_live(running: Running, address: str, means: Means, requested: Sequence[str]) -> Verification:
+def judged_live(running: Watched, address: str, means: Means, requested: Sequence[str]) -> Verification:
     """Judge missions by what a running robot does, until its sessions end.
 
     Args:

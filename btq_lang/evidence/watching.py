@@ -41,9 +41,11 @@ class News(Record):
 
 
 class Watched:
-    """A running robot, as `judging.Running`.
+    """A running robot whose transitions are judged as they come.
 
     Attributes:
+        id: unique to these runs, in 64 hexadecimal digits.
+        sessions: they end when the robot is no longer watched.
         address: of the robot.
         mission: what the current session is, in words; empty without one.
         outcomes: how many runs ended in which way.
@@ -59,13 +61,13 @@ class Watched:
         self.outcomes: Final[Counter[str]] = Counter()
 
     def judged_by(self, evaluation: MissionEvaluation) -> None:
-        """Tell what a mission's evaluation finds, from its next session on."""
+        """Tell what the evaluation of a mission finds, by which no session before was judged."""
         listener = _Listener(self)
         self._missions.append((evaluation, listener))
         evaluation.listeners.append(listener)
 
     def foreign(self, difference: str) -> None:
-        """Tell that the next session belongs to no mission."""
+        """Tell that the next session belongs to no mission; `difference`: as in `Foreign`."""
         self.mission = ""
         self.tell(f"its tree belongs to no known mission{f': {difference}' if difference else ''}; it is not judged")
 

@@ -131,8 +131,9 @@ def test_missions_that_share_a_requirement_are_named() -> None:
     }
 
     def verdicts(path: str) -> tuple[RequirementVerdict, ...]:
-        clause = "mission succeeds", f"{path[0]}/Sequence", "", "never exercised", 0, 0, 0, 0, "activations"
-        more = None, None, "one look", None, None, (), "it did not start in any run", None
+        why = "it did not start in any run"
+        clause = "mission succeeds", f"{path[0]}/Sequence", "", "never exercised", why, "activations", 0, 0, 0, 0
+        more = None, None, "one look", None, None, (), None
         return (RequirementVerdict("safe", "", "never exercised", (ClauseVerdict(*clause, *more),)),)
 
     overview = collect([(Workspace.of(texts), ("a.btq", "b.btq"))], verdicts_of=verdicts)

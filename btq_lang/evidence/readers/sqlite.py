@@ -30,9 +30,14 @@ def read(path: str) -> Iterator[Session]:
         NotALog: it is not a database of SqliteLogger.
         OSError: it cannot be read.
     """
-    remarks: list[str] = []
-    with opened(path, remarks) as database:
-        yield from _sessions(database, remarks)
+    of_file: list[str] = []
+    with opened(path, of_file) as database:
+        if missing := sorted({"Definitions", "Transitions"} - tables(database)):
+            raise NotALog(f"expected the tables of SqliteLogger; missing: {', '.join(missing)}")
+        for number, xml in _definitions(database, of_file):
+            samples: dict[str, Series] = {}
+            remarks = [*of_file]
+            yield Session(read_tree(str(xml)), _transitions(database, number, samples, remarks), samples, remarks)
 
 
 def is_bag(path: str) -> bool:
@@ -108,9 +113,8 @@ def tables(database: sqlite3.Connection) -> set[str]:
     return {name for (name,) in database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
 
 
-def _sessions(database: sqlite3.Connection, of_file: list[str]) -> Iterator[Session]:
-    if missing := sorted({"Definitions", "Transitions"} - tables(database)):
-        raise NotALog(f"expected the tables of SqliteLogger; missing: {', '.join(missing)}")
+def _definitions(database: sqlite3.Connection, remarks: list[str]) -> list[tuple[int, object]]:
+    """The number of each session, and its tree."""
     definitions: list[tuple[int, object]] = []
     try:
         for definition in database.execute("SELECT session_id, xml_tree FROM Definitions ORDER BY session_id"):
@@ -118,11 +122,8 @@ def _sessions(database: sqlite3.Connection, of_file: list[str]) -> Iterator[Sess
     except _DAMAGED as error:
         if not definitions:
             raise
-        of_file.append(f"the database is damaged, and sessions after number {definitions[-1][0]} are left out: {error}")
-    for number, xml in definitions:
-        samples: dict[str, Series] = {}
-        remarks = [*of_file]
-        yield Session(read_tree(str(xml)), _transitions(database, number, samples, remarks), samples, remarks)
+        remarks.append(f"the database is damaged, and sessions after number {definitions[-1][0]} are left out: {error}")
+    return definitions
 
 
 def _transitions(

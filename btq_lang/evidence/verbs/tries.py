@@ -23,7 +23,7 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
     """Judge the number of starts in each activation of the other node."""
     starts = run.starts()
     moments = [each.started for each, _ in starts]
-    for period in run.observed.activations(claim.per) if isinstance(claim.per, Target) else [run.root]:
+    for period in run.observed.nodes.activations(claim.per) if isinstance(claim.per, Target) else [run.root]:
         inside = starts[bisect_left(moments, period.started) : bisect_right(moments, period.ended)]
         sure = [each for each, counts in inside if counts is True]
         least = _judged(claim, run, period, sure)
