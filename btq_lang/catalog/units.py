@@ -180,11 +180,7 @@ def _tidy(value: float) -> float:
 
 
 def _nearest_words(word: str, alone: bool, target: Unit | None) -> tuple[str, ...]:
-    """Symbols for one factor: itself if it is right, else what was probably meant.
-
-    Args:
-        target: its dimension; None if unknown.
-    """
+    """Symbols for one factor: itself if it is right, else what was probably meant, in the dimension of the target."""
     if word == "1":
         return ("1",)
     if word in _TABLE:

@@ -90,11 +90,7 @@ class Forest:
 
 
 def match(old: Forest, new: Forest, renamed: dict[tuple[str, str], str]) -> None:
-    """Match two forests.
-
-    Args:
-        renamed: new names of the old mission's things; trees are added to it.
-    """
+    """Match two forests; `renamed`: new names of the old mission's things, to which trees are added."""
     ids: Ids = {}
     old.number(ids, renamed)
     new.number(ids, {})

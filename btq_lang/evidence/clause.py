@@ -48,7 +48,6 @@ class _Place(Record):
     """Where a clause that is judged over a run holds: a node, or the nodes whose events or durations it measures.
 
     Attributes:
-        uids: its nodes.
         others: the other nodes that it mentions.
     """
 
@@ -83,11 +82,7 @@ class JudgedClause:
     """
 
     def __init__(self, demand: Demand, limits: Limits = "one look", with_measures: bool = False) -> None:
-        """
-        Args:
-            limits: which limits of probabilities decide, except in a window.
-            with_measures: keep what is needed to judge it with another bound.
-        """
+        """Judge nothing yet; `limits`: those that decide about probabilities, except in a window."""
         requirement, claim, applied = demand.requirement, demand.claim, demand.applied
         subject = applied.subject if applied is not None else None
         self.demand: Final = demand
@@ -149,12 +144,7 @@ class JudgedClause:
         return self._nodes
 
     def judge(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
-        """Count an activation of one of its nodes.
-
-        Args:
-            guard: the guard that stopped it, if any.
-            observed: what was observed during it.
-        """
+        """Count an activation of one of its nodes, which a guard may have stopped, by what was observed during it."""
         self._has_run = True
         if activation.timing in BEGUN_BEFORE:
             return
@@ -180,11 +170,7 @@ class JudgedClause:
             self._add(judgement, path, refusal.time, refusal.time, self.explain(judgement, path))
 
     def end_run(self, run: Run, root: Activation) -> None:
-        """Judge the open run, which has ended.
-
-        Args:
-            root: the activation of the run's root.
-        """
+        """Judge the open run, which has ended; `root`: the activation of its root."""
         is_whole = root.timing not in BEGUN_BEFORE  # else it is unknown what ran in its first part
         for activation, observed, path in self._waiting if is_whole else ():
             self._judge_one(activation, observed.during(activation), path, root)  # again: a late sample may count
@@ -230,11 +216,7 @@ class JudgedClause:
                 self._count(found, root, place.path)
 
     def _judge_one(self, activation: Activation, observed: Observed, path: str, root: Activation | None = None) -> None:
-        """Count an activation.
-
-        Args:
-            root: of the run, if the judgement depends on the order of events.
-        """
+        """Count an activation; `root`: of the run, if the judgement depends on the order of events."""
         assert self._judge is not None, "the clause is judged by its activations"
         counts = in_scope(self.requirement.scopes, self.claim.verb, observed)
         if counts is False:
@@ -350,9 +332,6 @@ class JudgedClause:
     def remark(self, tree: LoggedTree, keeping: Collection[int]) -> str | None:
         """A remark on a count of starts: a node that completes at once and is not reset leaves a row in the log only
         when its result changes.
-
-        Args:
-            keeping: as of a `Session`.
         """
         for uid in self._nodes:
             if VERBS[self.claim.verb].operand in ("count", "rate") and not self._waits and tree.parent[uid] in keeping:
@@ -375,11 +354,7 @@ class JudgedClause:
         return ClauseFindings(self._tally, self._margins, tuple(self._paths), missing, self._has_run)
 
     def add(self, findings: ClauseFindings, runs: int) -> None:
-        """Add what was found in later logs.
-
-        Args:
-            runs: how many runs were before them.
-        """
+        """Add what was found in later logs; `runs`: how many runs were before them."""
         self._tally.add_all(findings.tally, runs)  # type: ignore[arg-type]  # one clause has tallies of one class
         if self._margins is not None and findings.margins is not None:
             self._margins.add_all(findings.margins, runs)
@@ -393,11 +368,7 @@ class JudgedClause:
         return isinstance(self._tally, Tally) and isinstance(later, Tally) and later.is_worse_than(self._tally, run)
 
     def verdict(self, open_run: Run | None = None) -> ClauseVerdict:
-        """The verdict on all judgements so far.
-
-        Args:
-            open_run: the open run, to include it.
-        """
+        """The verdict on all judgements so far, with those of the open run if that is given."""
         tally = self._tally.result() if open_run is None else self._tally.so_far(open_run)
         verdict, why = verdict_of(tally, self._not_judged or self._missing, self._has_run)
         goal = self.requirement.goal
@@ -457,8 +428,7 @@ def verdict_of(tally: Tally, missing: str, has_run: bool) -> tuple[Verdict, str]
     """The verdict on a clause, and why it is unknown, undecided or never exercised; else empty.
 
     Args:
-        missing: why it cannot be judged at all its nodes; empty if it can.
-        has_run: whether one of its nodes has.
+        missing, has_run: as of `ClauseFindings`.
     """
     verdict = tally.verdict()
     if missing and verdict != VIOLATED:

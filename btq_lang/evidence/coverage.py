@@ -33,11 +33,7 @@ class Coverage:
         self._runs = 1
 
     def expect(self, tree: LoggedTree, written: Mapping[int, int]) -> None:
-        """Begin a log whose tree has these nodes.
-
-        Args:
-            written: by uid, the index of each written node among those of the mission.
-        """
+        """Begin a log with this tree; `written`: by uid, the index of each written node among those of the mission."""
         self._now = {}
         for uid, node in tree.nodes.items():
             new = _Node(node.path, node.kind, uid in tree.leaves, written.get(uid))
@@ -65,11 +61,7 @@ class Coverage:
             repeated.now += step
 
     def end_run(self, run: int, began: int | None) -> None:
-        """Count the open run, which has ended.
-
-        Args:
-            began: the node where the run's failure began, if it failed.
-        """
+        """Count the open run, which has ended; `began`: the node where its failure began, if it failed."""
         self._runs += 1
         if began is not None:
             self._now[began].began += 1
@@ -81,11 +73,7 @@ class Coverage:
         self._now[uid].ticks.append(time)
 
     def add_all(self, other: Coverage, runs: int) -> None:
-        """Add the statistics of later logs.
-
-        Args:
-            runs: how many runs were before them.
-        """
+        """Add the statistics of later logs; `runs`: how many runs were before them."""
         for key, node in other._nodes.items():
             own = self._nodes.setdefault(key, node)
             if own is not node:
@@ -94,11 +82,7 @@ class Coverage:
         self.recoveries.add_all(other.recoveries, runs)
 
     def summary(self, written: Sequence[ResolvedNode]) -> tuple[NodeSummary, ...]:
-        """The statistics of all nodes, in the order of their uids.
-
-        Args:
-            written: the nodes of the mission.
-        """
+        """The statistics of all nodes, in the order of their uids; `written`: the nodes of the mission."""
         return tuple(node.summary(written) for _, node in sorted(self._nodes.items(), key=lambda each: each[0]))
 
 

@@ -91,12 +91,11 @@ class MissionEvaluation:
         limits: Limits = "one look",
         with_measures: bool = False,
     ) -> None:
-        """
+        """Judge nothing yet.
+
         Args:
-            with_timelines: keep the runs that broke clauses worst.
             ran: called with the number of each run after it is judged.
-            limits: which limits of probabilities decide.
-            with_measures: keep what is needed to judge clauses with other bounds.
+            with_timelines, limits, with_measures: as of `judging.Means`.
         """
         self._ran: Final = ran
         self.listeners: Final = [*listeners]
@@ -214,11 +213,7 @@ class MissionEvaluation:
         )
 
     def add(self, findings: Findings, runs: int) -> None:
-        """Add what was found in later logs, whose runs were numbered by themselves.
-
-        Args:
-            runs: how many runs were before them.
-        """
+        """Add what was found in later logs, whose runs are numbered by themselves, after so many runs."""
         for index, timeline in findings.timelines.items():
             clause = self._clauses[index]
             if self._timelines is not None and clause.is_worse_in(findings.clauses[index], timeline.run):
@@ -232,11 +227,7 @@ class MissionEvaluation:
         self._contexts.add_all(findings.contexts)
 
     def verdicts(self, open_run: Run | None = None) -> tuple[RequirementVerdict, ...]:
-        """The verdict on each requirement so far.
-
-        Args:
-            open_run: the open run, to include it.
-        """
+        """The verdict on each requirement so far, with the open run if that is given."""
         found = self.mission.requirements
         by_requirement: dict[str, list[ClauseVerdict]] = {name: [] for name in found.all}
         for clause in self._clauses:

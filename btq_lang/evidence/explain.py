@@ -48,10 +48,7 @@ class Explainer:
     def __init__(
         self, tree: LoggedTree, judged: Collection[int], signals: Signals, *, has_clauses_over_runs: bool
     ) -> None:
-        """
-        Args:
-            judged: the nodes whose violations are explained.
-        """
+        """Follow nothing yet; `judged`: the nodes whose violations are explained."""
         self._tree: Final = tree
         self._signals: Final = signals
         self._below: Final[dict[int, Sums]] = {uid: {} for uid in judged}  # since the last end of each judged node
@@ -168,11 +165,7 @@ class Explainer:
             yield Link("failure", path, f"{path} had failed before in this run", failed.seconds, 1, 1)
 
     def _samples(self, condition: Condition, time: int, *, is_named: bool = False) -> Iterator[Link]:
-        """The samples that a condition read: their age, and which leaf ran when they were taken.
-
-        Args:
-            is_named: name the signals.
-        """
+        """The samples that a condition read: their age, and which leaf ran when they were taken."""
         for signal in dict.fromkeys(signals_in(condition)):
             sampled = self._signals.sampled(signal, time)
             if sampled is None:

@@ -27,10 +27,7 @@ class RunExplainer:
     """Follows the leaves of a session in the open run."""
 
     def __init__(self, tree: LoggedTree, samples: Callable[[Condition, int], Iterator[Link]]) -> None:
-        """
-        Args:
-            samples: gives the samples that a condition read at a time, in whole sentences.
-        """
+        """Follow nothing yet; `samples`: gives those that a condition read at a time, in whole sentences."""
         self._tree: Final = tree
         self._samples: Final = samples
         self._leaves: Final[dict[int, list[Activation]]] = {}
@@ -47,11 +44,7 @@ class RunExplainer:
         self._leaves.clear()
 
     def chain(self, claim: Claim, judgement: Judgement, over: OverRun, others: Nearby) -> tuple[Link, ...]:
-        """What led to a violation in the run that has just ended.
-
-        Args:
-            others: the other nodes that the clause mentions.
-        """
+        """What led to a violation in the run that has just ended; `others`: the other nodes that a clause mentions."""
         if isinstance(claim.subject, Total):
             return tuple(self._shares(judgement.starts))
         event = claim.subject.last if isinstance(claim.subject, Span) else claim.event

@@ -17,11 +17,10 @@ from btq_lang.util.record import Record
 
 
 class Guard(Record):
-    """A node that a build added around others.
+    """A node that a build added around others to enforce a requirement.
 
     Attributes:
         kind: `Timeout`, `ReactiveSequence`, `Sequence` or `ScriptCondition`.
-        requirement: the requirement that it enforces.
     """
 
     kind: str
@@ -29,11 +28,7 @@ class Guard(Record):
 
 
 class Refusal(Record):
-    """A start that a guard refused because it would have violated a requirement.
-
-    Attributes:
-        verb: of the clause that refused it.
-    """
+    """A start that a guard refused because it would have violated a clause with this verb."""
 
     uid: int
     time: int
@@ -49,11 +44,7 @@ class Guards:
     """
 
     def __init__(self, tree: LoggedTree, enforcing: Mapping[int, str], judged: Collection[int]) -> None:
-        """
-        Args:
-            enforcing: the guards, each with its requirement.
-            judged: the nodes with clauses.
-        """
+        """Wait for activations; `enforcing`: guards, each with its requirement; `judged`: the nodes with clauses."""
         self._guards: Final = {uid: Guard(tree.nodes[uid].kind, name) for uid, name in enforcing.items()}
         self._around: Final[dict[int, tuple[int, ...]]] = {}  # innermost first
         self._refuse: Final[dict[int, tuple[str, list[int]]]] = {}

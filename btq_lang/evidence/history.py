@@ -61,10 +61,7 @@ class Nearby:
     """The nodes that a clause names, resolved relative to its own node."""
 
     def __init__(self, uid: int, joined: Joined, history: History) -> None:
-        """
-        Args:
-            uid: of the clause's node; the root's if it has none.
-        """
+        """Resolve nothing yet; `uid`: of the clause's node; the root's if it has none."""
         self._uid: Final = uid
         self._joined: Final = joined
         self._history: Final = history

@@ -34,11 +34,7 @@ class Measure:
         self.is_upper: Final = is_upper
 
     def kept(self, is_complete: bool) -> bool | None:
-        """Whether the bound is kept; None: undecided while the measure may grow.
-
-        Args:
-            is_complete: the measure does not grow any more.
-        """
+        """Whether the bound is kept; None: undecided, because a measure that is not complete may grow."""
         if self.excess > 0:
             return False if self.is_upper or is_complete else None
         return True if is_complete else None

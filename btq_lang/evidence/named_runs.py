@@ -176,11 +176,7 @@ def _by_name(joined: Joined, names: _Names) -> Joined:
 
 
 class _Names:
-    """The names of a tree's nodes.
-
-    Attributes:
-        root: the name of the root.
-    """
+    """The names of a tree's nodes, and that of its root."""
 
     def __init__(self, tree: LoggedTree) -> None:
         self._names: Final = {uid: node.name for uid, node in tree.nodes.items()}

@@ -53,10 +53,7 @@ class OneRun(Record):
 
 
 def one_run(log: str, mission: Candidate, number: int) -> OneRun | None:
-    """A run of a mission; None if the log has fewer.
-
-    Args:
-        number: counted from 1 among the mission's runs in the log.
+    """A run of a mission, counted from 1 among its runs in the log; None if there are fewer.
 
     Raises:
         NotALog, OSError: the log cannot be read.

@@ -37,11 +37,7 @@ class Recent:
         self._end = 0  # of the last run
 
     def add(self, judgement: Judgement, path: str, end: int, chain: tuple[Link, ...]) -> None:
-        """Count the judgement of an activation in the open run, or of the run.
-
-        Args:
-            end, chain: as in `Tally.add`.
-        """
+        """Count a judgement in the open run, as `Tally.add`."""
         self._now.append((judgement, path, end, chain))
 
     def end_run(self, run: Run) -> None:
@@ -54,11 +50,7 @@ class Recent:
         self._leave_out()
 
     def add_all(self, other: Recent, runs: int) -> None:
-        """Add the judgements of other logs, which were judged by themselves.
-
-        Args:
-            runs: how many runs were before theirs.
-        """
+        """Add the judgements of other logs, judged by themselves; `runs`: how many runs were before theirs."""
         self.cut_off += other.cut_off
         self._end = max(self._end, other._end)
         for run, judgements in other._kept:

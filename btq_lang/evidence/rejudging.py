@@ -35,11 +35,7 @@ class Shown(Record):
 
 
 def shown_now(found: Requirements, judged: Iterable[RequirementVerdict]) -> Iterator[Shown]:
-    """The clauses of the present text, each with its verdict.
-
-    Args:
-        judged: the verdicts with measures on an earlier text, or the same.
-    """
+    """The clauses of the present text, each with its verdict; `judged`: those on an earlier text, with measures."""
     known: dict[tuple[str, str, str], list[ClauseVerdict]] = {}
     for requirement in judged:
         for clause in requirement.clauses:

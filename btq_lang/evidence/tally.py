@@ -44,10 +44,7 @@ class Tally:
     def __init__(
         self, odds: Odds | None, confidence: float | None, limits: Limits = "one look", most: int | None = None
     ) -> None:
-        """
-        Args:
-            most: the maximum that count; None: all.
-        """
+        """Count nothing yet; `most`: the maximum that count; None: all."""
         self.counted = 0
         self.violated = 0
         self.unknown = 0
@@ -121,11 +118,7 @@ class Tally:
         return self.violations[0].run == run.number or (self.worst is not None and self.worst.run == run.number)
 
     def add_all(self, other: Tally, runs: int) -> None:
-        """Add the counts of later logs, which were judged by themselves.
-
-        Args:
-            runs: how many runs were before them.
-        """
+        """Add the counts of later logs, which were judged by themselves; `runs`: how many runs were before them."""
         self.counted += other.counted
         self.violated += other.violated
         self.unknown += other.unknown

@@ -16,11 +16,7 @@ if TYPE_CHECKING:
 
 
 class Timelines:
-    """Records the runs with the worst violations.
-
-    Attributes:
-        kept: the run with the worst violation of each clause.
-    """
+    """Records the run with the worst violation of each clause."""
 
     def __init__(self) -> None:
         self.kept: Final[dict[JudgedClause, Timeline]] = {}
@@ -35,11 +31,7 @@ class Timelines:
             self._left_out += 1
 
     def end_run(self, run: Run, tree: LoggedTree, broken: list[JudgedClause]) -> None:
-        """Close the open run.
-
-        Args:
-            broken: the clauses whose worst violation so far is in this run.
-        """
+        """Close the open run, which has the worst violation so far of some clauses."""
         if broken:
             self.kept.update(dict.fromkeys(broken, self._timeline(run, tree)))
         self._now.clear()

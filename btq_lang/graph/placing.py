@@ -68,11 +68,7 @@ class Drawing(Record):
 
 
 def place(figure: Figure, direction: str = "down") -> Drawing:
-    """Place everything in a figure.
-
-    Args:
-        direction: `down` or `right`.
-    """
+    """Place everything in a figure that grows `down` or `right`."""
     down = direction == "down"
     inner = {box.parent for box in figure.boxes}
     parts = [_Part(box, number in inner, down) for number, box in enumerate(figure.boxes)]

@@ -79,11 +79,7 @@ def render(figures: Sequence[Figure], direction: str) -> str:
 
 
 def part(drawing: Drawing, label: str) -> str:
-    """A drawing as a part of a page, which has the style sheet and may shrink it to 70 %.
-
-    Args:
-        label: what it shows, for screen readers.
-    """
+    """A drawing for a page, which has the style sheet and may shrink it to 70 %; `label`: for screen readers."""
     lines = [
         f'<svg class="tree" width="{drawing.width}" height="{drawing.height}"'
         f' viewBox="0 0 {drawing.width} {drawing.height}" style="min-width: {drawing.width * 7 // 10}px"'

@@ -6,11 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 
 def table(heading: Sequence[str], rows: Iterable[Sequence[str]], numbers_from: int = 99) -> Iterator[str]:
-    """The lines of a table.
-
-    Args:
-        numbers_from: columns from this one on are right-aligned.
-    """
+    """The lines of a table; columns from `numbers_from` on are right-aligned."""
     yield f"| {' | '.join(heading)} |"
     yield "|" + "|".join("---:" if at >= numbers_from else "---" for at in range(len(heading))) + "|"
     for row in rows:

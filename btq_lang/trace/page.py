@@ -26,11 +26,7 @@ if TYPE_CHECKING:
 
 
 def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
-    """The whole page.
-
-    Args:
-        missions: with the verdicts to show.
-    """
+    """The whole page, with the verdicts on missions if there are any."""
     return "\n".join(_lines(overview, missions)) + "\n"
 
 

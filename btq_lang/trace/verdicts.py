@@ -28,11 +28,7 @@ if TYPE_CHECKING:
 
 
 def verdicts(missions: Sequence[MissionVerdicts], keys: Mapping[str, str]) -> Iterator[str]:
-    """The page's section of verdicts.
-
-    Args:
-        keys: of the requirements' rows on the page, by name.
-    """
+    """The page's section of verdicts; `keys`: of the requirements' rows on the page, by name."""
     yield '<section id="verdicts" aria-labelledby="h-verdicts"><h2 id="h-verdicts">Verdicts</h2>'
     for mission in missions:
         yield from _mission(mission, keys)

@@ -78,10 +78,7 @@ class Bag:
 
 @contextmanager
 def opened(path: str) -> Iterator[Bag]:
-    """Open a bag for the duration of the context.
-
-    Args:
-        path: of a folder or a file.
+    """Open a bag, a folder or a file, for the duration of the context.
 
     Raises:
         NotALog: `rosbags` is missing, or cannot read it.

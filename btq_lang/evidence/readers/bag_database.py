@@ -17,11 +17,7 @@ if TYPE_CHECKING:
 
 
 class BagDatabase:
-    """The file.
-
-    Attributes:
-        connections: its topics, once it is open.
-    """
+    """The file, with its topics once it is open."""
 
     def __init__(self, path: str, remarks: list[str]) -> None:
         self._path: Final = path

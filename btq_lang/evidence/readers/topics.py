@@ -75,20 +75,10 @@ def _mapped(times: Times, of: Times, to: Times) -> Times | None:
 
 
 class Topics:
-    """The samples on some topics of a bag.
-
-    Attributes:
-        names: of the topics.
-        remarks: notes about the samples.
-    """
+    """The samples on some topics of a bag, with notes about them."""
 
     def __init__(self, sources: Iterable[SignalSource], topics: Iterable[str], namespaces: Iterable[str]) -> None:
-        """Find the topics that sources name.
-
-        Args:
-            topics: those of the bag.
-            namespaces: of the robots in it, where a topic is looked for first.
-        """
+        """Find those of a bag's topics that sources name, first in the namespaces of its robots."""
         there = set(topics)
         self._of: Final[dict[str, list[_Field]]] = {}
         self._sources: Final = [each for each in sources if each.topic]

@@ -46,11 +46,7 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
 
 
 def judges_of(claim: Claim, subject: Subject | None) -> tuple[Judge | None, RunJudge | None]:
-    """The functions that judge a clause, by activation and by run; at most one is not None.
-
-    Args:
-        subject: what the clause holds for.
-    """
+    """The functions that judge a clause for a subject, by activation and by run; at most one is not None."""
     name: str = claim.verb
     if isinstance(subject, Span | Total):
         if VERBS[claim.verb].limits != "completion":

@@ -24,11 +24,7 @@ def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement
 
 
 def judged_at(condition: Condition, moment: Moment, observed: Observed, sentence: str) -> Judgement:
-    """Judge a condition at a moment.
-
-    Args:
-        sentence: the sentence, in which `{}` is the measure.
-    """
+    """Judge a condition at a moment; `{}` in the sentence is the measure."""
     return judged(result_at(condition, moment, observed), moment[0], sentence)
 
 
@@ -39,11 +35,7 @@ def result_at(condition: Condition, moment: Moment, observed: Observed) -> Readi
 
 
 def judged(result: Reading | bool | Unknown, time: int, sentence: str) -> Judgement:
-    """The judgement of a condition evaluated at a time.
-
-    Args:
-        sentence: as in `judged_at`.
-    """
+    """The judgement of a condition evaluated at a time; `{}` in the sentence is the measure."""
     if isinstance(result, Reading):
         said = "" if result.holds else sentence.replace("{}", f"`{result.name}` was {{}}")
         return Judgement(result.holds, time, said, result)

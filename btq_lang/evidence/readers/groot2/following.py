@@ -154,11 +154,7 @@ class Following:
         self.pause = 0.0 if len(rows) >= messages.MOST_KEPT // 4 else _PAUSE
 
     def _new(self, rows: Sequence[Transition], since: int) -> Iterator[Event]:
-        """Take transitions.
-
-        Args:
-            since: when they were last asked for; they came after that, and before now.
-        """
+        """Take transitions, which came after they were last asked for, at `since`, and before now."""
         now = self._clock()
         earliest, latest = since + self._ahead - _TOLERANCE, now + self._ahead + _TOLERANCE
         if not all(earliest <= time <= latest for time, _, _ in rows):

@@ -38,12 +38,7 @@ class Reply(Record):
 
 
 def request(kind: str, number: int, argument: str | None = None) -> list[bytes]:
-    """The parts of a request.
-
-    Args:
-        number: its ID.
-        argument: the second part.
-    """
+    """The parts of a request with this number; `argument`: the second part."""
     head = _REQUEST.pack(_PROTOCOL, ord(kind), number)
     return [head] if argument is None else [head, argument.encode()]
 
@@ -81,10 +76,7 @@ def transitions(content: bytes) -> list[Transition]:
 
 
 def statuses(content: bytes, nodes: int) -> dict[int, int]:
-    """The status of each node, by uid.
-
-    Args:
-        nodes: how many the tree has.
+    """The status of each node, by uid, in a tree with so many nodes.
 
     Raises:
         BadReply: it is for another number of nodes.

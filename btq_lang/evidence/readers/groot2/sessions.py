@@ -61,10 +61,8 @@ def _transitions(
     after: list[Began],
     tell: Callable[[str], None],
 ) -> Iterator[Transition]:
-    """The transitions of a session; samples and remarks are appended while they are read.
-
-    Args:
-        after: the next session is appended.
+    """The transitions of a session; samples and remarks are appended while they are read, and at the end the next
+    session.
     """
     gaps = _Gaps(tell)
     for event in events:
