@@ -39,7 +39,7 @@ from btq_lang.formatter.alignment import Gap, paddings
 from btq_lang.formatter.clauses import sections
 from btq_lang.formatter.layout import FormatOptions, laid_out
 from btq_lang.formatter.lines import Line, Remark, logical_lines
-from btq_lang.formatter.marks import Marks, marks_of
+from btq_lang.formatter.marks import Marks
 from btq_lang.parser import Parsed, parse
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import LINE_END, Edit, Span, alike, apply_edits
@@ -123,7 +123,7 @@ class _Stretch(Record):
 
 def _stretches(parsed: Parsed, options: FormatOptions) -> list[_Stretch]:
     """The whole file, stretch by stretch."""
-    marks = marks_of(parsed)
+    marks = Marks(parsed)
     parts = tuple(sections(logical_lines(parsed.text, parsed.tokens, marks.atoms), marks, options))
     items = {entry.start + entry.item.start for entry in parsed.entries}
     _part_items([line for section in parts for line in section.lines], items)
