@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from btq_lang.diff.changes import THINGS, Change, Detail, section
+from btq_lang.diff.changes import TITLES, Change, Detail, section
 from btq_lang.diff.contents import Place, contents
 from btq_lang.diff.items import item_changes, renamed_items
 from btq_lang.diff.matching import Forest, match
@@ -38,4 +38,4 @@ def compare(old: Workspace, old_paths: Iterable[str], new: Workspace, new_paths:
     match(*forests, renamed)
     of_items = item_changes(before.items, after.items, renamed, tuple(forest.parts for forest in forests))
     changes = [*of_items, *tree_changes(*forests, renamed)]
-    return tuple(sorted(changes, key=lambda change: THINGS.index(section(change))))  # a stable sort
+    return tuple(sorted(changes, key=lambda change: [*TITLES].index(section(change))))  # a stable sort

@@ -8,9 +8,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from btq_lang.diff.changes import THINGS, Change, section
+from btq_lang.diff.changes import TITLES, Change, section
 from btq_lang.diff.comparison import Comparison
-from btq_lang.diff.wording import TITLES, headline, lines, summary
+from btq_lang.diff.wording import headline, lines, summary
 
 
 def render(comparisons: Iterable[Comparison]) -> Iterator[str]:
@@ -24,11 +24,11 @@ def render(comparisons: Iterable[Comparison]) -> Iterator[str]:
         yield f"### {code(comparison.title)}"
         yield ""
         yield f"{summary(comparison.changes)}."
-        for thing in THINGS:
+        for thing, title in TITLES.items():
             changes = [change for change in comparison.changes if section(change) == thing]
             if changes:
                 yield ""
-                yield f"#### {TITLES[thing]}"
+                yield f"#### {title}"
                 yield ""
                 for change in changes:
                     yield from _change(comparison, change)

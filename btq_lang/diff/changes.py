@@ -11,11 +11,20 @@ from typing import Final, Literal, TypeAlias
 from btq_lang.diff.contents import Place, Values
 from btq_lang.util.record import Record
 
-# The order in which changes are listed: what the mission is and must be first, then how it does that.
-THINGS: Final = (
-    *("mission", "include", "requirement", "apply", "quality"),
-    *("signal", "context", "node model", "tree", "xml", "guard"),
-)
+# The titles of the lists of changes, in their order: what the mission is and must be first, then how it does that.
+TITLES: Final = {
+    "mission": "Mission",
+    "include": "Includes",
+    "requirement": "Requirements",
+    "apply": "Requirements applied",
+    "quality": "Qualities",
+    "signal": "Signals",
+    "context": "Contexts",
+    "node model": "Node models",
+    "tree": "Trees",
+    "xml": "Verbatim XML",
+    "guard": "Guards",
+}
 GUARD: Final = "guard"  # enforces a requirement in XML; not a part of the mission
 
 What: TypeAlias = "Literal['added', 'removed', 'moved', 'changed', 'renamed']"
@@ -60,7 +69,7 @@ class Change(Record):
 
 
 def section(change: Change) -> str:
-    """The one of `THINGS` under which a change is listed: nodes belong to their trees."""
+    """The one of `TITLES` under which a change is listed: nodes belong to their trees."""
     return "tree" if change.thing == "node" else change.thing
 
 

@@ -40,7 +40,7 @@ def item_changes(
     before, after = _by_name(old), _by_name(new)
     _leave_out_built(before, after)
     names = {(thing, new_name): old_name for (thing, old_name), new_name in renamed.items()}
-    attached = [_attached(each) for each in nodes]
+    attached = [Counter(name for part in parts for name in dict.fromkeys(part.requirements)) for parts in nodes]
     for key, item in after.items():
         thing, name = item.thing, item.name
         earlier = names.get((thing, name))
@@ -112,10 +112,6 @@ def _by_content(items: Iterable[Item]) -> dict[Hashable, list[Item]]:
             content = item.thing, frozenset((aspect, value.key) for aspect, value in item.values.items())
             found.setdefault(content, []).append(item)
     return found
-
-
-def _attached(nodes: Iterable[Part]) -> Counter[str]:
-    return Counter(name for node in nodes for name in dict.fromkeys(node.requirements))
 
 
 def _nodes(number: int) -> str:

@@ -13,19 +13,6 @@ from btq_lang.diff.changes import Change, Detail
 from btq_lang.util.text import counted
 
 SIGNS: Final = {"added": "+", "removed": "-", "moved": ">", "changed": "~", "renamed": "~"}
-TITLES: Final = {
-    "mission": "Mission",
-    "include": "Includes",
-    "requirement": "Requirements",
-    "apply": "Requirements applied",
-    "quality": "Qualities",
-    "signal": "Signals",
-    "context": "Contexts",
-    "node model": "Node models",
-    "tree": "Trees",
-    "xml": "Verbatim XML",
-    "guard": "Guards",
-}
 _CLAUSES: Final = {"requirement": "satisfies", "quality": "satisfices", "tag": "tags"}
 _IN_WORDS: Final = ("title", "quality", "attached to", "category", "kind", "tree", "name", "by hand")
 _MOST: Final = 3  # names in a list
