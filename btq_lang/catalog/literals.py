@@ -86,12 +86,9 @@ def _check_one(plain: str, text: str, version: str) -> LiteralProblem | None:
         return _check_real(plain, text, version)
     values = _CLOSED.get(plain)
     if values is not None and text not in values:
-        return LiteralProblem("refused", _one_of(values if plain != "bool" else _SHOWN_OF_BOOL))
+        *others, last = values if plain != "bool" else _SHOWN_OF_BOOL
+        return LiteralProblem("refused", f"{', '.join(others)} or {last}")
     return None
-
-
-def _one_of(values: tuple[str, ...]) -> str:
-    return f"{', '.join(values[:-1])} or {values[-1]}"
 
 
 def _check_integer(plain: str, text: str) -> LiteralProblem | None:

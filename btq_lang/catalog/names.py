@@ -76,15 +76,12 @@ def legal_name(name: str) -> str:
     """
     if name.isascii() and name.isidentifier() and name not in ("Root", "root"):
         return name  # nearly all are
-    pieces = "".join(character if _is_plain(character) else " " for character in name).split()
+    plain = (each if each in "_-0123456789" or each.isalpha() else " " for each in name)
+    pieces = "".join(plain).split()
     legal = "_".join(kept for piece in pieces if (kept := piece.strip("-")))
     if legal in ("", "Root", "root"):
         return f"{legal}_"
     return f"_{legal}" if legal[0] in "0123456789" else legal
-
-
-def _is_plain(character: str) -> bool:
-    return character in "_-0123456789" or character.isalpha()
 
 
 def _forbidden_character(name: str) -> str | None:

@@ -126,11 +126,11 @@ def reading_of(condition: Condition, observed: Observed, moment: Moment) -> Read
 def _compared_with_bound(condition: Compare, observed: Observed, moment: Moment) -> Reading | None:
     """The reading of a comparison of a signal with a bound; None for other comparisons and unknown values."""
     sign, *others = condition.operators
-    if others or sign not in _MIRRORED:
+    if others or sign not in MIRRORED:
         return None
     left, right = condition.operands
     if not isinstance(left, _MEASURED):
-        sign, left, right = _MIRRORED[sign], right, left
+        sign, left, right = MIRRORED[sign], right, left
     if not isinstance(left, _MEASURED) or not isinstance(right, _BOUNDS):
         return None
     value = _number(left, observed, moment)
@@ -218,4 +218,4 @@ _OPERATIONS: Final[dict[str, Callable[[float, float], float]]] = {
 }
 _MEASURED: Final = (Read, Aggregate)
 _BOUNDS: Final = (Value, Table, Read)
-_MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.verbs import VERBS, words
+from btq_lang.evidence.conditions import MIRRORED
 from btq_lang.requirements.model import Aggregate, Compare, Limit, Read, Total, Value
 from btq_lang.util.record import Record, replace
 
@@ -78,9 +79,9 @@ def _edge_of_condition(claim: Claim) -> Edge | None:
     (sign,), (left, right) = condition.operators, condition.operands
     is_mirrored = isinstance(left, Value)
     value, measured = (left, right) if is_mirrored else (right, left)
-    if sign not in _MIRRORED or not isinstance(value, Value) or not isinstance(measured, Read | Aggregate):
+    if sign not in MIRRORED or not isinstance(value, Value) or not isinstance(measured, Read | Aggregate):
         return None
-    sign = _MIRRORED[sign] if is_mirrored else sign
+    sign = MIRRORED[sign] if is_mirrored else sign
     if claim.verb == "never":
         sign = _OPPOSITE[sign]
 
@@ -92,6 +93,5 @@ def _edge_of_condition(claim: Claim) -> Edge | None:
 
 
 _FAR: Final = 1e15  # further than any measure, and exact when a number of starts is added
-_MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 _OPPOSITE: Final = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 WHILE_IT_RUNS: Final = words(enforced="guard") & words(operands=("condition",))  # the first violation decides

@@ -80,8 +80,10 @@ class Explainer:
             if outcome == "F" and activation.end > activation.begin:
                 self._failed = activation
         parent = self._tree.parent[uid]
+        before = self._last.get(parent)
+        keeps_failure = before is not None and before[1] == "F" and parent in self._going_on
         # Halting a child does not cause the end.
-        if parent and (parent not in self._last or (outcome != "H" and not self._keeps_failure(parent))):
+        if parent and (before is None or (outcome != "H" and not keeps_failure)):
             self._last[parent] = uid, outcome, origin
         for above in self._above[uid]:
             sums = self._below[above].setdefault(uid, [0, 0, 0])
@@ -137,9 +139,6 @@ class Explainer:
             text += f", {failed} of its {number} starts failed"
         return Link("origin", path, text, time / 1e6, number, failed)
 
-    def _keeps_failure(self, uid: int) -> bool:
-        return uid in self._going_on and self._last[uid][1] == "F"
-
     def _came_to(self, origin: Origin, outcome: Outcome) -> str:
         """How the last child ended, and which port of the node would have made it the result."""
         nodes = self._tree.nodes
@@ -148,9 +147,8 @@ class Explainer:
         port = kind.port_for("wraps") if kind is not None else None
         return f"{text}, which is lost without `{port.name}`" if port is not None else text
 
-    def _levels(self, signal: Signal | None, unit: Unit | None, activation: Activation) -> Link:
+    def _levels(self, signal: Signal, unit: Unit | None, activation: Activation) -> Link:
         """The level of a signal at the start and at the end of an activation that used some of it."""
-        assert signal is not None, "the clause names what is used"
         levels = [self._signals.reading(signal, time) for time in (activation.begin, activation.end)]
         first, last = [quantity(float(each), unit) for each in levels if not isinstance(each, Unknown)]
         text = f"`{signal.name}` went from {first} to {last} in {duration(activation.seconds)}"

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.evaluate import Findings, MissionEvaluation
@@ -156,7 +157,8 @@ class Judging:
 
     def __init__(self, means: Means) -> None:
         self.runs = 0
-        self._evaluations: Final = {each.path: _empty(each, means) for each in means.missions}
+        of_all = partial(MissionEvaluation, limits=means.limits, with_measures=means.with_measures)
+        self._evaluations: Final = {each.path: of_all(each, means.with_timelines) for each in means.missions}
         self._foreign: Final[dict[tuple[str, str], Foreign]] = {}
         self._problems: Final[list[str]] = []
         self._renamed: Final[Counter[str]] = Counter()
@@ -178,7 +180,3 @@ class Judging:
         found = tuple(each for each in missions if each.sources)
         renamed = tuple(f"{counted(number, 'log')} had {what}" for what, number in self._renamed.items())
         return Report(found, tuple(self._foreign.values()), tuple(self._problems), renamed)
-
-
-def _empty(mission: Candidate, means: Means) -> MissionEvaluation:
-    return MissionEvaluation(mission, means.with_timelines, limits=means.limits, with_measures=means.with_measures)

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_left, bisect_right
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, TypeVar
 
 from btq_lang.util.record import Record
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     Timing: TypeAlias = Literal["exact", "latest", "broken", "late", "lost", "part"]
     Moment: TypeAlias = tuple[int, int]  # time, and row of the log, which orders rows of one time
 
+T = TypeVar("T")
 IDLE: Final = 0
 RUNNING: Final = 1
 SUCCESS: Final = 2
@@ -48,15 +50,11 @@ class LoggedNode(Record):
 
     Attributes:
         kind: the ID it is registered under.
-        parent: the uid of its parent; 0 for the root.
-        last: the largest uid below it; its own for a leaf.
     """
 
     uid: int
     kind: str
     path: str
-    parent: int
-    last: int
 
     @property
     def name(self) -> str:
@@ -66,7 +64,13 @@ class LoggedNode(Record):
 
 
 class LoggedTree:
-    """The tree in a log, with its nodes by uid."""
+    """The tree in a log.
+
+    Attributes:
+        nodes: by uid.
+        parent: the uid of the parent of each node; 0 for the root.
+        last: the largest uid below each node; its own for a leaf.
+    """
 
     def __init__(self, nodes: Sequence[tuple[int, str, str, int]]) -> None:
         """Build it from uid, kind, path and parent of each node, in the order of the uids."""
@@ -76,9 +80,7 @@ class LoggedTree:
             if parent:
                 self.last[parent] = max(self.last[parent], self.last[uid])
         self.leaves: Final = frozenset(uid for uid, last in self.last.items() if uid == last)
-        self.nodes: Final = {
-            uid: LoggedNode(uid, kind, path, parent, self.last[uid]) for uid, kind, path, parent in nodes
-        }
+        self.nodes: Final = {uid: LoggedNode(uid, kind, path) for uid, kind, path, _ in nodes}
 
     def above(self, uid: int) -> Iterator[int]:
         """The ancestors of a node, the nearest first."""
@@ -160,6 +162,14 @@ class Series:
 def is_sample(value: object) -> bool:
     """Whether a value from a file can be a sample: a text, a bool, or a number that stays finite in any unit."""
     return isinstance(value, str | bool) or (isinstance(value, float | int) and -_LARGEST <= value <= _LARGEST)
+
+
+def by_entry(boards: Mapping[Any, Mapping[Any, T]], main: str | None) -> dict[Any, T]:
+    """What is on blackboards, by entry: on the main tree's, and of others the entries that only one of them has."""
+    others = [board for name, board in boards.items() if name != main]
+    times = Counter(key for board in others for key in board)
+    alone = {key: value for board in others for key, value in board.items() if times[key] == 1}
+    return {**alone, **boards.get(main, {})}
 
 
 class Session:

@@ -105,7 +105,7 @@ def figure(
         Box(
             keys[id(node)],
             at[id(node.parent)] if node.parent is not None else None,
-            _outline(node),
+            _OUTLINES.get(node.category or "", "unknown"),
             _title(node),
             _lines(node),
             _text(node),
@@ -166,10 +166,6 @@ def _notes(found: Requirements) -> dict[int, tuple[Note, ...]]:
     for trace in found.traces:
         notes.setdefault(id(trace.node), []).append(Note("requirement", trace.requirement, trace.requirement))
     return {key: tuple(dict.fromkeys(each)) for key, each in notes.items()}
-
-
-def _outline(node: ResolvedNode) -> Outline:
-    return _OUTLINES.get(node.category or "", "unknown")
 
 
 def _title(node: ResolvedNode) -> str:

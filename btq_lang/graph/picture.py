@@ -39,7 +39,10 @@ def picture(workspace: Workspace, path: str, folded: Container[str] = ()) -> Pic
     shown = [foldable(figure, folded) for figure in figures(workspace, path, with_qualities=True)]
     keys = {box.key for figure in shown for box in figure.boxes}
     if "-notes" in folded or (len(keys) > _MOST_WITH_NOTES and "+notes" not in folded):
-        shown = [_with_folded_notes(figure) for figure in shown]
+        shown = [
+            replace(figure, boxes=tuple(replace(box, notes=_folded(box.notes)) for box in figure.boxes))
+            for figure in shown
+        ]
     return Picture(draw(shown), {key: span for key, span in places(workspace, path).items() if key in keys})
 
 
@@ -76,10 +79,6 @@ def foldable(figure: Figure, folded: Container[str] = ()) -> Figure:
     kept = [number for number, hiding in enumerate(top) if hiding is None]
     now = {number: place for place, number in enumerate(kept)}
     return replace(figure, boxes=tuple(_kept(figure.boxes[each], names[each], below[each], now) for each in kept))
-
-
-def _with_folded_notes(figure: Figure) -> Figure:
-    return replace(figure, boxes=tuple(replace(box, notes=_folded(box.notes)) for box in figure.boxes))
 
 
 def _folded(notes: tuple[Note, ...]) -> tuple[Note, ...]:

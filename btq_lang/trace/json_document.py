@@ -37,7 +37,7 @@ from __future__ import annotations
 import json
 from typing import TypeAlias
 
-from btq_lang.trace.overview import Overview, QualityRow, RequirementRow, Total
+from btq_lang.trace.overview import Overview, RequirementRow, Total
 from btq_lang.util.record import fields_of
 from btq_lang.util.version import __version__
 
@@ -53,7 +53,7 @@ def render(overview: Overview) -> str:
         "quality_model": f"iso25010-{overview.edition}",
         "files": list(overview.files),
         "requirements": [_requirement(each, overview.has_evidence) for each in overview.requirements],
-        "qualities": [_quality(each) for each in overview.qualities],
+        "qualities": [{**_fields(each), "at": _fields(each.at)} for each in overview.qualities],
         "nodes": [
             {
                 "key": each.key,
@@ -108,10 +108,6 @@ def _requirement(each: RequirementRow, has_evidence: bool) -> Json:
             for use in each.uses
         ],
     }
-
-
-def _quality(each: QualityRow) -> Json:
-    return {**_fields(each), "at": _fields(each.at)}
 
 
 def _total(each: Total) -> Json:

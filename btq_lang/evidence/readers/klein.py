@@ -12,14 +12,11 @@ import json
 import os
 from typing import Any, Final
 
-from btq_lang.evidence.model import Series, is_sample
+from btq_lang.evidence.model import Series, by_entry, is_sample
 
 
 def read(log: str) -> tuple[dict[str, Series], list[str]]:
-    """The samples beside a log by entry, and notes about them; both empty without such a file.
-
-    An entry is the main tree's, or a subtree's if no other blackboard has one of that name.
-    """
+    """The samples beside a log by entry, and notes about them; both empty without such a file."""
     path = f"{os.path.splitext(log)[0]}{SUFFIX}"
     name = os.path.basename(path)
     try:
@@ -39,7 +36,8 @@ def read(log: str) -> tuple[dict[str, Series], list[str]]:
     except OSError as error:
         return {}, [f"{name}: cannot be read: {error.strerror or error}; left out"]
     remarks = [f"{name}: lines that cannot be read, left out: {malformed}"] if malformed else []
-    return _by_entry(boards, header.get("tree_id")), remarks
+    main = header.get("tree_id")
+    return by_entry(boards, main if isinstance(main, str) else None), remarks
 
 
 def _add(boards: dict[str, dict[str, Series]], line: dict[str, Any] | None, start: int) -> bool:
@@ -54,15 +52,6 @@ def _add(boards: dict[str, dict[str, Series]], line: dict[str, Any] | None, star
         series = boards.setdefault(board, {}).setdefault(key, Series())
         series.add(start + time, None if is_removed else line["value"])
     return is_removed or "value" in line
-
-
-def _by_entry(boards: dict[str, dict[str, Series]], main: object) -> dict[str, Series]:
-    found = dict(boards.pop(main, {})) if isinstance(main, str) else {}
-    for board in boards.values():
-        for key, series in board.items():
-            if sum(key in each for each in boards.values()) == 1:
-                found.setdefault(key, series)
-    return found
 
 
 def _object(line: str) -> dict[str, Any] | None:

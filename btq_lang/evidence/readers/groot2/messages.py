@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from struct import Struct
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.model import IDLE, SKIPPED, is_sample
+from btq_lang.evidence.model import IDLE, SKIPPED, by_entry, is_sample
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
@@ -87,8 +87,7 @@ def statuses(content: bytes, nodes: int) -> dict[int, int]:
 
 
 def blackboard(content: bytes, boards: Sequence[str]) -> dict[str, SampleValue]:
-    """The values on the blackboards that can be samples, by entry: those of the first board, and of others the entries
-    that only one of them has.
+    """The values on the blackboards that can be samples, by entry; the first board is the main tree's.
 
     Raises:
         BadReply: it is not MessagePack, or no map.
@@ -101,17 +100,9 @@ def blackboard(content: bytes, boards: Sequence[str]) -> dict[str, SampleValue]:
         raise BadReply("the blackboard is not MessagePack") from error
     if not isinstance(found, dict | None):
         raise BadReply("expected a map of blackboards")
-    entries = {name: _entries(board) for name, board in (found or {}).items()}
-    own = entries.pop(boards[0], {}) if boards else {}
-    for board in entries.values():
-        for key in board.keys() - own.keys():
-            if sum(key in each for each in entries.values()) == 1:
-                own[key] = board[key]
-    return {key: value for key, value in own.items() if isinstance(key, str) and is_sample(value)}
-
-
-def _entries(board: object) -> dict[Any, Any]:
-    return dict(board) if isinstance(board, dict) else {}
+    entries = {name: board for name, board in (found or {}).items() if isinstance(board, dict)}
+    values = by_entry(entries, boards[0] if boards else None)
+    return {key: value for key, value in values.items() if isinstance(key, str) and is_sample(value)}
 
 
 def start_of(content: bytes) -> int:
