@@ -36,7 +36,6 @@ class Quality(Record):
         parent: the id of the characteristic it is part of.
         kind: product or in-use: of the ISO's models; robotics: an addition; ai: of ISO/IEC 25059.
         editions: that have the id with this definition.
-        source: the standard.
         nearest: of a robotics quality, the nearest one of the 2023 edition.
         measures: of a robotics quality, what to measure, in words.
     """
@@ -149,16 +148,13 @@ def _find_word(word: str, key: str, index: _Index) -> QualityMatch | None:
     meant = tuple(index.by_id[id_] for id_ in meanings if id_ in index.by_id)
     if len(meant) > 1:
         return QualityMatch("ambiguous", None, meant, explanation=_remark((key,)))
-    parts_so_called = index.by_part.get(key, ())
-    if len(parts_so_called) == 1:
-        return QualityMatch("exact", parts_so_called[0], explanation=_remark((key,)))
-    if parts_so_called:
-        explanation = f"`{word}` is part of several characteristics"
-        return QualityMatch("ambiguous", None, parts_so_called, explanation=explanation)
+    part = index.by_part.get(key)
+    if part is not None:
+        return QualityMatch("exact", part, explanation=_remark((key,)))
     if meant:
         return QualityMatch("alias", meant[0], meant, True, _remark((key,)))
     other = _index("2011" if index.edition == "2023" else "2023")
-    old = other.by_key.get(key) or (other.by_part.get(key) or (None,))[0]
+    old = other.by_key.get(key) or other.by_part.get(key)
     if old is not None:
         return _of_other_edition(old, index)
     if key in _ALIASES:
@@ -217,15 +213,13 @@ def _are_equal(id_: str, other: str) -> bool:
 
 
 def _alias(word: str, id_: str, index: _Index) -> QualityMatch:
-    """Aliases lead to ids of 2023, which may be others in 2011, or none."""
-    found = tuple(index.by_id[one] for one in _in_edition(id_, index))
-    explanation = f"`{word}` is another word for {' or '.join(quality.id for quality in found)}"
-    if len(found) == 1:
-        return QualityMatch("alias", found[0], found, True, explanation)
-    if found:
-        return QualityMatch("ambiguous", None, found, explanation=explanation)
-    new = _index("2023").by_id[id_]
-    return QualityMatch("other-edition", new, explanation=f"`{word}` means {id_}, which is new in {new.source}")
+    """Aliases lead to ids of 2023, which may be another in 2011, or none."""
+    ids = _in_edition(id_, index)
+    if not ids:
+        new = _index("2023").by_id[id_]
+        return QualityMatch("other-edition", new, explanation=f"`{word}` means {id_}, which is new in {new.source}")
+    found = index.by_id[ids[0]]
+    return QualityMatch("alias", found, (found,), True, f"`{word}` is another word for {found.id}")
 
 
 def _in_edition(id_: str, index: _Index) -> tuple[str, ...]:
@@ -242,9 +236,9 @@ def _remark(keys: tuple[str, ...]) -> str:
 def _near(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> tuple[str, ...]:
     """Ids for an unknown name: what its last word means, or else those similar to the whole name or its last word."""
     last = [quality.id for quality in _meanings(find(words[-1:], index.edition))] if len(words) > 1 else []
-    known: dict[str, tuple[str, ...]] = {key: (quality.id,) for key, quality in index.by_key.items()}
-    for group in (index.by_part, index.by_addition):
-        known |= {key: tuple(quality.id for quality in named) for key, named in group.items()}
+    known: dict[str, tuple[str, ...]] = {}
+    known |= {key: (quality.id,) for key, quality in (*index.by_key.items(), *index.by_part.items())}
+    known |= {key: tuple(quality.id for quality in named) for key, named in index.by_addition.items()}
     known |= {key: _in_edition(id_, index) for key, id_ in _ALIASES.items()}
     looks = near(".".join(keys), known) or near(keys[-1], known)
     ids = [*last, *(id_ for key in looks for id_ in known[key])]
@@ -256,8 +250,8 @@ class _Index:
 
     Attributes:
         by_key: folded ids.
-        by_part: folded names of the ISO's sub-characteristics, without the characteristic.
-        by_addition: the same for ISO/IEC 25059.
+        by_part: folded names of the ISO's sub-characteristics, without the characteristic: each is unique.
+        by_addition: the same for ISO/IEC 25059, where some are not.
     """
 
     def __init__(self, edition: Edition) -> None:
@@ -265,13 +259,14 @@ class _Index:
         self.by_id: Final = {quality.id: quality for quality in _of_edition(edition)}
         # Ids are lower case and ASCII, so half of fold() is enough.
         self.by_key: Final = {_american(id_.replace("-", "")): quality for id_, quality in self.by_id.items()}
-        self.by_part: Final[dict[str, tuple[Quality, ...]]] = {}
+        self.by_part: Final[dict[str, Quality]] = {}
         self.by_addition: Final[dict[str, tuple[Quality, ...]]] = {}
         for key, quality in self.by_key.items():
-            if quality.parent is not None:
-                group = self.by_addition if quality.kind == "ai" else self.by_part
-                part = key.partition(".")[2]
-                group[part] = (*group.get(part, ()), quality)
+            part = key.partition(".")[2]
+            if quality.kind == "ai":
+                self.by_addition[part] = (*self.by_addition.get(part, ()), quality)
+            elif part:
+                self.by_part[part] = quality
 
 
 def _of_edition(edition: Edition) -> Iterable[Quality]:

@@ -8,13 +8,7 @@ from btq_lang.util.record import Record
 
 
 class Verdict(Record):
-    """A verdict.
-
-    Attributes:
-        brief: what it means.
-        when: in which cases a clause gets it.
-        then: what to do about it.
-    """
+    """A verdict: what it means in short, when a clause gets it, and what to do then."""
 
     name: str
     brief: str

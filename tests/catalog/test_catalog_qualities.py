@@ -38,6 +38,12 @@ def facts(shared: Path) -> Any:
 
 
 @pytest.mark.parametrize("edition", BOTH)
+def test_names_of_parts_are_unique(edition: Edition) -> None:
+    names = [fold(each.name) for each in qualities(edition) if each.parent is not None and each.kind != "ai"]
+    assert len(set(names)) == len(names)
+
+
+@pytest.mark.parametrize("edition", BOTH)
 def test_the_models_of_the_iso(edition: Edition, facts: Any) -> None:
     published = facts["editions"][edition]
     in_use_source = published.get("quality_in_use_standard", published["standard"])
