@@ -19,7 +19,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     tally.py, recent.py, odds.py   judgements counted, over all runs or the last ones, and confidence limits
     explain.py, explain_run.py   what led to a violation
     distribution.py, timeline.py   a histogram of values and a timeline of a run, for the page
-    coverage.py, ticks.py   which nodes ran, how long they took, and how long they blocked the tree
+    coverage.py   which nodes ran, how long they took, and how long they blocked the tree
     store/         what was found in each log, kept and summarised
     compare/       two versions in a store compared
     verdicts.py    the report, as data

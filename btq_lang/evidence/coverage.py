@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from array import array
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.catalog.nodes import tags_of
+from btq_lang.evidence.model import FAILURE, RUNNING, SUCCESS, Session
 from btq_lang.evidence.verdicts import NodeSummary, Repeats
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.model import Activation, LoggedTree, Outcome
+    from btq_lang.evidence.model import Activation, LoggedTree, Outcome, Transition
     from btq_lang.workspace.resolved import ResolvedNode
 
 
@@ -68,9 +69,33 @@ class Coverage:
         for repeated in (self.retries, self.recoveries):
             repeated.end_run(run)
 
-    def took(self, uid: int, time: int) -> None:
-        """Record that a tick of a leaf took this time, in µs."""
-        self._now[uid].ticks.append(time)
+    def timed(self, session: Session) -> Session:
+        """The session, with transitions that count how long the `tick()` of a leaf takes, which blocks the whole tree.
+
+        Only rows of one tick are compared: when a leaf writes its first row right after its parent has begun, or after
+        a sibling before it has completed, nothing else ran in between.
+        """
+        return Session(session.tree, self._timed(session), session.samples, session.remarks)
+
+    def _timed(self, session: Session) -> Iterator[Transition]:
+        tree = session.tree
+        parent = tree.parent
+        running: set[int] = set()
+        before, uid_before, status_before = 0, 0, RUNNING
+        for row in session.transitions:
+            time, uid, status = row
+            if uid in tree.leaves:
+                if uid not in running and status in _ANSWERS and time >= before:
+                    above = parent[uid]
+                    is_sibling = parent.get(uid_before) == above and uid_before < uid
+                    if (is_sibling and status_before in _RESULTS) or (uid_before == above and status_before == RUNNING):
+                        self._now[uid].ticks.append(time - before)
+                if status == RUNNING:
+                    running.add(uid)
+                else:
+                    running.discard(uid)
+            before, uid_before, status_before = row
+            yield row
 
     def add_all(self, other: Coverage, runs: int) -> None:
         """Add the statistics of later logs; `runs`: how many runs were before them."""
@@ -159,5 +184,7 @@ def _percentile(ordered: list[int], percent: int) -> float | None:
     return ordered[-(-len(ordered) * percent // 100) - 1] / 1e6 if ordered else None
 
 
+_RESULTS: Final = (SUCCESS, FAILURE)
+_ANSWERS: Final = (RUNNING, SUCCESS, FAILURE)
 _RECOVERING: Final = frozenset([kind.tag for kind in NODES.values() if kind.flow == "recover"])
 _RETRYING: Final = tags_of("retry") | _RECOVERING

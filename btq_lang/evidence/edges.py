@@ -22,7 +22,6 @@ class Edge(Record):
     """The bound of a clause.
 
     Attributes:
-        value: the bound.
         is_upper: it bounds the measure from above.
         is_strict: a measure equal to it violates it.
         moved: gives the claim with another value in its place.

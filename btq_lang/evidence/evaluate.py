@@ -22,7 +22,6 @@ from btq_lang.evidence.outline import demands, outline
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signals import Signals
 from btq_lang.evidence.tally import Run
-from btq_lang.evidence.ticks import timed
 from btq_lang.evidence.timeline import Timelines
 from btq_lang.evidence.verdicts import (
     OUTCOMES,
@@ -76,11 +75,7 @@ class Listener(Protocol):
 
 
 class MissionEvaluation:
-    """Judges a mission's requirements while its logs are read.
-
-    Attributes:
-        listeners: they are given all that is found.
-    """
+    """Judges a mission's requirements while its logs are read; gives listeners all that is found."""
 
     def __init__(
         self,
@@ -140,7 +135,7 @@ class MissionEvaluation:
         begin: int | None = None
         end = 0
         runs = 0
-        log = timed(session, self._coverage.took)
+        log = self._coverage.timed(session)
         for activation in activations(log):
             self._coverage.count(activation)
             origin = explainer.see(activation)

@@ -39,10 +39,9 @@ class Events(Record):
 
 
 def render(report: Report, name: str, clocks: Mapping[str, Clock]) -> Events:
-    """Write the violations in a report, in the order of their times.
+    """Write the violations in a report into a bag of this name, in the order of their times.
 
     Args:
-        name: of the bag.
         clocks: of the sources that are bags.
 
     Raises:

@@ -149,11 +149,7 @@ def _judged(
 
 
 class Judging:
-    """Adds up what was found in logs.
-
-    Attributes:
-        runs: how many were judged.
-    """
+    """Adds up what was found in logs, and how many runs were judged."""
 
     def __init__(self, means: Means) -> None:
         self.runs = 0

@@ -46,11 +46,7 @@ PAUSE: Final = Mark(-2)  # for a while there has been none
 
 
 class LoggedNode(Record):
-    """A node of the tree in a log.
-
-    Attributes:
-        kind: the ID it is registered under.
-    """
+    """A node of the tree in a log; `kind`: the ID it is registered under."""
 
     uid: int
     kind: str
@@ -121,11 +117,7 @@ class Activation:
 
 
 class Series:
-    """The samples of one signal, in the order of their times.
-
-    Attributes:
-        unit: of the values; None: the signal's own.
-    """
+    """The samples of one signal, in the order of their times; `unit`: of the values; None: the signal's own."""
 
     def __init__(self, unit: Unit | None = None) -> None:
         self.unit: Final = unit

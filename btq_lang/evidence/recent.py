@@ -21,11 +21,7 @@ if TYPE_CHECKING:
 
 
 class Recent:
-    """Counts the last activations, the last runs with a judgement, or a last period.
-
-    Attributes:
-        cut_off: as in `ClauseVerdict`, for all logs.
-    """
+    """Counts the last activations, the last runs with a judgement, or a last period; what is cut off, in all logs."""
 
     def __init__(self, window: Window, odds: Odds | None, confidence: float | None) -> None:
         self.cut_off = 0

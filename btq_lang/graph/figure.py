@@ -22,7 +22,6 @@ class Note(Record):
 
     Attributes:
         key: the same for all notes of the same thing.
-        title: its name.
         lines: its contents, each line short enough to be drawn.
         text: all of its contents.
         state: a class of the drawing: `enforced`, `monitored`, `reviewed`; empty: unknown.
