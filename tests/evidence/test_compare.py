@@ -13,7 +13,7 @@ import pytest
 from in_process import run_btq
 from json_schema import violations
 
-from btq_lang.evidence.compare.chance import Shuffles, fisher, holm, is_too_few, shuffles_for
+from btq_lang.evidence.compare.chance import Shuffles, exact, holm, is_too_few, shuffles_for
 from btq_lang.evidence.compare.comparison import compare
 from btq_lang.evidence.compare.words import remarks
 from btq_lang.evidence.store import engine
@@ -246,6 +246,20 @@ def test_a_version_compared_with_itself_on_robots_of_different_speed(tmp_path: P
         assert [each for each in found.changes if each.finding in ("slower", "faster")] == []
 
 
+def test_failures_are_compared_within_each_robot(tmp_path: Path) -> None:
+    """A robot that fails half of the time runs more with the second version: neither is less reliable."""
+    chance = random.Random(4)
+    for label, shares in (("a", (120, 40)), ("b", (40, 120))):
+        for robot, runs, fails in zip(("good", "bad"), shares, (0.01, 0.5), strict=True):
+            keep(tmp_path / "kept", label, drawn(chance, runs, fails=fails), robot)
+    (found,) = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", "b"))
+    (dock,) = (each for each in found.changes if (each.node, each.what) == ("Dock", "failures"))
+    assert (dock.counts, dock.finding) == ((160, 160), "")
+    assert dock.failed is not None
+    before, after = dock.failed
+    assert exact([((before, 160), (after, 160))]) < 0.001
+
+
 def test_many_runs_are_shuffled_in_groups(tmp_path: Path) -> None:
     chance = random.Random(3)
     keep(tmp_path / "kept", "a", drawn(chance, 600, 10.0))
@@ -292,14 +306,39 @@ def test_fisher_is_the_sum_of_all_tables_that_are_as_unlikely(first: tuple[int, 
     ways = [comb(n, each) * comb(m, both - each) for each in range(max(0, both - m), min(both, n) + 1)]
     observed = comb(n, failed) * comb(m, other)
     expected = sum(each for each in ways if each <= observed) / comb(n + m, both)
-    assert fisher(first, second) == pytest.approx(expected, rel=1e-9)
+    assert exact([(first, second)]) == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_exact_test_of_several_robots() -> None:
+    """By hand: of each robot, in 1 of 2 ways, or in 2, 8 or 2 of 12, the failure or two are on the first side."""
+    one, three = ((1, 1), (0, 1)), ((2, 3), (0, 1))
+    assert exact([one]) == pytest.approx(1)
+    assert exact([one, one]) == pytest.approx(1 / 2)  # 1, 2, 1 of 4 ways for 0, 1, 2
+    assert exact([three]) == pytest.approx(1)  # 1 of the first and the other, or both of the first: 3 of 6 ways each
+    assert exact([one] * 10) == pytest.approx(2 / 1024)
+    assert exact([((3, 3), (0, 3)), ((2, 2), (0, 2))]) == pytest.approx(2 / (20 * 6))
+    assert exact([((4, 5), (0, 0)), ((3, 3), (0, 3))]) == pytest.approx(2 / 20)  # a robot that ran one side only
+
+
+def test_robots_of_different_reliability_in_unequal_shares_explain_nothing() -> None:
+    """Two robots fail in 50 % and in 1 % of runs, with both versions; pooled, nearly all splits seem to differ."""
+    chance = random.Random(3)
+    found = pooled = 0
+    for _ in range(1000):
+        strata = [
+            tuple((sum(chance.random() < rate for _ in range(runs)), runs) for runs in shares)
+            for rate, shares in ((0.5, (60, 20)), (0.01, (20, 60)))
+        ]
+        found += exact(strata) <= 0.05
+        pooled += exact([tuple(tuple(map(sum, zip(*side, strict=True))) for side in zip(*strata, strict=True))]) <= 0.05
+    assert (found, pooled) == (44, 966)
 
 
 def test_shuffles_agree_with_fisher_where_each_run_fails_or_not() -> None:
     scores = [80 * failed - 24 for failed in [True] * 7 + [False] * 33 + [True] * 17 + [False] * 23]
     assert sum(scores) == 0
     side = [""] * 40
-    assert Shuffles(side, side, 10_000).probability(scores) == pytest.approx(fisher((7, 40), (17, 40)), rel=0.15)
+    assert Shuffles(side, side, 10_000).probability(scores) == pytest.approx(exact([((7, 40), (17, 40))]), rel=0.15)
 
 
 def test_holm() -> None:

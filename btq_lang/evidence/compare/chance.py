@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from math import comb, exp, lgamma, prod
-from operator import itemgetter
-from typing import Final
+from operator import itemgetter, mul
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+if TYPE_CHECKING:
+    Failures: TypeAlias = tuple[tuple[int, int], tuple[int, int]]  # of each side, how many, of how many
 
 
 class Shuffles:
@@ -65,18 +68,30 @@ def shuffles_for(comparisons: int) -> int:
     return max(_SHUFFLES, round(comparisons / LEVEL))
 
 
-def fisher(first: tuple[int, int], second: tuple[int, int]) -> float:
-    """The p-value of Fisher's exact test, in both directions.
+def exact(strata: Iterable[Failures]) -> float:
+    """The p-value, in both directions, of as many failures where the odds of the sides are the same in every stratum.
 
-    Args:
-        first, second: how often it failed, of how many.
+    It is the exact conditional test of Agresti, *Categorical Data Analysis*, section 6.4, and of R's
+    `mantelhaen.test(exact = TRUE)`: how likely each number of failures on the first side is, given those of both
+    sides in each stratum.  Of one stratum that is Fisher's exact test.
     """
-    (failed, n), (other, m) = first, second
-    both = failed + other
-    possible = range(max(0, both - m), min(both, n) + 1)
-    logs = [_log_comb(n, each) + _log_comb(m, both - each) - _log_comb(n + m, both) for each in possible]
-    observed = logs[failed - possible[0]] + _ROUNDING
-    return min(1.0, sum(exp(each) for each in logs if each <= observed))
+    first, chances, observed = 0, [1.0], 0
+    for (failed, n), (other, m) in strata:
+        both = failed + other
+        possible = range(max(0, both - m), min(both, n) + 1)
+        logs = [_log_comb(n, each) + _log_comb(m, both - each) - _log_comb(n + m, both) for each in possible]
+        least, own = _likely(possible[0], map(exp, logs))
+        first, chances = _likely(first + least, _of_sums(chances, own))
+        observed += failed
+    if observed not in range(first, first + len(chances)):
+        return _RARE
+    limit = chances[observed - first] * (1 + _ROUNDING)
+    return min(1.0, sum(each for each in chances if each <= limit))
+
+
+def expected(strata: Iterable[Failures]) -> float:
+    """How many failures the first side has on average, given those of both sides in each stratum."""
+    return sum(n * (failed + other) / (n + m) for (failed, n), (other, m) in strata)
 
 
 def holm(probabilities: Sequence[float]) -> list[float]:
@@ -100,6 +115,19 @@ def is_too_few(sizes: Sequence[tuple[int, int]], comparisons: int) -> bool:
     return prod(comb(first + second, first) for first, second in sizes) < extremes * comparisons / LEVEL
 
 
+def _likely(first: int, chances: Iterable[float]) -> tuple[int, list[float]]:
+    """The numbers from `first` on that are not too rare to count: the least of them, and how likely each is."""
+    kept = [(number, chance) for number, chance in enumerate(chances, first) if chance >= _RARE]
+    return kept[0][0], [chance for _, chance in kept]
+
+
+def _of_sums(first: Sequence[float], second: Sequence[float]) -> list[float]:
+    """How likely each sum of two independent numbers is, from how likely each number is."""
+    edge = [0.0] * (len(second) - 1)
+    padded, mirrored = [*edge, *first, *edge], second[::-1]
+    return [sum(map(mul, padded[place : place + len(second)], mirrored)) for place in range(len(first) + len(edge))]
+
+
 def _log_comb(n: int, k: int) -> float:
     return lgamma(n + 1) - lgamma(k + 1) - lgamma(n - k + 1)
 
@@ -107,4 +135,5 @@ def _log_comb(n: int, k: int) -> float:
 LEVEL: Final = 0.05
 _SHUFFLES: Final = 10_000
 _SEED: Final = 25_010
+_RARE: Final = 1e-20  # of numbers that are rarer, all together are as well
 _ROUNDING: Final = 1e-7  # tables that are as likely as the observed one differ by that much at most

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import parse_unit
 from btq_lang.evidence.compare import questions
-from btq_lang.evidence.compare.chance import LEVEL, Shuffles, fisher, holm, is_too_few, shuffles_for
+from btq_lang.evidence.compare.chance import LEVEL, Shuffles, exact, expected, holm, is_too_few, shuffles_for
 from btq_lang.evidence.compare.requirements import edited, turned, verdicts
 from btq_lang.evidence.store.tables import quoted
 from btq_lang.evidence.verdicts import VIOLATED
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.compare.chance import Failures
     from btq_lang.evidence.compare.requirements import Edited, Newly, Verdicts
 
     Ask: TypeAlias = Callable[[str], Sequence[Mapping[str, Any]]]
@@ -147,13 +148,14 @@ class _Mission:
         by_run = questions.BY_RUN.format(by=words["by"], stratum=stratum, size=self._size)
         unit = "robot" if self._over == "robots" else by_run
         words = {**words, "mission": quoted(name), "stratum": stratum, "unit": unit}
+        words["robots"] = "robot" if robots[0] & robots[1] else "''"
         words["clause"] = questions.clause_of(self._edited)
 
         def asked(question: str) -> Sequence[Mapping[str, Any]]:
             return ask(question.format(**words))
 
         self._measures: Final = self._of_both(asked(questions.QUANTILES))
-        self._failures: Final = self._of_both(asked(questions.FAILURES))
+        self._failures: Final = self._failures_of_both(asked(questions.FAILURES))
         self._units: Final = {_key(row): row["unit"] or "1" for row in asked(questions.UNITS)}
         self._scores: Final[dict[Key, dict[Unit, Mapping[str, Any]]]] = {}
         for row in asked(questions.SCORES):
@@ -183,12 +185,7 @@ class _Mission:
                 p = shuffles.probability(scores) if agrees else 1.0
                 unit = self._units.get(key, "s") if key[0] else "s"
                 found.append(Change(*key, what, unit, before[what], after[what], counts, None, p, too_few, ""))
-        for key, (before, after) in self._failures.items():
-            counts, failed = (before["number"], after["number"]), (before["failed"], after["failed"])
-            p = fisher((failed[0], counts[0]), (failed[1], counts[1]))
-            shares = failed[0] / counts[0], failed[1] / counts[1]
-            too_few = is_too_few([counts], comparisons)
-            found.append(Change(*key, "failures", "%", *shares, counts, failed, p, too_few, ""))
+        found += [_failed(key, strata, comparisons) for key, strata in self._failures.items()]
         return found
 
     def result(self, changes: tuple[Change, ...]) -> Comparison:
@@ -211,6 +208,19 @@ class _Mission:
             changes=changes,
         )
 
+    def _failures_of_both(self, rows: Sequence[Mapping[str, Any]]) -> dict[Key, list[Failures]]:
+        """Of what both sides have, how many runs of each side failed, of how many, in each stratum."""
+        found: dict[Key, dict[str, dict[str, tuple[int, int]]]] = {}
+        for row in rows:
+            of = found.setdefault(_key(row), {}).setdefault(row["stratum"], {})
+            of[row["side"]] = row["failed"], row["number"]
+        first, second = self._sides
+        return {
+            key: [(of.get(first, (0, 0)), of.get(second, (0, 0))) for of in strata.values()]
+            for key, strata in found.items()
+            if all(any(side in of for of in strata.values()) for side in self._sides)
+        }
+
     def _sizes(self, units: Iterable[Unit]) -> list[tuple[int, int]]:
         """How many units each side has in each stratum."""
         found = Counter((side, stratum) for side, stratum, _ in units)
@@ -231,6 +241,19 @@ def _over(first: set[str], second: set[str]) -> Over:
     if max(len(first), len(second)) == 1:
         return "runs"
     return "runs of each robot" if first <= second or second <= first else "robots"
+
+
+def _failed(key: Key, strata: Sequence[Failures], comparisons: int) -> Change:
+    """The failures of a node, or the violations of a clause."""
+    (failed, before), (other, after) = (
+        [sum(numbers) for numbers in zip(*of, strict=True)] for of in zip(*strata, strict=True)
+    )
+    shares = failed / before, other / after
+    # Robots that fail more often may have run more on one side: then the shares differ the other way than their own.
+    agrees = (failed < expected(strata)) == (shares[0] < shares[1])
+    p = exact(strata) if agrees else 1.0
+    too_few = is_too_few([(one[1], two[1]) for one, two in strata], comparisons)
+    return Change(*key, "failures", "%", *shares, (before, after), (failed, other), p, too_few, "")
 
 
 def _key(row: Mapping[str, Any]) -> Key:

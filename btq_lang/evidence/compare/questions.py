@@ -1,7 +1,8 @@
 """The questions that a comparison asks of a store, in DuckDB's SQL.
 
 `{by}` is the column that names the sides, `{sides}` their names, `{unit}` what is shuffled, `{stratum}` within what,
-`{clause}` a clause as both sides have it.
+`{robots}` within what
+failures are counted, `{clause}` a clause as both sides have it.
 """
 
 from __future__ import annotations
@@ -73,19 +74,25 @@ SCORES: Final = (
     FROM measured JOIN pooled USING (requirement, clause, node, stratum) GROUP BY ALL
 """
 )
-# In how many runs a node failed, or a clause was violated, at least once, of those where it had a result.
+# In how many runs a node failed, or a clause was violated, at least once, of those where it had a result.  A bit for
+# each run of a log takes a sixth of the memory that a row for each takes.
 FAILURES: Final = """
     WITH results AS (
-        SELECT '' AS requirement, '' AS clause, node, {by} AS side, log, run, outcome = 'failed' AS failed
+        SELECT '' AS requirement, '' AS clause, node, {by} AS side, {robots} AS stratum, log, run,
+            outcome = 'failed' AS failed
         FROM activations WHERE mission = {mission} AND {by} IN ({sides}) AND outcome IN ('succeeded', 'failed')
         UNION ALL
-        SELECT requirement, clause, node, {by} AS side, log, run, verdict = 'violated' AS failed
+        SELECT requirement, clause, node, {by} AS side, {robots} AS stratum, log, run, verdict = 'violated' AS failed
         FROM verdicts WHERE mission = {mission} AND {by} IN ({sides}) AND verdict IN ('satisfied', 'violated')
     ),
-    of_runs AS (SELECT requirement, clause, node, side, bool_or(failed) AS failed FROM results
-        GROUP BY requirement, clause, node, side, log, run)
-    SELECT requirement, clause, node, side, COUNT(*) AS number, COUNT(*) FILTER (failed) AS failed
-    FROM of_runs GROUP BY ALL ORDER BY requirement, clause, node
+    of_logs AS (
+        SELECT requirement, clause, node, side, stratum, bit_count(bitstring_agg(run % 1024, 0, 1023)) AS number,
+            bit_count(bitstring_agg(run % 1024, 0, 1023) FILTER (failed)) AS failed
+        FROM results GROUP BY requirement, clause, node, side, stratum, log, run // 1024
+    )
+    SELECT requirement, clause, node, side, stratum,
+        SUM(number)::BIGINT AS number, COALESCE(SUM(failed), 0)::BIGINT AS failed
+    FROM of_logs GROUP BY ALL ORDER BY requirement, clause, node, stratum, side
 """
 # The nodes that were active on one side only.
 ONE_SIDED: Final = """
