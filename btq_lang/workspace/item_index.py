@@ -144,41 +144,15 @@ class Names:
         return cls(found)
 
     def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Names | None:
-        """The names after an edit that replaced some items; None if they must be recomputed: a name has several
-        definitions, or the position of the new ones is unclear, for instance because they are in several places."""
+        """The names after an edit that replaced some items by others that define the same ones, each defined once; None
+        after any other edit."""
         before = [(symbol.kind, symbol.name) for each in gone for symbol in each.summary.symbols]
-        now = {(one.kind, one.name): [(each.item, one)] for each in come for one in each.summary.symbols}
-        if any(len(self.found[key]) > 1 for key in before):
+        now = [((one.kind, one.name), [(each.item, one)]) for each in come for one in each.summary.symbols]
+        if before != [name for name, _ in now] or any(len(self.found[name]) > 1 for name in before):
             return None
-        if len(now) < sum([len(each.summary.symbols) for each in come]):
-            return None
-        if not before:
-            return None if now else self
-        if before == [*now]:
-            found = {**self.found, **now}
-        elif now.keys() - before & self.found.keys():
-            return None
-        else:
-            known, names = [*self.found.items()], [*self.found]
-            at = names.index(before[0])
-            if names[at : at + len(before)] != before:
-                return None
-            found = dict([*known[:at], *now.items(), *known[at + len(before) :]])
-        after = Names(found)
-        after._take_over(self, before, [*now])
+        after = Names({**self.found, **dict(now)})
+        after.__dict__.update({known: names for known, names in self.__dict__.items() if known != "found"})
         return after
-
-    def _take_over(self, other: Names, before: list[Name], now: list[Name]) -> None:
-        """Copy what has not changed."""
-        touched = {kind for kind, _ in (*before, *now)}
-        if before == now and "all" in other.__dict__:
-            self.all = other.all
-        if "by_kind" in other.__dict__:
-            self.by_kind = other.by_kind if before == now else other.by_kind | self._by_kind(touched)
-        if "symbols" in other.__dict__:
-            self.symbols = other.symbols | (self._replaced(other, now) if before == now else self._symbols(touched))
-        if "repeated" in other.__dict__:  # what was removed and added is defined once
-            self.repeated = other.repeated
 
     @cached_property
     def all(self) -> frozenset[Name]:
@@ -186,25 +160,7 @@ class Names:
 
     @cached_property
     def by_kind(self) -> dict[Kind, tuple[str, ...]]:
-        return self._by_kind(Kind)
-
-    def _by_kind(self, kinds: Iterable[Kind]) -> dict[Kind, tuple[str, ...]]:
-        return {kind: tuple([name for of, name in self.found if of is kind]) for kind in kinds}
-
-    @cached_property
-    def symbols(self) -> dict[Kind, tuple[Symbol, ...]]:
-        """The symbols of each kind, the first one of each name."""
-        return self._symbols(Kind)
-
-    def _symbols(self, kinds: Iterable[Kind]) -> dict[Kind, tuple[Symbol, ...]]:
-        return {kind: tuple([same[0][1] for (of, _), same in self.found.items() if of is kind]) for kind in kinds}
-
-    def _replaced(self, other: Names, names: list[Name]) -> dict[Kind, tuple[Symbol, ...]]:
-        """The symbols with those of some kinds replaced, by the same names."""
-        symbols = {kind: [*other.symbols[kind]] for kind, _ in names}
-        for kind, name in names:
-            symbols[kind][self.by_kind[kind].index(name)] = self.found[kind, name][0][1]
-        return {kind: tuple(each) for kind, each in symbols.items()}
+        return {kind: tuple([name for of, name in self.found if of is kind]) for kind in Kind}
 
     @cached_property
     def repeated(self) -> frozenset[Name]:

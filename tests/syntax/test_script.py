@@ -14,10 +14,8 @@ from script_text import unparse
 from btq_lang.catalog.versions import VERSIONS as ENGINES
 from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.script import tokens
 from btq_lang.syntax.script.check import check_script
 from btq_lang.syntax.script.parser import MAX_DEPTH, parse_script
-from btq_lang.syntax.script.tokens import Tokens
 from btq_lang.syntax.script.tree import (
     Assign,
     Binary,
@@ -709,24 +707,3 @@ def assert_nested(nodes: tuple[Expression, ...], outer: Span) -> None:
         assert at <= node.start < node.end <= outer.end
         assert_nested(children(node), Span(node.start, node.end))
         at = node.end
-
-
-# ---- the short cut past the pattern ----
-
-SPACED = st.lists(
-    st.sampled_from([*"()!=<>:;?+-*/&|^~.'", ":=", "&&", "..", "=>", "and", "true", "x", "_y1", "@z", "é", "3", "3."])
-    | st.sampled_from([".5", "0.25", "'a'", "''", "x;", "", "\t", "1e3", "0x1F", "'a", "9" * 20, "٣", "a.b", "-1"])
-)
-
-
-@given(SPACED.map(" ".join))
-def test_words_with_blanks_between_are_cut_as_the_pattern_cuts_them(text: str) -> None:
-    spaced, matched = tokens._spaced(text), tokens._matched(text)
-    if spaced is not None:
-        for field in Tokens.__slots__:
-            assert getattr(spaced, field) == getattr(matched, field)
-
-
-@pytest.mark.parametrize("text", ["battery < 20", "x := 0 ; y := 0.5", "state == 'idle' && ! done"])
-def test_usual_scripts_need_no_pattern(text: str) -> None:
-    assert tokens._spaced(text) is not None

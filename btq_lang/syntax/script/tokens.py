@@ -33,10 +33,6 @@ BEGINS: Final = OPERANDS | {"(", "!", "~"}
 
 # Names with a special reading; to the engine, the operators of other languages are ordinary keys.
 _WORDS: Final = {"true": BOOL, "false": BOOL, **dict.fromkeys(("and", "AND", "or", "OR", "not", "NOT"), NAME)}
-# Only as separate tokens; joined, some of them mean something else.
-_OPERATORS: Final = frozenset(
-    (":=", "==", "!=", "<=", ">=", "+=", "*=", "/=", "-=", "&&", "||", "..", *"-+*/&|^~!<>=?:();")
-)
 _HEXADECIMAL: Final = ("0x", "0X")
 _LARGEST: Final = 2**63 - 1
 
@@ -62,46 +58,6 @@ class Tokens:
 
 def tokenize(text: str) -> Tokens:
     """The tokens of a script."""
-    return _spaced(text) or _matched(text)
-
-
-def _spaced(text: str) -> Tokens | None:
-    """The tokens of a script that consists of usual words separated by blanks, as most do; None for others.
-
-    It saves compiling the pattern, which takes longer than reading a hundred of them.
-    """
-    tokens = Tokens()
-    start = 0
-    for word in text.split(" "):
-        if word:
-            kind = _usual_kind(word)
-            if kind is None:
-                return None
-            tokens.kinds.append(kind)
-            tokens.starts.append(start)
-            tokens.ends.append(start + len(word))
-        start += len(word) + 1
-    tokens.kinds.append(END)
-    tokens.starts.append(len(text))
-    tokens.ends.append(len(text))
-    return tokens
-
-
-def _usual_kind(word: str) -> str | None:
-    if word in _OPERATORS:
-        return word
-    if not word.isascii():
-        return None
-    if word.isidentifier():
-        kind = _WORDS.get(word)
-        return NAME if kind is None else None if kind == NAME else kind
-    if word[0] == "'":
-        return TEXT if len(word) > 1 and word.find("'", 1) == len(word) - 1 else None
-    is_number = word.replace(".", "", 1).isdecimal() and "." not in (word[0], word[-1])
-    return NUMBER if is_number and len(word) < 16 else None
-
-
-def _matched(text: str) -> Tokens:
     tokens = Tokens()
     kinds, starts, ends = tokens.kinds, tokens.starts, tokens.ends
     words = False
