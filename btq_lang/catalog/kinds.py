@@ -6,7 +6,7 @@ One invariant: a record describes BehaviorTree.CPP's newest version; differences
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 from btq_lang.util.record import Record
 
@@ -31,57 +31,56 @@ Direction: TypeAlias = "Literal['input', 'output', 'inout']"
 # when one of its children does.
 Execution: TypeAlias = "Literal['synchronous', 'asynchronous', 'as-children']"
 
-if TYPE_CHECKING:
-    # What a node does with its children, or by itself if it has none; empty: unknown, it may do anything.  Given the
-    # same behavior of their children, nodes of one flow return the same and take the same time, except as the other
-    # fields describe.
-    Flow: TypeAlias = Literal[
-        "",
-        "sequence",  # one child after the other, until one fails
-        "fallback",  # one child after the other, until one succeeds
-        "parallel",  # all children, until enough have succeeded or failed to determine the result
-        "parallel-all",  # all children to their ends, then it counts the failures
-        "choice",  # the first child is the condition: if it succeeds the second, else the third
-        "switch",  # the child whose port `case_1`, `case_2` … equals its port `variable`, else the last
-        "try",  # all but the last as a sequence, the last after a failure; with a port `catch_on_halt`
-        "invert",  # its child, with success and failure exchanged
-        "force-success",  # its child, whose failure becomes a success
-        "force-failure",  # its child, whose success becomes a failure
-        "repeat",  # its child again as long as it succeeds
-        "retry",  # its child again as long as it fails
-        "until-failure",  # its child at every tick, until it fails
-        "for-each",  # its child for each item of a queue, until it fails
-        "timeout",  # its child, which it halts after a time
-        "delay",  # a time, then its child
-        "once",  # its child, the first time only; with a port `then_skip`
-        "precondition",  # its child, if a script is true
-        "skip-unless-updated",  # its child, if an entry was written
-        "wait-until-updated",  # waits until an entry is written, then its child
-        "succeeds",  # returns SUCCESS within the tick
-        "fails",  # returns FAILURE within the tick
-        "answers",  # returns SUCCESS or FAILURE within the tick
-        "sleeps",  # returns SUCCESS after a time
-        "waits",  # returns SUCCESS or FAILURE, perhaps after a time
-        "pipeline",  # a sequence that begins with its first child at every tick and lets the later ones run on
-        "together",  # all children at every tick, until all succeed in one tick
-        "resume",  # a sequence that begins with the child whose index an entry has
-        "recover",  # its first child; the second after a failure, and then the first again
-        "rotate",  # one child after the other until one succeeds; the next activation begins after that one
-        "pause",  # its first child, and others in its place while a service has stopped that
-        "pass",  # its child, with the same result
-        "throttle",  # its child when it starts, and again each time that something has happened
-        "throttle-or-fail",  # the same, but it fails without what it measures that by
-        "pass-or-succeed",  # its child if something has happened; else SUCCESS
-        "pass-once",  # its child until that ends, then FAILURE
-        "notices",  # FAILURE when it starts, then SUCCESS each time that something has happened
-    ]
+# What a node does with its children, or by itself if it has none; empty: unknown, it may do anything.  Given the
+# same behavior of their children, nodes of one flow return the same and take the same time, except as the other
+# fields describe.
+Flow: TypeAlias = Literal[
+    "",
+    "sequence",  # one child after the other, until one fails
+    "fallback",  # one child after the other, until one succeeds
+    "parallel",  # all children, until enough have succeeded or failed to determine the result
+    "parallel-all",  # all children to their ends, then it counts the failures
+    "choice",  # the first child is the condition: if it succeeds the second, else the third
+    "switch",  # the child whose port `case_1`, `case_2` … equals its port `variable`, else the last
+    "try",  # all but the last as a sequence, the last after a failure; with a port `catch_on_halt`
+    "invert",  # its child, with success and failure exchanged
+    "force-success",  # its child, whose failure becomes a success
+    "force-failure",  # its child, whose success becomes a failure
+    "repeat",  # its child again as long as it succeeds
+    "retry",  # its child again as long as it fails
+    "until-failure",  # its child at every tick, until it fails
+    "for-each",  # its child for each item of a queue, until it fails
+    "timeout",  # its child, which it halts after a time
+    "delay",  # a time, then its child
+    "once",  # its child, the first time only; with a port `then_skip`
+    "precondition",  # its child, if a script is true
+    "skip-unless-updated",  # its child, if an entry was written
+    "wait-until-updated",  # waits until an entry is written, then its child
+    "succeeds",  # returns SUCCESS within the tick
+    "fails",  # returns FAILURE within the tick
+    "answers",  # returns SUCCESS or FAILURE within the tick
+    "sleeps",  # returns SUCCESS after a time
+    "waits",  # returns SUCCESS or FAILURE, perhaps after a time
+    "pipeline",  # a sequence that begins with its first child at every tick and lets the later ones run on
+    "together",  # all children at every tick, until all succeed in one tick
+    "resume",  # a sequence that begins with the child whose index an entry has
+    "recover",  # its first child; the second after a failure, and then the first again
+    "rotate",  # one child after the other until one succeeds; the next activation begins after that one
+    "pause",  # its first child, and others in its place while a service has stopped that
+    "pass",  # its child, with the same result
+    "throttle",  # its child when it starts, and again each time that something has happened
+    "throttle-or-fail",  # the same, but it fails without what it measures that by
+    "pass-or-succeed",  # its child if something has happened; else SUCCESS
+    "pass-once",  # its child until that ends, then FAILURE
+    "notices",  # FAILURE when it starts, then SUCCESS each time that something has happened
+]
 
-    # The role of a port's value in the flow of its node.  count: how often it runs its child at most; -1: without end.
-    # time: how long it waits, or lets its child run.  successes, failures: how many of its children must succeed or
-    # fail for it to do so; a negative number counts from the end.  otherwise: what it returns without its child.
-    # retries: how often its second child may help its first.  wraps: whether its first child follows its last.  index:
-    # the entry with the number of its child, which it counts on.
-    Role: TypeAlias = Literal["", "count", "time", "successes", "failures", "otherwise", "retries", "wraps", "index"]
+# The role of a port's value in the flow of its node.  count: how often it runs its child at most; -1: without end.
+# time: how long it waits, or lets its child run.  successes, failures: how many of its children must succeed or
+# fail for it to do so; a negative number counts from the end.  otherwise: what it returns without its child.
+# retries: how often its second child may help its first.  wraps: whether its first child follows its last.  index:
+# the entry with the number of its child, which it counts on.
+Role: TypeAlias = Literal["", "count", "time", "successes", "failures", "otherwise", "retries", "wraps", "index"]
 
 # The text of a port: a value, a script, or the name of a blackboard entry, written without braces.
 Content: TypeAlias = "Literal['value', 'script', 'key']"

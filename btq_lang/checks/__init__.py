@@ -24,7 +24,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from btq_lang.checks import (
     bounds,
@@ -83,11 +83,9 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.workspace.config import configured
 from btq_lang.workspace.findings import Findings, Reported
+from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 Check: TypeAlias = "Callable[[View], Iterator[Diagnostic]]"
 

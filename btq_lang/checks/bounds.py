@@ -6,11 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cache
 from math import ceil, floor, isfinite
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, parse_unit
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import NUMBER, QUANTITY
@@ -25,9 +26,6 @@ from btq_lang.syntax.tree import (
     walk,
 )
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
 
 
 def impossible_bound(view: View) -> Iterator[Diagnostic]:

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import inf
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, found_at, highest, seconds, summed
 from btq_lang.diagnostics.model import Related
 from btq_lang.requirements.budget_parts import Budget, port_seconds
 from btq_lang.requirements.durations import Range, Term, together
-
-if TYPE_CHECKING:
-    from btq_lang.requirements.model import Claim
+from btq_lang.requirements.model import Claim
 
 
 def budget_exceeded(demanded: Demanded) -> Iterator[Found]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, KeysView, Mapping, Set
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import TREE_OF_GOAL
@@ -12,9 +12,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.symbols import Use
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 # The trees that a tree runs, and those that it probably means to run, if `SubTree` is missing, or has run for a goal.
 Runs: TypeAlias = "tuple[tuple[str, ...], tuple[str, ...]]"

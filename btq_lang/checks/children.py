@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.nodes import is_by_children
@@ -15,9 +14,7 @@ from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Node, Word
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 _INTEGER = re.compile(r"-?[0-9]{1,18}")
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, Tag, replace_fix
 from btq_lang.syntax.tree import (
     Clause,
@@ -19,9 +19,6 @@ from btq_lang.syntax.tree import (
     walk,
 )
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
 
 _ONCE: dict[type, str] = {
     Odds: "how often it must hold",

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.syntax.tokens import NAME
 from btq_lang.syntax.tree import Clause, Context, Operand, ReqRef, Requirement, Tree, walk
 from btq_lang.workspace.symbols import requirements_at
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
 
 
 def subtraction_without_blanks(view: View) -> Iterator[Diagnostic]:

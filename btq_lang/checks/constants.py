@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.versions import TYPED_CONSTANTS
 from btq_lang.checks import lookups
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.syntax.tree import Port, Tree, Word, models_in
 from btq_lang.workspace.port_types import is_number
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
 
 
 def number_for_text(view: View) -> Iterator[Diagnostic]:

@@ -6,18 +6,15 @@ Source: the tick functions of RepeatNode, RetryNode, TimeoutNode and DelayNode i
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.versions import at_least, last_of
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import QUANTITY
-
-if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import NodeKind
-    from btq_lang.checks.view import View
-    from btq_lang.syntax.tree import Word
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.syntax.tree import Word
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 def count_of_nothing(view: View) -> Iterator[Diagnostic]:

@@ -12,16 +12,16 @@ from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.budgets import Budgets
+from btq_lang.requirements.durations import Term
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, Span, Table, Value
 from btq_lang.requirements.nodes import mission
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.btcpp.enforceability import Judge
-    from btq_lang.requirements.durations import Term
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
 
 Found: TypeAlias = tuple[Place, Diagnostic]
 

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, TypeAlias
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks.measures import is_measured
 from btq_lang.checks.view import View
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.util.text import Span
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.checks.demanded import Found, Guard
-    from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.util.text import Span
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
 
 ByItem: TypeAlias = "dict[int, list[Diagnostic]]"
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax import tree as syntax
 from btq_lang.workspace.symbols import requirements_at
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
 
 _Found: TypeAlias = "Iterator[tuple[str, syntax.Word | None]]"
 

@@ -5,7 +5,7 @@ One invariant: a file that has anything which version 3 does not read is not wri
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from btq_lang.catalog.attributes import OF_VERSION_4, RESERVED_ATTRIBUTES
 from btq_lang.catalog.nav2 import ENGINES
@@ -14,14 +14,10 @@ from btq_lang.catalog.versions import VERSION_3, VERSIONS, is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.sorted_nodes import sorted_nodes
 from btq_lang.workspace import inputs
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.workspace import Workspace
 
 
 def engines_of(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:

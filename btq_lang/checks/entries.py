@@ -7,7 +7,7 @@ does with entries, and whether a name is right, is not known here.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
@@ -19,12 +19,10 @@ from btq_lang.checks.view import View
 from btq_lang.syntax.tree import Pair, Signal, Tree, port_named
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.workspace import Workspace
 
 # A name in a tree; an empty tree means the root blackboard.
 Name: TypeAlias = tuple[str, str]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Callable, Container, Iterator
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
@@ -12,12 +12,10 @@ from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, 
 from btq_lang.syntax.tree import Include, quote
 from btq_lang.util.text import Span, counted
 from btq_lang.workspace.file import is_of_package
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.workspace import Workspace
 
-if TYPE_CHECKING:
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
-
-    ErrorsIn: TypeAlias = Callable[[Store[Workspace], str], tuple[tuple[Place, str], ...]]
+ErrorsIn: TypeAlias = "Callable[[Store[Workspace], str], tuple[tuple[Place, str], ...]]"
 
 NOWHERE = "; neither this file nor its includes define it"
 

@@ -15,6 +15,7 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, a
 from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
 from btq_lang.checks import lookups
 from btq_lang.checks.engines import old_words
+from btq_lang.checks.lookups import Declaration
 from btq_lang.checks.view import COUNTS, View, misspelt_clause
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -24,15 +25,14 @@ from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Model, Word, quote, written
 from btq_lang.util.spelling import did_you_mean, distance, without_digits
 from btq_lang.util.text import Span
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.symbols import Symbol, differences, has_ports_of, interface
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.checks.lookups import Declaration
     from btq_lang.workspace.custom_nodes import LikelyPort
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.workspace import Workspace
 
 
 def unknown_node(view: View) -> Iterator[Diagnostic]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import inf
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.units import Dimension
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, found_at, highest, lowest, seconds
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.budget_parts import port_count, port_seconds
@@ -18,10 +19,6 @@ from btq_lang.syntax.tree import Requirement as WrittenRequirement
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.resolved import ResolvedNode
-
-if TYPE_CHECKING:
-    from btq_lang.catalog.units import Dimension
-    from btq_lang.checks.view import View
 
 
 def limit_too_small(demanded: Demanded) -> Iterator[Found]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from math import isfinite
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.kinds import RESULT
 from btq_lang.catalog.literals import OLD_ENTRY, check_literal, is_pointer
@@ -20,9 +19,7 @@ from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import BRACED, QUANTITY
 from btq_lang.syntax.tree import Pair, Port, Tree, Word, models_in, port_named, quote, written
 from btq_lang.util.record import Record
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 _NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")

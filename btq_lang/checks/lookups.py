@@ -11,21 +11,20 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.catalog.nodes import BUILTINS, lookup
-from btq_lang.diagnostics.model import Place
+from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.syntax.tree import Apply, Include, Model, Models, Port, Root, Tree, models_in
 from btq_lang.util.record import Record
+from btq_lang.workspace.file import Definition, Origin
 from btq_lang.workspace.inputs import of_name, of_viewpoint
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.port_types import is_text, meetings
+from btq_lang.workspace.symbols import Symbol
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.catalog.nav2.navigator import OutsideEntry
-    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.workspace.custom_nodes import LikelyPort
-    from btq_lang.workspace.file import Definition, Origin
-    from btq_lang.workspace.symbols import Symbol
-    from btq_lang.workspace.workspace import Workspace
 
 
 class Meaning(Record):

@@ -12,10 +12,10 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Requirement
 from btq_lang.workspace.queries import Store, hub
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Claim
-    from btq_lang.workspace.workspace import Workspace
 
 
 @hub

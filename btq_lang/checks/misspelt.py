@@ -9,20 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
 from btq_lang.checks.entries import Mention, blackboards
 from btq_lang.checks.entries import mentions as mentions_in
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.syntax.tree import Tree, Verbatim
 from btq_lang.util.spelling import distance, without_digits
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.workspace import Workspace
 
 
 def misspelt_entry(view: View) -> Iterator[Diagnostic]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
@@ -24,10 +24,8 @@ from btq_lang.syntax.tree import Pair
 from btq_lang.util.record import Record
 from btq_lang.workspace.port_types import declared_type, is_text
 from btq_lang.workspace.queries import Store, on_circle
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.workspace import Workspace
 
 
 class _Port(Record):

@@ -6,7 +6,7 @@ One invariant: a fact is in the catalog; here is only where in a tree it holds.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.catalog.engine_changes import ENGINE_CHANGES
 from btq_lang.catalog.literals import is_pointer
@@ -26,11 +26,9 @@ from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import is_name
 from btq_lang.util.record import replace
+from btq_lang.workspace.resolved import ResolvedNode
 
-if TYPE_CHECKING:
-    from btq_lang.workspace.resolved import ResolvedNode
-
-    Check = Callable[[View], Iterator[Diagnostic]]
+Check = Callable[[View], Iterator[Diagnostic]]
 
 
 def engine_changes(view: View, origin: str, target: str) -> Iterator[Diagnostic]:

@@ -6,24 +6,21 @@ Sources: the files and tables of `catalog/nav2`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
+from btq_lang.catalog.changes import Change
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, FILES
 from btq_lang.catalog.nav2.changes import CHANGES, INSTEAD, RENAMED, RENAMED_PORTS
 from btq_lang.checks import lookups
 from btq_lang.checks.pointers import pointed_at
 from btq_lang.checks.ports import adding_fix
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
-from btq_lang.syntax.tree import written
+from btq_lang.syntax.tree import Word, written
+from btq_lang.workspace.resolved import ResolvedNode
 
-if TYPE_CHECKING:
-    from btq_lang.catalog.changes import Change
-    from btq_lang.checks.view import View
-    from btq_lang.syntax.tree import Word
-    from btq_lang.workspace.resolved import ResolvedNode
-
-    Key = TypeVar("Key", bound=tuple[str, ...])
+Key = TypeVar("Key", bound=tuple[str, ...])
 
 
 def is_of_nav2(view: View, distribution: str, node: str) -> bool:

@@ -7,18 +7,15 @@ Sources: the files and tables of `catalog/nav2`.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, ENGINES
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.pointers import remaps_all
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Include
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 _FIRST_OF_4 = "jazzy"  # that comes with BehaviorTree.CPP 4
 _OF_3 = DISTRIBUTIONS[: DISTRIBUTIONS.index(_FIRST_OF_4)]

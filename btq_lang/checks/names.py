@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import instance_name_problem, legal_name, model_name_problem, port_name_problem
 from btq_lang.catalog.versions import ID_OF_EACH_TREE, UNIQUE_SUBTREES
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Tree, Word, is_name, models_in, written
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 _NO_NAMESPACES = ("it does not support XML namespaces: the prefix is part of the name",)
 

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import ceil, inf, log
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, found_at, highest
 from btq_lang.diagnostics.model import Related
+from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement
 from btq_lang.workspace.resolved import ResolvedNode
-
-if TYPE_CHECKING:
-    from btq_lang.requirements.budgets import Budgets
 
 
 def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cache
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.literals import OLD_ENTRY, check_literal, is_pointer
 from btq_lang.catalog.nodes import BUILTINS
@@ -15,12 +14,10 @@ from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Pair, Port, Word, is_name
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.workspace import Workspace
 
 
 def literal_for_output(view: View) -> Iterator[Diagnostic]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
@@ -17,14 +17,11 @@ from btq_lang.syntax.tree import Node, Pair, Tree, Word, is_name, quote
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
+from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.placeholders import is_placeholder
 from btq_lang.workspace.queries import Store, hub
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.workspace import Workspace
 
 _BLANKS = " \t"
 _WHITE = " \t\r\n"

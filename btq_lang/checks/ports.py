@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cache
 from itertools import chain
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_known_type, plain_type
@@ -23,11 +22,9 @@ from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Wo
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.workspace import Workspace
 
 _OWN = frozenset(("ID", "name"))
 

@@ -4,16 +4,13 @@ several ticks, and what skips the condition of a choice."""
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.checks.results import result
 from btq_lang.checks.statuses import RUNNING
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 _PASS_SKIPPED_ON = frozenset(
     ("invert", "force-success", "force-failure", "timeout", "delay", "repeat", "retry", "once")

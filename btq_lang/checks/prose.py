@@ -13,11 +13,11 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.syntax.tree import Requirement, Signal, Word
 from btq_lang.util.text import Span
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.requirements.constraints import Constraint
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
 
 
 def prose_constraint(view: View) -> Iterator[Diagnostic]:

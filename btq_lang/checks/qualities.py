@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Qualities, Requirement, written
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Use
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
 
 
 def unknown_quality(view: View) -> Iterator[Diagnostic]:

@@ -7,7 +7,6 @@ and halts what it does not reach.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.names import is_xml_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, NodeKind, inspects_children
@@ -18,9 +17,7 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Node, Word, quote
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 _APART = "put it in a Sequence of its own"
 

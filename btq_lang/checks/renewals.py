@@ -7,7 +7,6 @@ finding is true for every run of the mission.  What the robot's program writes i
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
@@ -17,15 +16,13 @@ from btq_lang.checks.view import View, declared_ports
 from btq_lang.checks.writers import all_entries, isolated, key_of
 from btq_lang.diagnostics.model import Related
 from btq_lang.requirements import nodes
+from btq_lang.requirements.model import Claim, Requirement, Signal
 from btq_lang.requirements.reading import signals_in
 from btq_lang.workspace import inputs
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode, tree_nodes, trees_called
-
-if TYPE_CHECKING:
-    from btq_lang.requirements.model import Claim, Requirement, Signal
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 # While a child of these runs no other one does, and earlier ones have ended, unless they are reactive.
 _ONE_AT_A_TIME = frozenset(("sequence", "fallback", "choice", "switch", "resume", "recover", "rotate"))

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.checks.clauses import with_blanks
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.syntax.tree import (
     Apply,
@@ -21,9 +21,6 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
 
 
 class _Named(Record):

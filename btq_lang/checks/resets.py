@@ -6,8 +6,9 @@ Sources: what BehaviorTree.CPP 3.8.7, 4.6.2 and 4.10.0 and the branches of Nav2 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from btq_lang.catalog.kinds import Flow
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks.ports import adding_fix
 from btq_lang.checks.results import result
@@ -16,10 +17,7 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.syntax.tree import Node
 from btq_lang.workspace.node_names import wraps
-
-if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import Flow
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 _REMEMBERING: Final[tuple[Flow, ...]] = ("notices", "throttle", "throttle-or-fail", "pass-once")
 # They tick children that have succeeded again, while a later one runs.

@@ -8,8 +8,9 @@ blackboard, and so whether a condition is ever true.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_kind
@@ -17,13 +18,10 @@ from btq_lang.checks.view import View
 from btq_lang.syntax.tree import Node, Tree
 from btq_lang.util.record import Record
 from btq_lang.workspace import inputs
+from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store, on_circle
-
-if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import NodeKind
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.workspace import Workspace
 
 
 class Results(Record):

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.versions import NEW_SCRIPTS
 from btq_lang.checks.strings import moved
+from btq_lang.checks.view import View
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.syntax.tree import Pair, Word
 from btq_lang.util.record import replace
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
-    from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.syntax.tree import Pair, Word
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 def script_error(view: View) -> Iterator[Diagnostic]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import words
@@ -13,15 +12,13 @@ from btq_lang.checks.writers import all_entries, declared_port, isolated, writte
 from btq_lang.diagnostics.model import Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements import reader
+from btq_lang.requirements.model import Signal
 from btq_lang.requirements.nodes import has_nodes, mission
 from btq_lang.util.spelling import near
 from btq_lang.workspace import inputs
 from btq_lang.workspace.port_types import is_text
-
-if TYPE_CHECKING:
-    from btq_lang.requirements.model import Signal
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.workspace import Workspace
 
 _READING = words(operands=("condition", "use"))
 

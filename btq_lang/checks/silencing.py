@@ -8,16 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import UNREADABLE
 from btq_lang.syntax.scan import string_end
 from btq_lang.syntax.tokens import COMMENT, STRING
 from btq_lang.util.text import LINE_END, Edit, Position, Span
-
-if TYPE_CHECKING:
-    from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.workspace.file import File
+from btq_lang.workspace.file import File
 
 
 def line_to_silence(file: File, diagnostic: Diagnostic) -> int | None:

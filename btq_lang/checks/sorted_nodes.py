@@ -5,15 +5,13 @@ One invariant: it only sorts; all properties are the nodes' own (workspace/resol
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from btq_lang.catalog.kinds import Flow
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
-
-if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import Flow
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 def sorted_nodes(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> SortedNodes:

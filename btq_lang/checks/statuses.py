@@ -7,13 +7,11 @@ powers of two; a missing or surplus child can return anything.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from btq_lang.catalog.kinds import Flow, NodeKind, Role
+from btq_lang.syntax.tree import Node, Word
 from btq_lang.workspace.node_names import wraps
-
-if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import Flow, NodeKind, Role
-    from btq_lang.syntax.tree import Node, Word
 
 SUCCESS: Final = 1
 FAILURE: Final = 2

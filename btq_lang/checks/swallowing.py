@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, found_at, highest
@@ -11,11 +11,9 @@ from btq_lang.diagnostics.model import Related
 from btq_lang.requirements.budget_parts import port_count
 from btq_lang.requirements.nodes import callers, mission
 from btq_lang.workspace.node_names import wraps
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 Swallower: TypeAlias = tuple[ResolvedNode, str]  # the node that does not fail when something below it does, and why
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
+from btq_lang.checks.lookups import Meaning
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.blocks import OF_ITS_OWN
@@ -17,10 +18,6 @@ from btq_lang.syntax.tree import Model, Node, Tree, written
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Use
-
-if TYPE_CHECKING:
-    from btq_lang.checks.lookups import Meaning
-    from btq_lang.checks.view import View
 
 _MOST_NAMES = 5  # in one message
 _DEEPEST_OF_4_6 = 97  # below a BehaviorTree: its XML reader (tinyxml2 8.0) stops at 100 open elements

@@ -4,15 +4,13 @@ creates."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.checks import calls
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.util.record import replace
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
 
 
 def as_uncreated(view: View, found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:

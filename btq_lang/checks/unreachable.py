@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks.results import UNKNOWN, result, results
@@ -13,9 +12,7 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, Tag
 from btq_lang.syntax.tree import Node, Verbatim
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 def unreachable_child(view: View) -> Iterator[Diagnostic]:

@@ -6,7 +6,6 @@ Sources: the tables of `catalog/nav2`.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.name_kinds import Kind
@@ -17,15 +16,11 @@ from btq_lang.checks.entries import blackboards, mentions
 from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.syntax.tree import port_named
+from btq_lang.syntax.tree import Pair, Word, port_named
 from btq_lang.util.spelling import distance
-from btq_lang.workspace.queries import on_circle
-
-if TYPE_CHECKING:
-    from btq_lang.syntax.tree import Pair, Word
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.queries import Store, on_circle
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.workspace import Workspace
 
 
 def default_instead(view: View) -> Iterator[Diagnostic]:

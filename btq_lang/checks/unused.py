@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
@@ -11,10 +10,8 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Tag
 from btq_lang.syntax.tree import Context, Signal, Word
 from btq_lang.util.spelling import near
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.workspace import Workspace
 
 
 def unused_signal(view: View) -> Iterator[Diagnostic]:

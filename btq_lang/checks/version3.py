@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import ENGINES
 from btq_lang.catalog.versions import DEFAULT_VERSION, VERSION_3
 from btq_lang.checks import lookups
 from btq_lang.checks.engines import old_words
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.checks.view import View
 
 
 def version_3_file(view: View) -> Iterator[Diagnostic]:

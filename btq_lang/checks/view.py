@@ -17,6 +17,7 @@ from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.checks import lookups
 from btq_lang.checks.engines import engines_of
+from btq_lang.checks.lookups import Declaration, Meaning
 from btq_lang.checks.sorted_nodes import NO_NODES, SortedNodes, sorted_nodes
 from btq_lang.diagnostics.model import Related
 from btq_lang.grammar.attributes import meant_clause
@@ -24,18 +25,17 @@ from btq_lang.syntax.tree import Entry, Include, Item, Node, Port, Requirement, 
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.inputs import Placed
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.symbols import Symbol, Use
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.checks.lookups import Declaration, Meaning
     from btq_lang.requirements.constraints import Constraint
     from btq_lang.syntax.script.tree import Script
-    from btq_lang.workspace.config import Project
-    from btq_lang.workspace.inputs import Placed
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.symbols import Symbol, Use
-    from btq_lang.workspace.workspace import Workspace
 
     T = TypeVar("T")
 

@@ -7,9 +7,9 @@ nodes run is not known here.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.kinds import PortKind
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View, declared_ports
@@ -17,13 +17,10 @@ from btq_lang.requirements import nodes
 from btq_lang.syntax.tree import Pair, Port, Verbatim, port_named
 from btq_lang.util.record import Record
 from btq_lang.workspace import inputs
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
-
-if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import PortKind
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 class Entries(Record):

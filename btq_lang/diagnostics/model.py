@@ -7,14 +7,10 @@ Outside the workspace, diagnostics have no anchors.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from btq_lang.diagnostics.rules import RULES, Severity
 from btq_lang.diagnostics.rules import Tag as Tag
 from btq_lang.util.record import Record, replace
-
-if TYPE_CHECKING:
-    from btq_lang.util.text import Span
+from btq_lang.util.text import Span
 
 
 class Place(Record):

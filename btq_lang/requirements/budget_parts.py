@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import fsum, inf
-from typing import TYPE_CHECKING
 
+from btq_lang.catalog.kinds import Role
 from btq_lang.catalog.units import to_si
 from btq_lang.requirements.durations import ANY, ZERO, Range, hull, plus, times, total, without_end
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import QUANTITY
+from btq_lang.syntax.tree import Word
 from btq_lang.util.record import Record, replace
-
-if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import Role
-    from btq_lang.syntax.tree import Word
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 class Budget(Record):

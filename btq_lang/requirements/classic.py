@@ -6,20 +6,17 @@ reports it.  A claim made of a description has the place of the description.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.clauses import with_clauses
 from btq_lang.requirements.constraints import Constraint, can_be_checked, clauses_of, constraints, is_script
-from btq_lang.requirements.model import Claim, Limit, Not, Requirement, Script
+from btq_lang.requirements.model import Claim, Limit, Not, Relation, Requirement, Script
 from btq_lang.requirements.reader import Reader
 from btq_lang.syntax.tree import Claim as WrittenClaim
 from btq_lang.syntax.tree import Word
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.requirements.model import Relation
 
 
 def with_constraints(reader: Reader, requirement: Requirement, text: Word) -> Requirement:

@@ -8,16 +8,14 @@ child back that its parent has not reset, and that 4.8.3 and 4.8.4 wait in no De
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from btq_lang.catalog.kinds import Flow
 from btq_lang.requirements import control_budgets, decorator_budgets, nav2_budgets
 from btq_lang.requirements.budget_parts import Budget, port_seconds, unknown
 from btq_lang.requirements.durations import ANY, ZERO, Range
 from btq_lang.util.record import replace
-
-if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import Flow
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 def compose(node: ResolvedNode, children: Sequence[Budget]) -> Budget:

@@ -7,14 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf
-from typing import TYPE_CHECKING
 
 from btq_lang.requirements.budget_parts import Budget, in_order, likelihood, made, port_count
 from btq_lang.requirements.durations import ANY, ZERO, Range, from_zero, hull, plus, total
 from btq_lang.util.record import replace
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 def sequence(node: ResolvedNode, children: Sequence[Budget]) -> Budget:

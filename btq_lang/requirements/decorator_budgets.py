@@ -6,14 +6,11 @@ What holds for every rule: `composition`.
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING
 
 from btq_lang.requirements.budget_parts import Budget, end_after, likelihood, port_count, port_of, port_seconds
 from btq_lang.requirements.durations import ANY, ZERO, Range, cut, hull, plus, times, without_end
 from btq_lang.util.record import replace
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 def pass_on(node: ResolvedNode, child: Budget) -> Budget:

@@ -6,22 +6,20 @@ something was written is not known here: places lead back to that.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
+from btq_lang.catalog.units import Dimension, Unit
 from btq_lang.diagnostics.model import Place
 from btq_lang.util.record import Record
+from btq_lang.workspace.resolved import ResolvedNode
 
-if TYPE_CHECKING:
-    from btq_lang.catalog.units import Dimension, Unit
-    from btq_lang.workspace.resolved import ResolvedNode
-
-    Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]
-    Happening: TypeAlias = Literal["starts", "succeeds", "fails", "finishes", "halts", "when"]
-    Action: TypeAlias = Literal["fail", "halt", "warn", "log"]
-    Method: TypeAlias = Literal["monitor", "analysis", "test", "review"]
-    Experiments: TypeAlias = Literal["activations", "runs"]
-    Behaviour: TypeAlias = Literal["level", "counter", "gauge"]
-    Sort: TypeAlias = Literal["number", "bool", "text"]
+Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]
+Happening: TypeAlias = Literal["starts", "succeeds", "fails", "finishes", "halts", "when"]
+Action: TypeAlias = Literal["fail", "halt", "warn", "log"]
+Method: TypeAlias = Literal["monitor", "analysis", "test", "review"]
+Experiments: TypeAlias = Literal["activations", "runs"]
+Behaviour: TypeAlias = Literal["level", "counter", "gauge"]
+Sort: TypeAlias = Literal["number", "bool", "text"]
 
 
 # ---- Nodes ----------------------------------------------------------------------------------------------------------

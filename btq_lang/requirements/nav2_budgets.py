@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf
-from typing import TYPE_CHECKING
 
 from btq_lang.requirements.budget_parts import (
     Budget,
@@ -23,9 +22,7 @@ from btq_lang.requirements.durations import ANY, ZERO, from_zero, hull, plus, ti
 from btq_lang.syntax.tokens import BRACED
 from btq_lang.util.record import replace
 from btq_lang.workspace.node_names import wraps
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 def pipeline(node: ResolvedNode, children: Sequence[Budget]) -> Budget:

@@ -6,24 +6,22 @@ nodes may be elsewhere (a library, an include that was not found) a path without
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements import nodes
 from btq_lang.requirements.model import Parameter, Target
 from btq_lang.syntax.tree import Path, Word, written
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
+from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
-
-if TYPE_CHECKING:
-    from btq_lang.diagnostics.rules import Severity
-    from btq_lang.util.text import Span
-    from btq_lang.workspace.item_index import Facts
 
 
 class Problem(Record):

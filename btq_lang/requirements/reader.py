@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from math import isfinite
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, a_dimension, to_si
@@ -41,6 +41,7 @@ from btq_lang.requirements.terms import (
     OF_PYTHON,
     ONE,
     SORTS,
+    Level,
     Term,
     Wanted,
     amounts,
@@ -76,12 +77,9 @@ from btq_lang.syntax.tree import Signal as WrittenSignal
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
+from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.workspace import Workspace
-
-if TYPE_CHECKING:
-    from btq_lang.requirements.terms import Level
-    from btq_lang.workspace.item_index import Facts
 
 Problems: TypeAlias = tuple[Problem, ...]
 

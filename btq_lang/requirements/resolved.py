@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from btq_lang.util.record import Record
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, Trace
     from btq_lang.requirements.nodes import Nodes
     from btq_lang.requirements.paths import Problem
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.resolved import ResolvedNode
-    from btq_lang.workspace.workspace import Workspace
 
 
 class Requirements(Record):

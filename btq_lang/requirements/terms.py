@@ -5,7 +5,7 @@ Names are looked up by `reader`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import Dimension, Unit, a_dimension, parse_unit
 from btq_lang.requirements.model import (
@@ -17,6 +17,7 @@ from btq_lang.requirements.model import (
     Parameter,
     Read,
     Simple,
+    Sort,
     Table,
     Text,
     Value,
@@ -28,11 +29,7 @@ from btq_lang.syntax.tree import Table as WrittenTable
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
-if TYPE_CHECKING:
-    from btq_lang.requirements.model import Sort
-
-    # For temperatures: 25 degC is a level, a difference of two levels is a difference, and K may be either.
-    Level: TypeAlias = Literal["level", "difference", "either"]
+Level: TypeAlias = Literal["level", "difference", "either"]
 
 
 class Wanted(Record):

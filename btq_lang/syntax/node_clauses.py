@@ -3,14 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
+from btq_lang.syntax.clauses import Argument, Clause, Parameter
+from btq_lang.syntax.words import Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.syntax.clauses import Argument, Clause, Parameter
-    from btq_lang.syntax.words import Word
 
 
 class QualityPath(Record):

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from itertools import chain
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.clauses import Amount as Amount
 from btq_lang.syntax.clauses import Argument as Argument
 from btq_lang.syntax.clauses import Because as Because
@@ -61,9 +62,6 @@ from btq_lang.syntax.words import Word as Word
 from btq_lang.syntax.words import unquote as unquote
 from btq_lang.util.record import Record, fields_of
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.diagnostics.model import Diagnostic
 
 # ---- Items ----------------------------------------------------------------------------------------------------------
 

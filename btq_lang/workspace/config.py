@@ -32,6 +32,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from btq_lang.catalog.versions import VERSION_3, VERSIONS, at_least, numbers
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import RULES, UNREADABLE, Severity
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
@@ -40,7 +41,6 @@ from btq_lang.workspace.overrides import KEYS as OVERRIDE_KEYS
 from btq_lang.workspace.overrides import Override, severities_at
 
 if TYPE_CHECKING:
-    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.workspace.factories import Factory
     from btq_lang.workspace.project_evidence import Evidence
 

@@ -6,7 +6,7 @@ One invariant: the result is the same for all files of a mission.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.literals import check_literal
@@ -17,12 +17,10 @@ from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.syntax.tree import Node, Tree, Word
 from btq_lang.util.record import Record
 from btq_lang.workspace import inputs
+from btq_lang.workspace.file import File
 from btq_lang.workspace.placeholders import is_placeholder
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.file import File
 
 
 class LikelyPort(Record):

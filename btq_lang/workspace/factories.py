@@ -17,16 +17,16 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.nav2 import PACKAGED
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
     from btq_lang.catalog.nav2.navigator import OutsideEntry
-    from btq_lang.diagnostics.model import Diagnostic
 
-    # The message, the keys below `factory` to its place, and the string that it is about.
-    Complaint: TypeAlias = tuple[str, tuple[str, ...], str | None]
+# The message, the keys below `factory` to its place, and the string that it is about.
+Complaint: TypeAlias = tuple[str, tuple[str, ...], str | None]
 
 
 class Factory(Record):

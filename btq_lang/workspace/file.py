@@ -11,20 +11,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.grammar.item_words import may_include
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.syntax.tree import Entry, Include, Item
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Placed, Span, changed
 from btq_lang.workspace.item_index import Facts, Name, Names, Tally
+from btq_lang.workspace.symbols import Summary, Symbol
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.name_kinds import Kind
     from btq_lang.cpp.model import CppNode
-    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.util.source_map import Places
     from btq_lang.workspace.references import Mention
-    from btq_lang.workspace.symbols import Summary, Symbol
 
     Kept = TypeVar("Kept", bound=Item)
 

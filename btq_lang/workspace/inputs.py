@@ -13,26 +13,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator
 from functools import wraps
-from typing import TYPE_CHECKING, TypeAlias
+from typing import Concatenate, ParamSpec, TypeAlias, TypeVar
 
+from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.syntax.tree import Apply, Entry, Item, Model, Tree, Verbatim
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.file import File
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.symbols import Symbol
-from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.workspace import Scope, Workspace
 
-if TYPE_CHECKING:
-    from typing import Concatenate, ParamSpec, TypeVar
-
-    from btq_lang.catalog.kinds import NodeKind
-    from btq_lang.workspace.config import Project
-    from btq_lang.workspace.file import File
-    from btq_lang.workspace.workspace import Scope
-
-    P = ParamSpec("P")
-    T = TypeVar("T")
+P = ParamSpec("P")
+T = TypeVar("T")
 
 Placed: TypeAlias = tuple[str, Facts]  # an item, and the path of its file
 # The category of a model, if there is one, and what the node does, if it is of a library that btq knows.

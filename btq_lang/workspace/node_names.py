@@ -7,17 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup, spellings, xml_tag
+from btq_lang.syntax.tree import Node
 from btq_lang.util.record import Record
+from btq_lang.workspace.inputs import Declared
 from btq_lang.workspace.placeholders import is_placeholder
-
-if TYPE_CHECKING:
-    from btq_lang.syntax.tree import Node
-    from btq_lang.workspace.inputs import Declared
 
 
 class Meaning(Record):

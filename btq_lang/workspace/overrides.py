@@ -15,14 +15,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.util.record import Record
 
-if TYPE_CHECKING:
-    from btq_lang.diagnostics.rules import Severity
-
-    Severities: TypeAlias = tuple[tuple[str, Severity | None], ...]
+Severities: TypeAlias = tuple[tuple[str, Severity | None], ...]
 
 # The keys of an override, and a line for editors.
 KEYS = {

@@ -7,13 +7,10 @@ skills as `ScriptAction (name = "MoveBase")`.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nodes import PLACEHOLDERS
+from btq_lang.syntax.tree import Node
 from btq_lang.util.spelling import near
-
-if TYPE_CHECKING:
-    from btq_lang.syntax.tree import Node
 
 
 def is_placeholder(node: Node) -> bool:

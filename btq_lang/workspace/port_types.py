@@ -10,17 +10,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, port_type
 from btq_lang.syntax.tree import Model, Node, Pair, Port, Tree, port_named
 from btq_lang.util.record import Record
+from btq_lang.workspace.file import Definition
 from btq_lang.workspace.node_names import tag_of
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.file import Definition
-    from btq_lang.workspace.workspace import Scope
+from btq_lang.workspace.workspace import Scope
 
 
 class Meeting(Record):

@@ -16,14 +16,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import isfinite
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from btq_lang.catalog.units import Unit, nearest_units, parse_unit
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
 
-if TYPE_CHECKING:
-    Complaint: TypeAlias = tuple[str, tuple[str, ...]]  # the message, and the keys below `evidence` to its place
+Complaint: TypeAlias = tuple[str, tuple[str, ...]]  # the message, and the keys below `evidence` to its place
 
 
 class SignalSource(Record):

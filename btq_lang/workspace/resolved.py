@@ -8,21 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cache, partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from btq_lang.catalog.kinds import Flow
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Place
 from btq_lang.syntax.tree import Node, NodeClause, Satisfices, Tags, Tree, Word
 from btq_lang.workspace import inputs
+from btq_lang.workspace.inputs import Declared
+from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.node_names import kinds_of, meaning_of, names_of
 from btq_lang.workspace.placeholders import is_placeholder
-
-if TYPE_CHECKING:
-    from btq_lang.catalog.kinds import Flow
-    from btq_lang.workspace.inputs import Declared
-    from btq_lang.workspace.item_index import Facts
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.workspace import Workspace
 
 
 def tree_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> ResolvedTree:

@@ -8,16 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import NAME
 from btq_lang.util.record import Record, fields_of
-
-if TYPE_CHECKING:
-    from btq_lang.util.text import Span
+from btq_lang.util.text import Span
 
 Target: TypeAlias = (
     syntax.Tree | syntax.Model | syntax.Requirement | syntax.Signal | syntax.Context | syntax.QualityDecl

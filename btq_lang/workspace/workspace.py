@@ -21,15 +21,15 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import ENGINES, FILES, ports_of
 from btq_lang.syntax.tree import Entry, Include, Model, Qualities, Root, Word
 from btq_lang.util.record import Record, replace
+from btq_lang.util.text import Span
 from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import Definition, File, Origin, is_of_package
+from btq_lang.workspace.item_index import Name, Names
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.symbols import Use, has_ports_of, interface
 
 if TYPE_CHECKING:
-    from btq_lang.util.text import Span
     from btq_lang.workspace.factories import Factory
-    from btq_lang.workspace.item_index import Name, Names
 
 
 class Workspace:

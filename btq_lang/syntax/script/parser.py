@@ -7,8 +7,9 @@ Parsing stops at the first error without a certain correction, as it does in the
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NoReturn
+from typing import Final, NoReturn
 
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.script import mistakes
 from btq_lang.syntax.script.tokens import BEGINS, END, ERROR, NAME, NUMBER, OPERANDS, TEXT, tokenize
 from btq_lang.syntax.script.tree import (
@@ -32,9 +33,6 @@ from btq_lang.syntax.script.tree import (
     walk,
 )
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.diagnostics.model import Diagnostic
 
 # Nested operators, redundant brackets included.  The engine has no limit except its stack; the engines up to 4.8 refuse
 # more than 256 operators.

@@ -8,16 +8,12 @@ if it were corrected; any other invalid text is an ERROR token, which the parser
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.script import mistakes
 from btq_lang.syntax.script.tree import ASSIGNMENT, RANK
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    import re
-
-    from btq_lang.diagnostics.model import Diagnostic
 
 # A token's kind is one of these; an operator's is the operator itself, corrected if misspelt.
 NAME: Final = "name"
