@@ -8,8 +8,7 @@ from pathlib import Path
 from hypothesis import strategies as st
 
 from btq_lang.catalog.nav2 import FILES
-from btq_lang.requirements.resolve import requirements
-from btq_lang.requirements.resolved import Requirements
+from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import File
 from btq_lang.workspace.workspace import Workspace

@@ -10,7 +10,7 @@ import random
 from collections.abc import Callable
 
 from btq_lang.requirements.model import Value
-from btq_lang.requirements.resolved import Requirements
+from btq_lang.requirements.resolve import Requirements
 from btq_lang.workspace.resolved import ResolvedNode
 
 SUCCESS, FAILURE, SKIPPED, RUNNING, IDLE = "success", "failure", "skip", "running", "idle"

@@ -30,8 +30,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import Applied, Claim, Requirement, Span
-from btq_lang.requirements.resolve import requirements
-from btq_lang.requirements.resolved import Requirements
+from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.requirements.spans import node_of
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.resolved import ResolvedNode

@@ -35,8 +35,8 @@ from btq_lang.requirements.model import (
     Table,
     Target,
     Value,
+    signals_in,
 )
-from btq_lang.requirements.reading import signals_in
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.resolved import ResolvedNode
 

@@ -36,8 +36,7 @@ from btq_lang.syntax.tree import (
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Edit, LineIndex, Span, apply_edits
 from btq_lang.workspace.file import is_xml
-from btq_lang.workspace.node_names import tag_of
-from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.node_names import is_placeholder, tag_of
 
 
 class Restored(Record):

@@ -21,7 +21,7 @@ from btq_lang.catalog.versions import NO_EXPLICIT_CHILD, UNIQUE_SUBTREES
 from btq_lang.syntax.tree import Entry, Node, Tree, Verbatim, Word
 from btq_lang.workspace.comments import NO_COMMENTS
 from btq_lang.workspace.custom_nodes import likely_category
-from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.node_names import is_placeholder
 from btq_lang.workspace.port_types import is_number
 
 

@@ -8,16 +8,16 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
     kinds.py, names.py, ports.py, children.py, trees.py, includes.py   what the engine would refuse
-    literals.py, constants.py, strings.py, scripts.py, counts.py, empty.py, outputs.py   values
+    literals.py, strings.py, scripts.py, counts.py, empty.py, outputs.py   values
     entries.py, pointers.py, writers.py, misspelt.py, mixed_types.py   blackboard entries
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
-    goals.py, resets.py, unread.py   nodes of Nav2: trees for goals, and traps
-    measures.py, clauses.py, conditions.py, bounds.py, limits.py, odds.py   requirements by themselves
-    requirements.py, attached.py, qualities.py, repeated.py, prose.py, unused.py   names of requirements and qualities
+    resets.py, unread.py   nodes of Nav2: trees for goals, and traps
+    measures.py, clauses.py, bounds.py, limits.py   requirements by themselves
+    requirements.py, qualities.py, repeated.py, prose.py   names of requirements and qualities
     demanded.py, demands.py, budgets.py, signals.py, renewals.py, unenforced.py   requirements at their nodes
-    calls.py, uncreated.py, origins.py, wording.py, placeholders.py   shared; trees that nothing creates; XML
+    calls.py, origins.py, wording.py, placeholders.py   shared; XML
     suppressions.py, silencing.py   silenced rules
 """
 
@@ -30,12 +30,9 @@ from btq_lang.checks import (
     bounds,
     children,
     clauses,
-    conditions,
-    constants,
     counts,
     demands,
     empty,
-    goals,
     includes,
     kinds,
     literals,
@@ -59,10 +56,8 @@ from btq_lang.checks import (
     trees,
     unreachable,
     unread,
-    unused,
     version3,
 )
-from btq_lang.checks.uncreated import as_uncreated
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.diagnostics.rules import Severity
@@ -99,7 +94,7 @@ _OF_MODELS: tuple[Check, ...] = (
     kinds.duplicate_definition,
     ports.duplicate_attribute,
     *_OF_PORTS,
-    constants.number_for_text,
+    literals.number_for_text,
     names.forbidden_name,
     empty.empty_text,
 )
@@ -150,7 +145,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         ports.duplicate_attribute,
         *_OF_PORTS,
         literals.old_entry,
-        constants.number_for_text,
+        literals.number_for_text,
         mixed_types.entry_with_two_types,
         outputs.literal_for_output,
         counts.count_of_nothing,
@@ -169,7 +164,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         repeated.named_twice,
         empty.empty_text,
         *_OF_QUALITIES,
-        conditions.subtraction_without_blanks,
+        clauses.subtraction_without_blanks,
         prose.prose_constraint,
         reactive.reactive_multiple_async,
         reactive.explicit_in_reactive,
@@ -178,7 +173,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         preconditions.while_skip_is_success,
         preconditions.skipped_condition,
         unreachable.unreachable_child,
-        goals.tree_of_goal,
+        unread.tree_of_goal,
         resets.memory_lost,
         resets.last_success_lost,
         unread.default_instead,
@@ -190,11 +185,17 @@ CHECKS: dict[type, tuple[Check, ...]] = {
     ),
     Model: _OF_MODELS,
     Models: _OF_MODELS,
-    Signal: (kinds.duplicate_definition, empty.empty_text, unused.unused_signal, measures.unresolved, demands.demands),
+    Signal: (
+        kinds.duplicate_definition,
+        empty.empty_text,
+        requirements.unused_signal,
+        measures.unresolved,
+        demands.demands,
+    ),
     Context: (
         kinds.duplicate_definition,
-        conditions.subtraction_without_blanks,
-        unused.unused_context,
+        clauses.subtraction_without_blanks,
+        requirements.unused_context,
         measures.unresolved,
     ),
     Requirement: (
@@ -203,7 +204,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         *_OF_CLAUSES,
         empty.empty_text,
         *_OF_QUALITIES,
-        conditions.subtraction_without_blanks,
+        clauses.subtraction_without_blanks,
         prose.prose_constraint,
         measures.unresolved,
         measures.requirement_without_subject,
@@ -232,7 +233,7 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
     )
 )
 # Of models, of which a file has many, `_OF_PORTS` need only the ports, and these only the ports of trees' models.
-_OF_PORTS_OF_TREES: frozenset[Check] = frozenset((constants.number_for_text, names.forbidden_name))
+_OF_PORTS_OF_TREES: frozenset[Check] = frozenset((literals.number_for_text, names.forbidden_name))
 _OF_NODES = tuple(each for each in CHECKS[Model] if each not in _OF_PORTS_OF_TREES)
 _WITHOUT_PORTS = tuple(each for each in _OF_NODES if each not in _OF_PORTS)
 
@@ -343,7 +344,7 @@ def _reported(store: Store[Workspace], viewpoint: str, facts: Facts, is_alone: b
         found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
     elif not found:
         return None
-    wanted = tuple(configured(view.project, viewpoint, as_uncreated(view, found)))
+    wanted = tuple(configured(view.project, viewpoint, trees.as_uncreated(view, found)))
     return Reported(wanted, (viewpoint, facts.item)) if wanted else None
 
 

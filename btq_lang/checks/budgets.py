@@ -1,16 +1,19 @@
-"""Budgets that do not add up: the demands on the children do not fit into the demand on their parent."""
+"""Budgets that do not add up: the demands on the children do not fit into the demand on their parent.  Also odds that
+the nodes below do not ensure, and odds that no window is long enough to show."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import inf
+from math import ceil, inf, log
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, found_at, highest, seconds, summed
 from btq_lang.diagnostics.model import Related
 from btq_lang.requirements.budget_parts import Budget, port_seconds
+from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.durations import Range, Term, together
-from btq_lang.requirements.model import Claim
+from btq_lang.requirements.model import Applied, Claim, Mission, Requirement
+from btq_lang.workspace.resolved import ResolvedNode
 
 
 def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
@@ -56,6 +59,52 @@ def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
         yield found_at(node.place, "timeout-never-succeeds", message, related=related)
 
 
+def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
+    """A node that must be in time, or succeed, more often than the demands on its children ensure.
+
+    Limits without odds do not matter here: if a step is late now and then, the whole may still be in time.
+    """
+    for applied, claim, node, place in demanded.claims:
+        odds = applied.requirement.odds
+        if (odds is not None and odds.experiments == "runs") or not (node.children or node.category == "SubTree"):
+            continue
+        if odds is None and VERBS[claim.verb].limits != "success":
+            continue
+        wanted = odds.probability if odds is not None else 1.0
+        ensured = _ensured(demanded.budgets, claim, node)
+        if ensured is None or ensured[0] >= wanted - 1e-9:
+            continue
+        likely, parts, rest = ensured
+        message = (
+            f"{_called(applied, node)} must meet `{claim.text}` in {_percent(wanted)} of activations, but "
+            f"the requirements of the nodes below it guarantee only {_percent(likely)}{rest}"
+        )
+        related = tuple(Related(part.place, f"fails in up to {_percent(share)}") for part, share in parts if share)
+        notes = ("the failures of several steps add up (the union bound)",) if len(related) > 1 else ()
+        yield found_at(place, "odds-beyond-children", message, related=related, notes=notes)
+
+
+def window_too_small(requirement: Requirement) -> Iterator[Found]:
+    """A window that is too small even without any failure.
+
+    Of n experiments that all succeed, the probability is at least (1 - c)^(1/n) with confidence c (Clopper, Pearson,
+    "The use of confidence or fiducial limits", Biometrika 26, 1934; one-sided).
+    """
+    odds, window, confidence = requirement.odds, requirement.window, requirement.confidence
+    if odds is None or window is None or window.count is None or confidence is None:
+        return
+    needed = ceil(log(1.0 - confidence) / log(odds.probability)) if odds.probability < 1.0 else inf
+    if needed <= window.count:
+        return
+    reason = f"this requires {needed} without a failure" if needed < inf else "no window is large enough"
+    message = (
+        f"{window.count} {window.experiments} cannot show {_percent(odds.probability)} with a confidence of "
+        f"{_percent(confidence)}: {reason}"
+    )
+    related = (Related(odds.place, "required probability"),)
+    yield found_at(window.place, "window-too-small", message, related=related)
+
+
 def _held_against(claim: Claim, budget: Budget) -> Range | None:
     """The part of a budget that a claim is about."""
     return budget.success if VERBS[claim.verb].limits == "success" else budget.completes
@@ -63,3 +112,39 @@ def _held_against(claim: Claim, budget: Budget) -> Range | None:
 
 def _share(term: Term) -> str:
     return f"up to {seconds(term.seconds)}" + (f", {term.times} times" if term.times > 1 else "")
+
+
+def _ensured(
+    budgets: Budgets, claim: Claim, node: ResolvedNode
+) -> tuple[float, list[tuple[ResolvedNode, float]], str] | None:
+    """The probability that the demands below a node make a claim true, what each child may miss, and what that leaves
+    out; None if it is unknown, or the duration is too long anyway."""
+    most = highest(claim)
+    limit = most[0] if most is not None else inf
+    limits = VERBS[claim.verb].limits
+    if limits == "success":
+        success = budgets.success(node)
+        rest = "" if success is not None else ", even if every other step succeeds"
+        success = success or budgets.success_of_known(node)
+        if success is None or success.seconds > limit:
+            return None
+        return success.probability, list(success.parts), rest
+    if limits == "completion" and most is not None:
+        budget = budgets.composed(node)
+        if not budget.is_bounded or budget.running.high > limit:
+            return None
+        shares = [(child, 1.0 - budgets.of(child).probability) for child in node.children]
+        return budget.probability, shares, ""
+    return None
+
+
+def _called(applied: Applied, node: ResolvedNode) -> str:
+    """The name to show: the mission, or a tree if its root has no name of its own."""
+    if isinstance(applied.subject, Mission):
+        return "`mission`"
+    is_unnamed_root = node.parent is None and node.node.name is None and node.tree is not None
+    return f"`{node.tree}`" if is_unnamed_root else node.shown
+
+
+def _percent(share: float) -> str:
+    return f"{share * 100:.4g} %"

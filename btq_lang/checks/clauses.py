@@ -1,24 +1,32 @@
-"""Clauses of one requirement that are repeated, about nothing, or incomplete."""
+"""Clauses of one requirement that are repeated, about nothing, or incomplete, and conditions."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, Tag, replace_fix
+from btq_lang.syntax.tokens import NAME
 from btq_lang.syntax.tree import (
     Clause,
     Confidence,
+    Context,
     Goal,
     How,
     NodeClause,
     Odds,
     OnViolation,
+    Operand,
+    ReqRef,
+    Requirement,
+    Tree,
     Window,
     Word,
     walk,
 )
 from btq_lang.util.text import Span
+from btq_lang.workspace.symbols import requirements_at
 
 _ONCE: dict[type, str] = {
     Odds: "how often it must hold",
@@ -73,6 +81,25 @@ def unused_parameter(view: View) -> Iterator[Diagnostic]:
                 yield Diagnostic("unused-parameter", parameter.name.span, message, tags=(Tag.UNNECESSARY,))
 
 
+def subtraction_without_blanks(view: View) -> Iterator[Diagnostic]:
+    """`full-empty`, one name, where only `full` and `empty` are known: a subtraction needs blanks."""
+    for operand in _operands(view):
+        word = operand.word
+        if word.kind != NAME or "-" not in word.text or _is_known(view, word.text):
+            continue
+        for at, character in enumerate(word.text):
+            left, right = word.text[:at], word.text[at + 1 :]
+            if character == "-" and _is_known(view, left) and _is_known(view, right):
+                yield Diagnostic(
+                    "subtraction-without-blanks",
+                    word.span,
+                    f"undefined name `{word.text}`; write spaces around `-` to subtract",
+                    notes=("without spaces `-` is part of the name",),
+                    fixes=(replace_fix(f"Write `{left} - {right}`", word.span, f"{left} - {right}", safe=True),),
+                )
+                break
+
+
 def _duplicate(view: View, counts: Clause, clause: Clause, is_alone: bool) -> Diagnostic:
     text = view.text
     said, again = (" ".join(text[each.start : each.end].split()) for each in (counts, clause))
@@ -102,3 +129,35 @@ def with_blanks(text: str, clause: Clause | NodeClause) -> Span:
         start = clause.start
         end += len(text[end:]) - len(text[end:].lstrip(" \t"))
     return Span(start, end)
+
+
+def _operands(view: View) -> Iterator[Operand]:
+    item = view.item
+    if isinstance(item, Tree):
+        clauses = (item.clauses, *[seen.node.clauses for seen in view.seen.demanding])
+        roots: Iterable[Requirement | ReqRef | Context] = (
+            requirement for each in clauses for requirement in requirements_at(each)
+        )
+    elif isinstance(item, Requirement | Context):
+        roots = (item,)
+    else:
+        return
+    text = view.text
+    for root in roots:
+        # Other parts of a requirement are words: its name, its quality, its text.
+        parts: tuple[object, ...] = root.arguments if isinstance(root, ReqRef) else ()
+        clauses_of: tuple[Clause | Context, ...] = (root,) if isinstance(root, Context) else ()
+        if isinstance(root, Requirement):
+            parts, clauses_of = root.parameters, root.clauses
+        # Nearly all clauses are without a `-`, and need not be searched word by word.
+        minus = [each for each in clauses_of if "-" in text[each.start : each.end]]
+        for part in walk((*parts, *minus)):
+            if isinstance(part, Operand):
+                yield part
+
+
+def _is_known(view: View, name: str) -> bool:
+    if any(view.find(kind, name) for kind in (Kind.SIGNAL, Kind.CONTEXT)):
+        return True
+    item = view.item
+    return isinstance(item, Requirement) and any(parameter.name.text == name for parameter in item.parameters)

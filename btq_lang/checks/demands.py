@@ -59,7 +59,7 @@ def _of_tree(
     store: Store[Workspace], viewpoint: str, path: str, facts: Facts
 ) -> tuple[tuple[Found, ...], tuple[Guard, ...]]:
     """The findings about the nodes of a tree, and the claims about them for which the engine reads signals."""
-    from btq_lang.checks import budgets, limits, odds, renewals, signals, swallowing, unenforced  # as above
+    from btq_lang.checks import budgets, limits, renewals, signals, swallowing, unenforced  # as above
     from btq_lang.checks.demanded import Demanded
 
     demanded = Demanded(View(store, viewpoint), path, facts)
@@ -72,7 +72,7 @@ def _of_tree(
         limits.contradicting_bounds,
         budgets.budget_exceeded,
         budgets.timeout_never_succeeds,
-        odds.odds_beyond_children,
+        budgets.odds_beyond_children,
         swallowing.swallowed_failure,
         unenforced.not_enforced,
         renewals.guard_never_renewed,
@@ -90,14 +90,14 @@ def _of_requirements(store: Store[Workspace], viewpoint: str) -> tuple[Found, ..
 
 def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Found, ...]:
     """What is wrong with a requirement, whatever it applies to."""
-    from btq_lang.checks import limits, odds, unenforced  # as above
+    from btq_lang.checks import budgets, limits, unenforced  # as above
     from btq_lang.requirements.definitions import requirement
 
     view = View(store, viewpoint)
     of_name, _ = store.ask(requirement, viewpoint, name)
     if of_name is None:
         return ()
-    found = [*limits.goal_beyond_bound(view, of_name), *odds.window_too_small(of_name)]
+    found = [*limits.goal_beyond_bound(view, of_name), *budgets.window_too_small(of_name)]
     if of_name.demands_enforcement:
         found += unenforced.not_enforced_between(view, name)
     return _here(viewpoint, found)

@@ -1,4 +1,5 @@
-"""Quality names: unknown, of another edition, or with several meanings.  None is an error: a model is open."""
+"""Quality names: unknown, of another edition, or with several meanings.  None is an error: a model is open.  Also what
+is attached with the wrong word: a requirement with `satisfices`, or a quality with `satisfies`."""
 
 from __future__ import annotations
 
@@ -7,9 +8,9 @@ from collections.abc import Iterator
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Diagnostic, Tag, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Qualities, Requirement, written
+from btq_lang.syntax.tree import Qualities, Requirement, Satisfices, Satisfies, Tree, written
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Use
@@ -27,8 +28,6 @@ def unknown_quality(view: View) -> Iterator[Diagnostic]:
         if match.kind != "unknown":
             continue
         if (meaning := view.find(Kind.REQUIREMENT, use.name)) is not None:
-            from btq_lang.checks.attached import other_word  # few confuse the two words
-
             takes_arguments = isinstance(meaning.target, Requirement) and bool(meaning.target.parameters)
             yield other_word(view, use, "unknown-quality", requirement=True, safe=not takes_arguments)
             continue
@@ -93,6 +92,22 @@ def ambiguous_quality(view: View) -> Iterator[Diagnostic]:
         )
 
 
+def other_word(view: View, use: Use, rule: str, *, requirement: bool, safe: bool = True) -> Diagnostic:
+    """The name of a requirement is in the place of a quality's, or the other way round.
+
+    Args:
+        requirement: whether it is one.
+        safe: whether the name would be right after the other word.
+    """
+    is_, is_not = ("requirement", "quality") if requirement else ("quality", "requirement")
+    word, other = _WORDS if requirement else _WORDS[::-1]
+    span = _alone(view, use, word)
+    fixes: tuple[Fix, ...] = (replace_fix(f"Replace `{word}` with `{other}`", span, other, safe=safe),) if span else ()
+    message = f"`{use.name}` is a {is_}, not a {is_not}"
+    notes = ("`satisfices` names qualities, `satisfies` names requirements",)
+    return Diagnostic(rule, use.span, message, notes=notes, fixes=fixes)
+
+
 def _matches(view: View) -> Iterator[tuple[Use, QualityMatch]]:
     """Each quality named in an entry, except those that the files in scope declare themselves."""
     for use in view.uses(Kind.QUALITY):
@@ -113,3 +128,16 @@ def _whole(view: View, use: Use) -> Span:
 
 def _last(use: Use) -> str:
     return use.name.rpartition(".")[2]
+
+
+_WORDS = ("satisfices", "satisfies")
+
+
+def _alone(view: View, use: Use, word: str) -> Span | None:
+    """The word of the clause that contains only this name."""
+    clauses = use.node.clauses if use.node is not None else view.item.clauses if isinstance(view.item, Tree) else ()
+    for clause in clauses:
+        if isinstance(clause, Satisfices | Satisfies) and clause.start < use.span.start and clause.end == use.span.end:
+            before = view.text[clause.start : use.span.start]
+            return Span(clause.start, clause.start + len(word)) if before.strip() == word else None
+    return None

@@ -16,8 +16,7 @@ from btq_lang.checks.view import View, declared_ports
 from btq_lang.checks.writers import all_entries, isolated, key_of
 from btq_lang.diagnostics.model import Related
 from btq_lang.requirements import nodes
-from btq_lang.requirements.model import Claim, Requirement, Signal
-from btq_lang.requirements.reading import signals_in
+from btq_lang.requirements.model import Claim, Requirement, Signal, signals_in
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store

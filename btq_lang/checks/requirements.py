@@ -1,4 +1,4 @@
-"""Requirements that are unknown, contradictory, unused, or empty."""
+"""Requirements that are unknown, contradictory, unused, or empty; signals and contexts to which nothing refers."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from collections.abc import Iterator
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
+from btq_lang.checks.qualities import other_word
 from btq_lang.checks.view import COUNTS, View
 from btq_lang.diagnostics.model import Diagnostic, Related, Tag, replace_fix
-from btq_lang.syntax.tree import Claim, OnViolation, Requirement, written
-from btq_lang.util.spelling import did_you_mean
+from btq_lang.syntax.tree import Claim, Context, OnViolation, Requirement, Signal, Word, written
+from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.symbols import Symbol, same_requirement
+from btq_lang.workspace.workspace import Workspace
 
 
 def unknown_requirement(view: View) -> Iterator[Diagnostic]:
@@ -25,8 +28,6 @@ def unknown_requirement(view: View) -> Iterator[Diagnostic]:
         quality = view.quality(use.name)
         if not elsewhere and (quality is None or quality.kind != "unknown"):
             is_exact = quality is None or quality.kind == "exact"
-            from btq_lang.checks.attached import other_word  # few confuse the two words
-
             yield other_word(view, use, "unknown-requirement", requirement=False, safe=is_exact)
             continue
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
@@ -96,6 +97,18 @@ def requirement_without_text(view: View) -> Iterator[Diagnostic]:
         yield Diagnostic("requirement-without-text", symbol.span, message, notes=(note,))
 
 
+def unused_signal(view: View) -> Iterator[Diagnostic]:
+    """A signal that no condition, no bound and no `uses` names."""
+    if isinstance(view.item, Signal):
+        yield from _unused(view, Kind.SIGNAL, view.item.name, "unused-signal", "no clause uses the signal")
+
+
+def unused_context(view: View) -> Iterator[Diagnostic]:
+    """A context that no condition names."""
+    if isinstance(view.item, Context):
+        yield from _unused(view, Kind.CONTEXT, view.item.name, "unused-context", "no condition uses the context")
+
+
 def _other_way(view: View, symbol: Symbol) -> str:
     """What to write instead of a second definition: only below a node can a reference replace it."""
     if symbol.target is view.item:
@@ -124,3 +137,25 @@ def _idle_action(view: View, requirement: Requirement) -> str | None:
 
 def _is_empty(requirement: Requirement) -> bool:
     return not requirement.clauses and (requirement.text is None or not requirement.text.text.strip())
+
+
+def _unused(view: View, kind: Kind, name: Word | None, rule: str, message: str) -> Iterator[Diagnostic]:
+    if name is None or not view.has_trees or view.is_used_elsewhere:
+        return  # a file of signals, or a library: their users may be anywhere
+    if not view.defines_here(kind, name.text) or view.look_up(lookups.is_asked_for, name.text):
+        return
+    if not view.ask(_is_meant, name.text) and view.is_read:  # else its user may be on a line that could not be read
+        yield Diagnostic(rule, name.span, f"{message} `{name.text}`", tags=(Tag.UNNECESSARY,))
+
+
+def _is_meant(store: Store[Workspace], viewpoint: str, name: str) -> bool:
+    """Whether something uses an undeclared name that looks like this one, which is reported already."""
+    view = View(store, viewpoint)
+    asked = view.look_up(lookups.asked_for_in_vain)
+    declared = len(view.names(Kind.SIGNAL)) + len(view.names(Kind.CONTEXT))
+    if len(asked) * declared > _MOST_COMPARED:
+        return True  # among so many unknown names there is a similar one to any
+    return bool(near(name, asked, limit=1))
+
+
+_MOST_COMPARED = 200_000  # pairs of names: some tenths of a second

@@ -47,7 +47,7 @@ def guards(demanded: Demanded) -> Iterator[Guard]:
         parts = (claim.condition, claim.signal, *(scope.condition for scope in applied.requirement.scopes))
         key = tuple(map(id, parts))  # one claim may apply to many nodes
         if key not in known:
-            from btq_lang.requirements.reading import signals_in  # few missions have a claim that is enforced
+            from btq_lang.requirements.model import signals_in  # few missions have a claim that is enforced
 
             known[key] = tuple({each.name: each for each in signals_in(parts)}.values())
         yield known[key], place

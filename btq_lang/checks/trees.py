@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS
@@ -13,14 +14,19 @@ from btq_lang.checks.lookups import Meaning
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.grammar.blocks import OF_ITS_OWN
+from btq_lang.grammar.nodes import OF_ITS_OWN
 from btq_lang.syntax.tree import Model, Node, Tree, written
+from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Use
 
 _MOST_NAMES = 5  # in one message
+
+
 _DEEPEST_OF_4_6 = 97  # below a BehaviorTree: its XML reader (tinyxml2 8.0) stops at 100 open elements
+
+
 _LAST_WINS = "the engine does not report this: it runs the last one that it reads"
 
 
@@ -48,6 +54,18 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
             message = f"`{use.name}` is a node, not a tree"
             fixes = _as_node(use)
         yield Diagnostic("unknown-tree", use.span, message, fixes=fixes)
+
+
+def as_uncreated(view: View, found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """What was found in an item; errors are only warnings if the engine never comes to them."""
+    name = view.tree_name.text if view.tree_name is not None else ""
+    is_uncreated = view.factory is not None and view.ask(calls.is_uncreated, name)
+    note = f"no main tree of the factory `{view.factory}` reaches `{name}`; the engine would refuse to create it"
+    for each in found:
+        if is_uncreated and each.rule in AT_CREATION and each.effective_severity is Severity.ERROR:
+            yield replace(each, severity=Severity.WARNING, notes=(*each.notes, note))
+        else:
+            yield each
 
 
 def _nowhere(view: View) -> str:
@@ -282,3 +300,23 @@ def _main_tree_fix(view: View, name: str) -> Fix:
 
 def _is_subtree_model(meaning: Meaning) -> bool:
     return isinstance(meaning.target, Model) and meaning.target.category.raw == "SubTree"
+
+
+# What 4.6.2 and 4.10.0 load in such a tree, and refuse when it is created or ticked.  They refuse at once, and with it
+# all trees of the file: wrong numbers of children, unknown nodes, names that they forbid, an ID that is missing.
+AT_CREATION: Final = frozenset(
+    (
+        "unknown-port",
+        "missing-port",
+        "invalid-literal",
+        "number-for-text",
+        "entry-with-two-types",
+        "switch-cases",
+        "parallel-threshold",
+        "unknown-tree",
+        "recursive-tree",
+        "duplicate-instance-name",
+        "script-error",
+        "empty-script",
+    )
+)

@@ -1,6 +1,7 @@
-"""Values that a node of Nav2 never reads or looks for, and outputs of them that nothing reads.
+"""Trees that nodes of Nav2 name for the goals that they send, values that a node never reads or looks for, and outputs
+that nothing reads.
 
-Sources: the tables of `catalog/nav2`.
+Sources: the tables of `catalog/nav2`.  What bt_navigator loads for goals says the factory.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nav2 import FILES
+from btq_lang.catalog.nav2 import FILES, TREE_OF_GOAL, ports_of
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.entries import blackboards, mentions
@@ -17,6 +18,7 @@ from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Pair, Word, port_named
+from btq_lang.util.record import replace
 from btq_lang.util.spelling import distance
 from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.resolved import ResolvedNode
@@ -88,6 +90,17 @@ def foreign_error_code(view: View) -> Iterator[Diagnostic]:
             )
             notes = [f"`{other}` looks for these" for other, of in HELPED.items() if actions.intersection(of)]
             yield Diagnostic("foreign-error-code", value.span, message, notes=tuple(notes))
+
+
+def tree_of_goal(view: View) -> Iterator[Diagnostic]:
+    """A tree that bt_navigator does not find, or skips or refuses."""
+    goals = view.look_up(lookups.goals)
+    for seen in view.seen.given if goals else ():
+        if seen.id is None or TREE_OF_GOAL not in (ports_of(seen.id.text) or ()):
+            continue
+        for pair in seen.node.attributes:
+            if pair.key.text == TREE_OF_GOAL and pair.value is not None:
+                yield from (replace(each, span=pair.value.span) for name, each in goals if name == pair.value.text)
 
 
 def _actions_with_codes_in(view: View, distribution: str, tree: str, name: str) -> set[str]:

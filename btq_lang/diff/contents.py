@@ -22,8 +22,7 @@ from btq_lang.syntax.tokens import COMMENT, NUMBER, QUANTITY
 from btq_lang.util.record import Record
 from btq_lang.util.text import Placed, Span
 from btq_lang.workspace.file import File
-from btq_lang.workspace.node_names import tag_of
-from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.node_names import is_placeholder, tag_of
 from btq_lang.workspace.symbols import requirements_at
 from btq_lang.workspace.workspace import Workspace
 

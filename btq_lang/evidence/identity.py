@@ -24,7 +24,7 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
     from btq_lang.btcpp.instances import Instance
     from btq_lang.requirements.model import Target
-    from btq_lang.requirements.resolved import Requirements
+    from btq_lang.requirements.resolve import Requirements
 
 
 class Candidate:

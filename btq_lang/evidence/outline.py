@@ -13,7 +13,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Applied, Claim, Requirement
-    from btq_lang.requirements.resolved import Requirements
+    from btq_lang.requirements.resolve import Requirements
     from btq_lang.workspace.resolved import ResolvedTree
 
 

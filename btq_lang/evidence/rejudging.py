@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.edges import Edge
     from btq_lang.evidence.margins import Counts
     from btq_lang.evidence.verdicts import Measures, RequirementVerdict
-    from btq_lang.requirements.resolved import Requirements
+    from btq_lang.requirements.resolve import Requirements
 
 
 class Shown(Record):

@@ -12,6 +12,5 @@ meaning of names are unknown here.
     clauses.py       the clauses of a requirement
     claims.py        what a clause demands
     conditions.py    the conditions in clauses
-    blocks.py        the lines below a head
     item_words.py    the words that begin items
 """

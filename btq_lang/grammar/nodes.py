@@ -10,7 +10,6 @@ from typing import Final
 
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.grammar.attributes import AttributeParser, meant_clause
-from btq_lang.grammar.blocks import MAX_DEPTH, OF_ITS_OWN, Block
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.grammar.cursor import VALUES, shown
@@ -48,6 +47,27 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.syntax.words import unquote
 from btq_lang.util.text import Span
+
+
+class Block:
+    """The open block of a node, or of the tree itself, with what has been parsed so far."""
+
+    __slots__ = ("children", "clauses", "level", "node")
+
+    def __init__(self, level: int, node: Node | None) -> None:
+        self.level: Final = level  # of the line that opened it
+        self.node: Final = node
+        self.clauses: list[NodeClause] = []
+        self.children: list[Node | Verbatim] = []
+
+    def has_nodes(self) -> bool:
+        return any(isinstance(child, Node) for child in self.children)
+
+    def close(self) -> None:
+        if self.node is not None:
+            self.node.children = tuple(self.children)
+            if self.clauses:
+                self.node.clauses += tuple(self.clauses)
 
 
 class NodeParser(AttributeParser):
@@ -492,16 +512,40 @@ XML: Final = (
     "if this is BehaviorTree.CPP XML, rename the file to .xml, or convert it with `btq import`; "
     "a comment begins with `#`, not `<!--`"
 )
+
+
 CHILD: Final = "a child goes on a line of its own below its parent, indented"
+
+
 _TAG: Final = re.compile(r"""<([^\W\d]\w*)((?:\s+[\w:]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(/?)>""")
+
+
 _NO_KINDS: Final = NODE_CLAUSES | DIRECTIONS | {"QualityReq", "xml"}
+
+
 _NOT_NODES: Final = frozenset(("root", "BehaviorTree", "TreeNodesModel", "include"))
+
+
 _COMMENT_ENDS: Final = ("-->", '"""', "'''")
+
+
 _STATEMENTS: Final = {
     **dict.fromkeys(("if", "elif", "else"), "to choose, use a Fallback `?` with a Condition, or `_skipIf` on the node"),
     **dict.fromkeys(("while", "for"), "to repeat, use `Repeat`, `Retry` or `KeepRunningUntilFailure`"),
 }
+
+
 _ARROW: Final = re.compile(r"[-=~]+ ?>")
+
+
 _BEFORE_TYPES: Final = frozenset(("const", "unsigned", "signed", "long", "short"))
+
+
+MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine's limit (4.9 and later)
+
+
+OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"
 _TOO_DEEP: Final = f"more than {MAX_DEPTH} levels of nodes, which BehaviorTree.CPP refuses"
+
+
 _MEANINGFUL: Final = "indentation shows what a line belongs to; align it with its sibling lines"

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.graph import draw
 from btq_lang.graph.figure import Box, Figure, Note
 from btq_lang.requirements.model import Applied, Claim
-from btq_lang.requirements.resolve import requirements
-from btq_lang.requirements.resolved import Requirements
+from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import Node, NodeClause, QualityPath, Satisfices
-from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.node_names import is_placeholder
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 

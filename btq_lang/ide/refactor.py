@@ -35,7 +35,7 @@ from btq_lang.syntax.tree import (
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, Position, Span, apply_edits
 from btq_lang.workspace.file import File
-from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.node_names import is_placeholder
 from btq_lang.workspace.references import Mention, What
 from btq_lang.workspace.workspace import Workspace
 

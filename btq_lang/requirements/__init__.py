@@ -8,11 +8,12 @@ identified by its facts.  What they read is in workspace/inputs.py.
 
     nodes.py     which nodes (workspace/resolved.py) a path, a kind or a tag means
     model.py     a requirement with its words resolved
-    paths.py, terms.py, reader.py   reading paths, values and conditions; reading.py, which signals are read
-    clauses.py   what each verb demands; classic.py, constraints.py, in SuccessIf and FailureIf of descriptions
+    paths.py, terms.py, reader.py   reading paths, values and conditions
+    clauses.py   what each verb demands
+    classic.py, constraints.py   the same in SuccessIf and FailureIf of descriptions
     definitions.py   the requirement of a name
     attach.py    which requirement holds for which node
     durations.py, composition.py, budgets.py   how long nodes take when all that is demanded below them holds
     spans.py     the node whose time a span is
-    resolve.py, resolved.py   `requirements(workspace, path)`: all of a file and what it includes
+    resolve.py   `requirements(workspace, path)`: all of a file and what it includes
 """

@@ -272,5 +272,9 @@ def parameter_of(reader: Reader, written: WrittenParameter) -> Parameter:
 
 
 _TIMED: Final = ("duration", "deadline", "reaction")
+
+
 _COUNTED: Final = Wanted("a number", (NO_DIMENSION, COUNT), None)
+
+
 _SHARE: Final = Wanted("a percentage", (PERCENT,), "%")

@@ -6,19 +6,32 @@ something was written is not known here: places lead back to that.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import Dimension, Unit
 from btq_lang.diagnostics.model import Place
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, fields_of
 from btq_lang.workspace.resolved import ResolvedNode
 
 Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]
+
+
 Happening: TypeAlias = Literal["starts", "succeeds", "fails", "finishes", "halts", "when"]
+
+
 Action: TypeAlias = Literal["fail", "halt", "warn", "log"]
+
+
 Method: TypeAlias = Literal["monitor", "analysis", "test", "review"]
+
+
 Experiments: TypeAlias = Literal["activations", "runs"]
+
+
 Behaviour: TypeAlias = Literal["level", "counter", "gauge"]
+
+
 Sort: TypeAlias = Literal["number", "bool", "text"]
 
 
@@ -169,7 +182,11 @@ class Table(Record):
 
 
 Simple: TypeAlias = Value | Flag | Text | Read | Parameter
+
+
 Bounded: TypeAlias = Simple | Table
+
+
 Number: TypeAlias = Bounded | Aggregate | Minus | Arithmetic
 
 
@@ -455,3 +472,21 @@ class Trace(Record):
 
 
 NO_DIMENSION: Final[Dimension] = (0, 0, 0, 0, 0, 0, 0, 0, 0)
+
+
+def signals_in(part: object) -> Iterator[Signal]:
+    """The signals in a condition, a bound or any other part of the model, or in a tuple of such; each context is
+    searched once."""
+    waiting = [part]
+    contexts: set[int] = set()
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, Signal):
+            yield part
+        elif isinstance(part, tuple):
+            waiting += reversed(part)
+        elif part is not None and type(part).__module__ == Signal.__module__:
+            if id(part) in contexts:
+                continue
+            contexts.add(id(part))
+            waiting += [getattr(part, field) for field in reversed(fields_of(part))]

@@ -17,8 +17,7 @@ from btq_lang.evidence.verdicts import WORST_FIRST
 from btq_lang.graph.figure import Box, Note
 from btq_lang.graph.missions import by_tree, clauses_in_words, concerns, figure
 from btq_lang.requirements.model import Applied, Mission, Requirement, Span, Target, Total
-from btq_lang.requirements.resolve import requirements
-from btq_lang.requirements.resolved import Requirements
+from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import QualityDecl
 from btq_lang.trace.meanings import Meaning, Meanings
 from btq_lang.trace.overview import (
@@ -36,7 +35,7 @@ from btq_lang.trace.overview import Total as TotalRow
 from btq_lang.trace.ways import declared_ways
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span as TextSpan
-from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.node_names import is_placeholder
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 

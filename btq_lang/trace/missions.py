@@ -9,7 +9,7 @@ from btq_lang.btcpp.export import is_mission
 from btq_lang.btcpp.outputs import as_xml
 from btq_lang.checks import check_each
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.requirements.resolved import Requirements
+from btq_lang.requirements.resolve import Requirements
 from btq_lang.trace import write
 from btq_lang.trace.collect import collect
 from btq_lang.trace.overview import Clause, Overview

@@ -12,7 +12,7 @@ disk.  Not known here: what is wrong with a mission, and how it is written as XM
     queries.py, inputs.py   the query cache, and what queries read in the workspace
     resolved.py, node_names.py   what written nodes mean, and by which names they are found
     comments.py      to which element a comment belongs
-    placeholders.py, port_types.py, custom_nodes.py   what names, ports and undeclared nodes are taken for
+    port_types.py, custom_nodes.py   what ports and undeclared nodes are taken for
     findings.py, fixes.py   diagnostics placed in a file, and fixes put into its text
     loader.py        reads files, and writes them whole or not at all
     watcher.py       what changed on the disk

@@ -18,7 +18,7 @@ from btq_lang.syntax.tree import Node, Tree, Word
 from btq_lang.util.record import Record
 from btq_lang.workspace import inputs
 from btq_lang.workspace.file import File
-from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.node_names import is_placeholder
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 

@@ -13,8 +13,8 @@ from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup, spellings, xml_tag
 from btq_lang.syntax.tree import Node
 from btq_lang.util.record import Record
+from btq_lang.util.spelling import near
 from btq_lang.workspace.inputs import Declared
-from btq_lang.workspace.placeholders import is_placeholder
 
 
 class Meaning(Record):
@@ -98,8 +98,28 @@ def kinds_of(node: Node, kind: NodeKind | None, category: str | None) -> frozens
     return _called(node.id.text if node.id is not None else None, None, kind.tag if kind else "", category)
 
 
+def is_placeholder(node: Node) -> bool:
+    """Whether a node is a classic placeholder (docs/language.md): a script node without code that represents a skill.
+
+    Only the unquoted words are: the published language has no custom nodes, so its files write skills as
+    `ScriptAction (name = "MoveBase")`.  A skill has no port that is a misspelt `code`.
+    """
+    return (
+        node.kind is not None
+        and node.kind.raw in PLACEHOLDERS
+        and node.category is None
+        and node.name is not None
+        and not any(_means_code(pair.key.text) for pair in node.attributes)
+    )
+
+
 @lru_cache(1000)  # many nodes of a mission have equal names
 def _called(name: str | None, label: str | None, tag: str, category: str | None) -> frozenset[str]:
     of_kind = spellings(BUILTINS[tag]) if tag else ()
     words = (name, label, category if category == "SubTree" else None, *of_kind)
     return frozenset([word for word in words if word is not None])
+
+
+@lru_cache(1000)
+def _means_code(key: str) -> bool:
+    return key == "code" or bool(near(key, ("code",)))

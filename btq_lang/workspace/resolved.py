@@ -17,8 +17,7 @@ from btq_lang.syntax.tree import Node, NodeClause, Satisfices, Tags, Tree, Word
 from btq_lang.workspace import inputs
 from btq_lang.workspace.inputs import Declared
 from btq_lang.workspace.item_index import Facts
-from btq_lang.workspace.node_names import kinds_of, meaning_of, names_of
-from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.node_names import is_placeholder, kinds_of, meaning_of, names_of
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 

@@ -25,7 +25,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Node as Written
 from btq_lang.syntax.tree import Tree
 from btq_lang.workspace.config import Project
-from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.node_names import is_placeholder
 from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]

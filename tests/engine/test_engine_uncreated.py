@@ -6,7 +6,7 @@ from engine_loader import Engine
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.checks import check
-from btq_lang.checks.uncreated import AT_CREATION
+from btq_lang.checks.trees import AT_CREATION
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.factories import Factory

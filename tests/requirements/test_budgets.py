@@ -14,7 +14,7 @@ from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.requirements.budgets import Budgets, Range
 from btq_lang.requirements.composition import _CONTROLS, _DECORATORS
-from btq_lang.requirements.resolved import Requirements
+from btq_lang.requirements.resolve import Requirements
 from btq_lang.workspace.resolved import ResolvedNode
 
 # ---- no run lies outside --------------------------------------------------------------------------------------------

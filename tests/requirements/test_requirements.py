@@ -27,8 +27,7 @@ from btq_lang.requirements.model import (
     Total,
     Value,
 )
-from btq_lang.requirements.resolve import requirements
-from btq_lang.requirements.resolved import Requirements
+from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.workspace.workspace import Workspace
 
 

@@ -16,8 +16,7 @@ from btq_lang.checks import check
 from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.budgets import Budget, Budgets, Range, Success, tree_budgets
-from btq_lang.requirements.resolve import requirements
-from btq_lang.requirements.resolved import Requirements
+from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.workspace import inputs
 from btq_lang.workspace.inputs import advance
 from btq_lang.workspace.queries import Store
