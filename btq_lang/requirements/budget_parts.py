@@ -59,6 +59,11 @@ class Budget(Record):
         return longest is not None and longest.high < inf
 
 
+def inverted(budget: Budget) -> Budget:
+    """The same with success and failure exchanged."""
+    return replace(budget, success=budget.failure, failure=budget.success)
+
+
 def unknown(reason: str) -> Budget:
     """The budget of a node that may do anything and take any time."""
     return Budget(ANY, ANY, ANY, reason=reason, endless=True)

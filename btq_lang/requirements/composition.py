@@ -12,8 +12,8 @@ from typing import Final
 
 from btq_lang.catalog.kinds import Flow
 from btq_lang.requirements import control_budgets, decorator_budgets, nav2_budgets
-from btq_lang.requirements.budget_parts import Budget, port_seconds, unknown
-from btq_lang.requirements.durations import ANY, ZERO, Range
+from btq_lang.requirements.budget_parts import Budget, inverted, port_seconds, unknown
+from btq_lang.requirements.durations import ANY, ZERO, Range, from_zero, hull
 from btq_lang.util.record import replace
 from btq_lang.workspace.resolved import ResolvedNode
 
@@ -59,7 +59,7 @@ _LEAVES: Final[Mapping[Flow, Budget]] = {
 }
 _CONTROLS: Final[Mapping[Flow, Callable[[ResolvedNode, Sequence[Budget]], Budget | None]]] = {
     "sequence": control_budgets.sequence,
-    "fallback": control_budgets.fallback,
+    "fallback": lambda node, children: inverted(control_budgets.sequence(node, [*map(inverted, children)])),
     "parallel": control_budgets.parallel,
     "parallel-all": control_budgets.parallel_all,
     "choice": control_budgets.choice,
@@ -72,10 +72,10 @@ _CONTROLS: Final[Mapping[Flow, Callable[[ResolvedNode, Sequence[Budget]], Budget
     "rotate": nav2_budgets.rotate,
 }
 _DECORATORS: Final[Mapping[Flow, Callable[[ResolvedNode, Budget], Budget]]] = {
-    "invert": decorator_budgets.invert,
-    "force-success": decorator_budgets.force_success,
-    "force-failure": decorator_budgets.force_failure,
-    "retry": decorator_budgets.retry,
+    "invert": lambda _, child: inverted(child),
+    "force-success": lambda _, child: replace(child, success=child.completes, failure=None),
+    "force-failure": lambda _, child: replace(child, success=None, failure=child.completes),
+    "retry": lambda node, child: inverted(decorator_budgets.repeat(node, inverted(child))),
     "repeat": decorator_budgets.repeat,
     "timeout": decorator_budgets.timeout,
     "delay": decorator_budgets.delay,
@@ -83,11 +83,11 @@ _DECORATORS: Final[Mapping[Flow, Callable[[ResolvedNode, Budget], Budget]]] = {
     "once": decorator_budgets.once,
     "precondition": decorator_budgets.precondition,
     "for-each": decorator_budgets.for_each,
-    "skip-unless-updated": decorator_budgets.skip_unless_updated,
+    "skip-unless-updated": lambda _, child: replace(child, skip=hull(child.skip, ZERO)),
     "wait-until-updated": decorator_budgets.wait_until_updated,
-    "pass": decorator_budgets.pass_on,
-    "throttle": decorator_budgets.pass_on,
-    "throttle-or-fail": nav2_budgets.throttle_or_fail,
-    "pass-or-succeed": nav2_budgets.pass_or_succeed,
-    "pass-once": nav2_budgets.pass_once,
+    "pass": lambda _, child: child,
+    "throttle": lambda _, child: child,
+    "throttle-or-fail": lambda _, child: replace(child, failure=hull(child.failure, from_zero(child.running))),
+    "pass-or-succeed": lambda _, child: replace(child, success=hull(child.success, from_zero(child.running))),
+    "pass-once": lambda _, child: replace(child, failure=hull(child.failure, ZERO)),
 }

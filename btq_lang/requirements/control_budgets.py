@@ -22,12 +22,6 @@ def sequence(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     return _reactive(children, found, "failure") if node.behavior is not None and node.behavior.reactive else found
 
 
-def fallback(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
-    go, end, skip = in_order([(each.failure, each.success, each.skip) for each in children])
-    found = made(children, end, go, skip)
-    return _reactive(children, found, "success") if node.behavior is not None and node.behavior.reactive else found
-
-
 def _with_memory(children: Sequence[Budget]) -> Budget:
     """As a sequence, but after a failure or a halt it resumes at the child that failed: any part of it may be done."""
     go, end, skip = in_order([(each.success, each.failure, each.skip) for each in children])

@@ -13,40 +13,11 @@ from btq_lang.util.record import replace
 from btq_lang.workspace.resolved import ResolvedNode
 
 
-def pass_on(node: ResolvedNode, child: Budget) -> Budget:
-    return child
-
-
-def invert(node: ResolvedNode, child: Budget) -> Budget:
-    return replace(child, success=child.failure, failure=child.success)
-
-
-def force_success(node: ResolvedNode, child: Budget) -> Budget:
-    return replace(child, success=child.completes, failure=None)
-
-
-def force_failure(node: ResolvedNode, child: Budget) -> Budget:
-    return replace(child, success=None, failure=child.completes)
-
-
-def retry(node: ResolvedNode, child: Budget) -> Budget:
-    count = port_count(node, "count")
-    go, end, skip, reason = _again(child.failure, child.success, child.skip, count)
-    return Budget(
-        end, go, skip, True, likelihood([child.probability], count), reason, _has_no_end(child, child.failure, count)
-    )
-
-
 def repeat(node: ResolvedNode, child: Budget) -> Budget:
     count = port_count(node, "count")
     go, end, skip, reason = _again(child.success, child.failure, child.skip, count)
-    return Budget(
-        go, end, skip, True, likelihood([child.probability], count), reason, _has_no_end(child, child.success, count)
-    )
-
-
-def _has_no_end(child: Budget, go: Range | None, count: int | None) -> bool:
-    return child.endless or (go is not None and count in (-1, None))
+    has_no_end = child.endless or (child.success is not None and count in (-1, None))
+    return Budget(go, end, skip, True, likelihood([child.probability], count), reason, has_no_end)
 
 
 def _again(
@@ -133,10 +104,6 @@ def for_each(node: ResolvedNode, child: Budget) -> Budget:
         return Budget(ZERO, ZERO, ZERO, True, child.probability)
     reason = "runs its child for each item of a queue of unknown length"
     return Budget(ANY, ANY, ANY, True, 0.0 if child.probability < 1.0 else 1.0, reason, True)
-
-
-def skip_unless_updated(node: ResolvedNode, child: Budget) -> Budget:
-    return replace(child, skip=hull(child.skip, ZERO))
 
 
 def wait_until_updated(node: ResolvedNode, child: Budget) -> Budget:

@@ -96,15 +96,3 @@ def rotate(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
         longest,
         longest if all(child.skip is not None for child in children) else None,
     )
-
-
-def throttle_or_fail(node: ResolvedNode, child: Budget) -> Budget:
-    return replace(child, failure=hull(child.failure, from_zero(child.running)))
-
-
-def pass_or_succeed(node: ResolvedNode, child: Budget) -> Budget:
-    return replace(child, success=hull(child.success, from_zero(child.running)))
-
-
-def pass_once(node: ResolvedNode, child: Budget) -> Budget:
-    return replace(child, failure=hull(child.failure, ZERO))
