@@ -11,7 +11,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.catalog.nodes import BUILTINS, lookup
-from btq_lang.diagnostics.model import Diagnostic, Place
+from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.syntax.tree import Apply, Include, Model, Models, Port, Root, Tree, models_in
 from btq_lang.util.record import Record
@@ -159,12 +159,6 @@ def distribution(workspace: Workspace, viewpoint: str) -> str | None:
 
 
 @of_viewpoint
-def goals(workspace: Workspace, viewpoint: str) -> tuple[tuple[str, Diagnostic], ...]:
-    """What is wrong with trees that nodes name for goals, by this name."""
-    return workspace.factory.goals if workspace.factory is not None else ()
-
-
-@of_viewpoint
 def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry, ...]:
     """The entries of the root blackboard that the program sets or reads, as far as they are known."""
     if workspace.factory is not None and workspace.factory.entries:
@@ -191,12 +185,6 @@ def declared_format(workspace: Workspace, viewpoint: str) -> str | None:
         return None
     given = [pair for root in file.of_type(Root) for pair in root.attributes if pair.key.text == "BTCPP_format"]
     return next((pair.value.text.strip() for pair in given if pair.value is not None), "")
-
-
-@of_viewpoint
-def has_parameters(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether these entries are those that a parameter file says."""
-    return workspace.factory is not None and bool(workspace.factory.entries)
 
 
 @of_viewpoint
@@ -390,26 +378,10 @@ def main_trees(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
 
 
 @of_viewpoint
-def factory(workspace: Workspace, viewpoint: str) -> tuple[str, bool] | None:
-    """The name of the factory, and whether this file is the first one in it that has trees."""
-    if workspace.factory is None:
-        return None
+def is_first_registered(workspace: Workspace, viewpoint: str) -> bool:
+    """Whether this file is the first one in scope that has trees."""
     paths = workspace.scope(viewpoint).paths
-    return workspace.factory.name, viewpoint == next(
-        (path for path in paths if workspace.files[path].of_type(Tree)), ""
-    )
-
-
-@of_viewpoint
-def is_registered_with_others(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether other files are registered together with this one."""
-    return workspace.factory is not None and len(workspace.scope(viewpoint).paths) > 1
-
-
-@of_viewpoint
-def lost_patterns(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
-    """The patterns of the factory that match no file."""
-    return workspace.factory.lost if workspace.factory is not None else ()
+    return viewpoint == next((path for path in paths if workspace.files[path].of_type(Tree)), "")
 
 
 @of_viewpoint

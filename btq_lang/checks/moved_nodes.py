@@ -51,7 +51,7 @@ def _collects(view: View, seen: ResolvedNode) -> bool:
     """Whether bt_navigator may collect the error code of a node in the distribution that the tree is for."""
     value = seen.node.attribute("error_code_id")
     name = pointed_at("error_code_id", value.text) if value is not None else None
-    if not view.look_up(lookups.has_parameters):
+    if view.factory is None or not view.factory.entries:
         return True
     return any(entry == name for entry, _ in view.look_up(lookups.outside_entries))
 

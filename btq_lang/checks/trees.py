@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS
@@ -20,6 +20,9 @@ from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Use
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.factories import Factory
 
 _MOST_NAMES = 5  # in one message
 
@@ -59,10 +62,13 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
 def as_uncreated(view: View, found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """What was found in an item; errors are only warnings if the engine never comes to them."""
     name = view.tree_name.text if view.tree_name is not None else ""
-    is_uncreated = view.factory is not None and view.ask(calls.is_uncreated, name)
-    note = f"no main tree of the factory `{view.factory}` reaches `{name}`; the engine would refuse to create it"
+    factory = view.factory
+    if factory is None or not view.ask(calls.is_uncreated, name):
+        yield from found
+        return
+    note = f"no main tree of the factory `{factory.name}` reaches `{name}`; the engine would refuse to create it"
     for each in found:
-        if is_uncreated and each.rule in AT_CREATION and each.effective_severity is Severity.ERROR:
+        if each.rule in AT_CREATION and each.effective_severity is Severity.ERROR:
             yield replace(each, severity=Severity.WARNING, notes=(*each.notes, note))
         else:
             yield each
@@ -165,7 +171,7 @@ def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
     if not view.is_first_tree:
         return
     if view.factory is not None:
-        yield from _missing_main_trees(view)
+        yield from _missing_main_trees(view, view.factory)
         return
     if view.is_included:
         return
@@ -193,16 +199,16 @@ def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
     )
 
 
-def _missing_main_trees(view: View) -> Iterator[Diagnostic]:
+def _missing_main_trees(view: View, factory: Factory) -> Iterator[Diagnostic]:
     """The main trees that the files of a factory lack, reported at the first tree that it registers."""
-    name, is_first = view.look_up(lookups.factory) or ("", False)
-    for main in view.look_up(lookups.main_trees) if is_first and view.is_complete and not view.has_torn_tree else ():
+    is_sure = view.look_up(lookups.is_first_registered) and view.is_complete and not view.has_torn_tree
+    for main in factory.main if is_sure else ():
         if not view.defines(Kind.TREE, main):
             likely = did_you_mean(view.near(main, Kind.TREE))
             yield Diagnostic(
                 "unknown-main-tree",
                 view.head,
-                f"the factory `{name}` has no tree `{main}`, which is its main tree{likely}",
+                f"the factory `{factory.name}` has no tree `{main}`, which is its main tree{likely}",
                 notes=("this is the first tree that it registers; `main` is in the project file",),
                 severity=Severity.ERROR,
             )
@@ -210,18 +216,17 @@ def _missing_main_trees(view: View) -> Iterator[Diagnostic]:
 
 def nothing_to_load(view: View) -> Iterator[Diagnostic]:
     """Files that a factory registers and that are not here, reported at the first tree that it registers."""
-    lost = view.look_up(lookups.lost_patterns)
-    if not lost or not view.is_first_tree:
+    factory = view.factory
+    if factory is None or not factory.lost or not view.is_first_tree:
         return
-    name, is_first = view.look_up(lookups.factory) or ("", False)
-    for pattern in lost if is_first else ():
+    for pattern in factory.lost if view.look_up(lookups.is_first_registered) else ():
         note = "what it defines is unknown"
         if pattern.startswith("package://"):
             note = f"btq looks for packages in this workspace, and in AMENT_PREFIX_PATH; {note}"
         yield Diagnostic(
             "missing-include",
             view.head,
-            f"no file matches `{pattern}`, a pattern of the factory `{name}`",
+            f"no file matches `{pattern}`, a pattern of the factory `{factory.name}`",
             notes=(note,),
             severity=Severity.HINT,
         )

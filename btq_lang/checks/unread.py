@@ -55,7 +55,7 @@ def error_code_not_collected(view: View) -> Iterator[Diagnostic]:
         return
     from btq_lang.catalog.nav2.navigator import COLLECTED, COLLECTING, OF_BRINGUP  # only for Nav2
 
-    usual = () if view.look_up(lookups.has_parameters) else OF_BRINGUP
+    usual = OF_BRINGUP if view.factory is None or not view.factory.entries else ()
     for seen, _, tree in _of_nav2(view, distribution):
         for pair in seen.node.attributes:
             if pair.key.text not in COLLECTED or pair.value is None:
@@ -94,7 +94,7 @@ def foreign_error_code(view: View) -> Iterator[Diagnostic]:
 
 def tree_of_goal(view: View) -> Iterator[Diagnostic]:
     """A tree that bt_navigator does not find, or skips or refuses."""
-    goals = view.look_up(lookups.goals)
+    goals = view.factory.goals if view.factory is not None else ()
     for seen in view.seen.given if goals else ():
         if seen.id is None or TREE_OF_GOAL not in (ports_of(seen.id.text) or ()):
             continue

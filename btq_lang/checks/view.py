@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from btq_lang.catalog.name_kinds import Kind
@@ -36,6 +36,7 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
     from btq_lang.requirements.constraints import Constraint
     from btq_lang.syntax.script.tree import Script
+    from btq_lang.workspace.factories import Factory
 
     T = TypeVar("T")
 
@@ -272,13 +273,12 @@ class View:
     @property
     def is_used_elsewhere(self) -> bool:
         """Whether other files can use what this one defines: they include it, or are registered with it."""
-        return self.is_included or self.look_up(lookups.is_registered_with_others)
+        return self.is_included or (self.factory is not None and len(self.look_up(inputs.paths)) > 1)
 
     @property
-    def factory(self) -> str | None:
-        """The name of the factory that the file is looked at in; None: the file is one of its own."""
-        found = self.look_up(lookups.factory)
-        return found[0] if found is not None else None
+    def factory(self) -> Factory | None:
+        """The factory that the file is looked at in; None: the file is one of its own."""
+        return inputs.factory(self.store)
 
     @property
     def main_tree(self) -> str | None:
@@ -354,18 +354,8 @@ class View:
             constraints,
         )
 
-        names = _NodeNames(self)
-        return tuple([(each, can_be_checked(each.text, names)) for each in constraints(requirement.text)])
-
-
-class _NodeNames:
-    """Every name in scope by which a path can name a node: of trees, of kinds and of instances."""
-
-    def __init__(self, view: View) -> None:
-        self._view = view
-
-    def __contains__(self, name: object) -> bool:
-        return self._view.look_up(lookups.is_node_name, name)
+        is_name = partial(self.look_up, lookups.is_node_name)
+        return tuple([(each, can_be_checked(each.text, is_name)) for each in constraints(requirement.text)])
 
 
 def subtree_ports(view: View, seen: ResolvedNode) -> tuple[Port, ...]:

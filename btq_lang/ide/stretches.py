@@ -114,6 +114,7 @@ class _Words(Listener):
     """
 
     def __init__(self, known: Known) -> None:
+        super().__init__()
         self.by = 0
         self.found: list[Token] = []
         self._known = known

@@ -24,7 +24,7 @@ def with_constraints(reader: Reader, requirement: Requirement, text: Word) -> Re
     found = constraints(text)
     names = frozenset(reader.names("nodes")) if found else frozenset()
     for constraint in found:
-        if can_be_checked(constraint.text, names):
+        if can_be_checked(constraint.text, names.__contains__):
             requirement = _with(reader, requirement, constraint, text.span)
     if not requirement.claims:
         return requirement

@@ -7,7 +7,7 @@ One invariant: the result depends only on the text and on the names of nodes.  W
 from __future__ import annotations
 
 import re
-from collections.abc import Container
+from collections.abc import Callable
 from functools import cache, lru_cache
 
 from btq_lang.diagnostics.rules import Severity
@@ -50,11 +50,11 @@ def constraints(word: Word) -> list[Constraint]:
     ]
 
 
-def can_be_checked(text: str, node_names: Container[str]) -> bool:
+def can_be_checked(text: str, is_node_name: Callable[[str], bool]) -> bool:
     """Whether it is a script that the engine takes for a condition, or clauses of a requirement; `it takes at most 5 s`
     is neither, unless there is a node `it`."""
     needed = _nodes_needed(text)
-    return needed is not None and all(name in node_names for name in needed)
+    return needed is not None and all(map(is_node_name, needed))
 
 
 @lru_cache(1_000)

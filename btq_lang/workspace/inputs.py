@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator
 from functools import wraps
-from typing import Concatenate, ParamSpec, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeAlias, TypeVar
 
 from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.name_kinds import Kind
@@ -25,6 +25,9 @@ from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.symbols import Symbol
 from btq_lang.workspace.workspace import Scope, Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.factories import Factory
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -104,6 +107,15 @@ def project(store: Store[Workspace]) -> Project:
 
 def _project(workspace: Workspace) -> Project:
     return workspace.project
+
+
+def factory(store: Store[Workspace]) -> Factory | None:
+    """Whose files these are; None: each file is a factory of its own."""
+    return store.read("project", _factory)
+
+
+def _factory(workspace: Workspace) -> Factory | None:
+    return workspace.factory
 
 
 @of_viewpoint

@@ -83,9 +83,9 @@ class Mention(Record):
 
 def mentions(item: syntax.Item) -> tuple[Mention, ...]:
     """All words of an item that name something, in the order of the text."""
-    listener = _Mentions()
+    listener = Listener()
     report(item, listener)
-    return tuple(sorted(listener.found, key=attrgetter("span")))
+    return tuple(sorted(listener.mentions, key=attrgetter("span")))
 
 
 def report(item: syntax.Item, to: Listener) -> None:
@@ -136,7 +136,12 @@ def report(item: syntax.Item, to: Listener) -> None:
 
 
 class Listener:
-    """Receives the words of an item that name something; a mention for each would be too slow for some."""
+    """Makes a mention of each word of an item that names something.  That would be too slow for some, who receive the
+    words themselves.
+    """
+
+    def __init__(self) -> None:
+        self.mentions: list[Mention] = []
 
     def word(
         self,
@@ -148,45 +153,20 @@ class Listener:
         pair: syntax.Pair | None = None,
     ) -> None:
         """A whole word, or None where one is missing; arguments as for a mention."""
-        raise NotImplementedError
-
-    def part(self, mention: Mention) -> None:
-        """A part of a word."""
-        raise NotImplementedError
-
-    def words(self, what: What, words: tuple[syntax.Word, ...], span: Span, node: syntax.Node | None = None) -> None:
-        """Several words that are one name."""
-        raise NotImplementedError
-
-    def value(self, word: syntax.Word) -> None:
-        """The value of an attribute that as a whole names nothing; parts of it may follow, in the order of the text."""
-
-
-class _Mentions(Listener):
-    """Makes a mention of each."""
-
-    def __init__(self) -> None:
-        self.found: list[Mention] = []
-
-    def word(
-        self,
-        what: What,
-        word: syntax.Word | None,
-        defines: bool = False,
-        node: syntax.Node | None = None,
-        owner: Owner = None,
-        pair: syntax.Pair | None = None,
-    ) -> None:
         if word is not None:
             self.part(Mention(what, word.text, word.span, word, defines, node, owner, pair))
 
     def part(self, mention: Mention) -> None:
+        """A part of a word."""
         if mention.span.start < mention.span.end:
-            self.found.append(mention)
+            self.mentions.append(mention)
 
     def words(self, what: What, words: tuple[syntax.Word, ...], span: Span, node: syntax.Node | None = None) -> None:
-        name = ".".join([word.text for word in words])
-        self.part(Mention(what, name, span, words[-1], False, node))
+        """Several words that are one name."""
+        self.part(Mention(what, ".".join([word.text for word in words]), span, words[-1], False, node))
+
+    def value(self, word: syntax.Word) -> None:
+        """The value of an attribute that as a whole names nothing; parts of it may follow, in the order of the text."""
 
 
 def _model(model: syntax.Model, to: Listener) -> None:
