@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
+from operator import itemgetter
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
@@ -117,7 +118,7 @@ def pieces(text: str) -> list[tuple[int, int, str]]:
         of_line = [*zip(lexer.kinds, lexer.starts, lexer.raws, strict=True)]
         if added < len(comments):
             of_line += [(COMMENT, start, text[start:end]) for start, end in comments[added:]]
-            of_line.sort(key=_start_of)
+            of_line.sort(key=itemgetter(1))
             added = len(comments)
         found += [piece for piece in of_line if piece[0] not in _SILENT]
     found += [(COMMENT, start, text[start:end]) for start, end in comments[added:]]
@@ -451,7 +452,8 @@ class Lexer(StrangeCharacters):
         if self.ended_early:  # it closes brackets that ended early
             self.ended_early -= 1
         elif position > self._stray_until:
-            self._report("syntax-error", position, position + 1, "unexpected `)`: no bracket is open")
+            message = "unexpected `)`: no bracket is open"
+            self.problems.append(Diagnostic("syntax-error", Span(position, position + 1), message))
             self._stray_until = line_end(self.text, position)
         return position + 1
 
@@ -524,17 +526,8 @@ class Lexer(StrangeCharacters):
             end = start + len(raw)
         return end
 
-    # ---- reports ----
-
-    def _report(self, rule: str, start: int, end: int, message: str, notes: tuple[str, ...] = ()) -> None:
-        self.problems.append(Diagnostic(rule, Span(start, end), message, notes=notes))
-
 
 # ---- all tokens ----
-
-
-def _start_of(piece: tuple[int, int, str]) -> int:
-    return piece[1]
 
 
 def _fill(found: list[Token], text: str, end: int, start: int, comments: list[tuple[int, int]], added: int) -> int:

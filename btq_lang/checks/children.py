@@ -12,7 +12,7 @@ from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Node, Word
+from btq_lang.syntax.tree import Node
 from btq_lang.util.text import Span
 from btq_lang.workspace.resolved import ResolvedNode
 
@@ -95,8 +95,8 @@ def parallel_threshold(view: View) -> Iterator[Diagnostic]:
             continue  # the missing child is reported instead
         for port in seen.kind.ports:
             value = seen.node.attribute(port.name) if port.role in ("successes", "failures") else None
-            threshold = _integer(value)
-            if value is None or threshold is None or threshold <= count:
+            threshold = int(value.text) if value is not None and _INTEGER.fullmatch(value.text) else 0
+            if value is None or threshold <= count:
                 continue
             yield Diagnostic(
                 "parallel-threshold",
@@ -111,10 +111,6 @@ def _is_by_children(seen: ResolvedNode) -> bool:
     """Whether its kind was chosen by the number of its children, as for a `Switch`."""
     kind = seen.node.kind
     return kind is not None and is_by_children(kind.raw)
-
-
-def _integer(word: Word | None) -> int | None:
-    return int(word.text) if word is not None and _INTEGER.fullmatch(word.text) else None
 
 
 def _called(seen: ResolvedNode) -> str:

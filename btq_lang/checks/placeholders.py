@@ -124,8 +124,9 @@ def _short_form(view: View, seen: ResolvedNode, name: str) -> Fix | None:
     head = _as_kind(name)
     if seen.category == "Condition" or _looks_like_builtin(name):
         head = f"{seen.category} {head}"
-    if node.name.text != name:
-        head = f"{head} {_as_label(node.name)}"
+    if (label := node.name).text != name:
+        is_label = label.quoted or (is_name(label.raw) and label.raw not in _NOT_A_KIND)
+        head = f"{head} {label.raw if is_label else quote(label.text)}"
     changes = _replace_head(view.text, node, head)
     if changes is None:
         return None
@@ -135,10 +136,6 @@ def _short_form(view: View, seen: ResolvedNode, name: str) -> Fix | None:
 def _as_kind(name: str) -> str:
     is_plain = is_name(name) and name not in _NOT_A_KIND and lookup(name) is None and name not in KNOWN_WORDS
     return name if is_plain else quote(name)
-
-
-def _as_label(name: Word) -> str:
-    return name.raw if name.quoted or (is_name(name.raw) and name.raw not in _NOT_A_KIND) else quote(name.text)
 
 
 @lru_cache(1000)

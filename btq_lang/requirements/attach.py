@@ -339,7 +339,7 @@ def _selected(reader: Reader, selector: Selector) -> Iterator[tuple[Target, int]
             reader.no_tag(selector.tag)
         yield from ((Target(node), _EVERY) for node in found)
     elif selector.every is not None:
-        found = reader.every(selector.every.text)
+        found = reader.store.ask(nodes.every, reader.viewpoint, selector.every.text)
         if not found:
             reader.none_of(selector.every)
         rank = _EVERY

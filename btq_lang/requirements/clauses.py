@@ -12,6 +12,7 @@ from typing import Final
 
 from btq_lang.catalog.units import Dimension, a_dimension
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.requirements import nodes
 from btq_lang.requirements.model import (
     NO_DIMENSION,
     Claim,
@@ -188,7 +189,7 @@ def _subject(reader: Reader, written: WrittenSubject) -> Subject | None:
     if isinstance(written, WrittenMission):
         return Mission(reader.mission)
     if isinstance(written, WrittenEvery):
-        if not reader.has_any(written.name.text):
+        if not reader.store.ask(nodes.has_any, reader.viewpoint, written.name.text):
             reader.none_of(written.name)
             return None
         return Every(written.name.text)

@@ -64,14 +64,6 @@ class PathReader:
         """The nodes that a path means."""
         return self.store.ask(nodes.find, self.viewpoint, names)
 
-    def every(self, name: str) -> tuple[ResolvedNode, ...]:
-        """The nodes of an ID or kind."""
-        return self.store.ask(nodes.every, self.viewpoint, name)
-
-    def has_any(self, name: str) -> bool:
-        """Whether there are nodes of an ID or kind."""
-        return self.store.ask(nodes.has_any, self.viewpoint, name)
-
     def names(self, kind: str) -> tuple[str, ...]:
         """The names of a kind: parameters, signals, contexts, nodes, kinds, tags."""
         if kind == "parameters":

@@ -110,13 +110,13 @@ def matching(folder: str, pattern: str) -> tuple[str, ...]:
 
     found = glob(pattern, root_dir=folder, recursive=True)
     paths = sorted(absolute(os.path.join(folder, each)) for each in found)
-    return tuple(path for path in paths if _is_file(path))
+    return tuple(path for path in paths if os.path.isfile(path))
 
 
 def package_folder(name: str, start: str) -> str | None:
     """The folder of a ROS package: in the workspace around a folder, else where AMENT_PREFIX_PATH says."""
-    for path in _packages(_workspace_of(start)):
-        found = _PACKAGE_NAME.search(read(path)[0] or "")
+    for path in collect((_workspace_of(start),), Project(), ("package.xml",))[0]:
+        found = _PACKAGE_NAME.search(read(path)[0] or "") if path.endswith("/package.xml") else None
         if found is not None and found[1] == name:
             return os.path.dirname(path)
     for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
@@ -131,10 +131,6 @@ def _workspace_of(folder: str) -> str:
     above = [*_upwards(folder)]
     sources = [each for each in above if os.path.basename(each) == "src"]
     return sources[-1] if sources else next((each for each in above if os.path.exists(f"{each}/.git")), folder)
-
-
-def _packages(top: str) -> tuple[str, ...]:
-    return tuple(path for path in collect((top,), Project(), ("package.xml",))[0] if path.endswith("/package.xml"))
 
 
 def is_project_file(path: str) -> bool:
@@ -175,7 +171,8 @@ def load(
     for path in waiting:
         for include in includes_of(path, texts[path]):
             candidates = include_candidates(project, path, include)
-            target = next((candidate for candidate in candidates if candidate in texts or _is_file(candidate)), None)
+            # Only regular files: reading an included pipe or device could block.
+            target = next((each for each in candidates if each in texts or os.path.isfile(each)), None)
             if target is None:
                 absent.update(dict.fromkeys(candidates))
             elif target not in texts and add(target):
@@ -247,11 +244,8 @@ def decoded(path: str, data: bytes) -> tuple[str | None, LoadProblem | None]:
 
 def is_special(path: str) -> bool:
     """Whether a path is a pipe or a device, which might never end."""
-    try:
-        mode = os.stat(path).st_mode
-    except (OSError, ValueError):  # ValueError: a NUL in the path
-        return False
-    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
+    status = _status(path)
+    return status is not None and not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode))
 
 
 def write_whole(path: str, content: str | bytes) -> None:
@@ -292,11 +286,8 @@ def write_whole(path: str, content: str | bytes) -> None:
 
 def stamp(path: str) -> tuple[int, int] | None:
     """A value that changes when a file does: its modification time and its size; None if the file does not exist."""
-    try:
-        status = os.stat(path)
-    except (OSError, ValueError):
-        return None
-    return status.st_mtime_ns, status.st_size
+    status = _status(path)
+    return None if status is None else (status.st_mtime_ns, status.st_size)
 
 
 def absolute(path: str) -> str:
@@ -383,19 +374,16 @@ def _is_folder(entry: os.DirEntry[str]) -> bool:
 
 def _identity(path: str) -> tuple[int, int] | None:
     """What all paths of a regular file have in common; None for anything else."""
+    status = _status(path)
+    return (status.st_dev, status.st_ino) if status is not None and stat.S_ISREG(status.st_mode) else None
+
+
+def _status(path: str) -> os.stat_result | None:
+    """What the system knows of a path; None if nothing is there."""
     try:
-        status = os.stat(path)
+        return os.stat(path)
     except (OSError, ValueError):  # ValueError: a NUL in the path
         return None
-    return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) else None
-
-
-def _is_file(path: str) -> bool:
-    """Whether it is a regular file: reading an included pipe or device could block."""
-    try:
-        return os.path.isfile(path)
-    except ValueError:  # a NUL in the path
-        return False
 
 
 def _reason(error: Exception) -> str:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import ENGINES, FILES, ports_of
-from btq_lang.syntax.tree import Entry, Include, Model, Qualities, Root, Word
+from btq_lang.syntax.tree import Entry, Include, Model, Qualities, Root
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Span
 from btq_lang.workspace.config import Project, include_candidates
@@ -382,7 +382,8 @@ class Workspace:
             return self.scope(path).find(Kind.TREE, self.factory.main[0])
         file = self.files[path]
         for root in file.of_type(Root):
-            named = root.name or _attribute(root, "main_tree_to_execute")
+            given = (pair.value for pair in root.attributes if pair.key.text == "main_tree_to_execute")
+            named = root.name or next(given, None)
             if named is not None:
                 return self.scope(path).find(Kind.TREE, named.text)
         trees = file.names.by_kind[Kind.TREE]
@@ -514,7 +515,3 @@ class Reference(Record):
     def span(self) -> Span:
         """The name, counted from the start of the file."""
         return self.use.span.shifted(self.entry.start)
-
-
-def _attribute(root: Root, key: str) -> Word | None:
-    return next((pair.value for pair in root.attributes if pair.key.text == key), None)

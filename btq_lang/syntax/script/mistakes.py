@@ -1,7 +1,7 @@
 """The diagnostics for scripts that the newest engine refuses, or loads but fails to run.
 
-One invariant: a safe fix mends its mistake and adds no other.  `tokens` and `parser` detect mistakes; this module has
-the messages and fixes.
+One invariant: a safe fix mends its mistake and adds no other.  `tokens` and `parser` detect mistakes; what there
+is to say about one is here, unless it is a single sentence.
 """
 
 from __future__ import annotations
@@ -105,12 +105,6 @@ def braced(text: str, span: Span, name: str) -> Diagnostic:
     return error(span, message, _write(name, span))
 
 
-def strange_blank(span: Span) -> Diagnostic:
-    return error(
-        span, "the engine does not accept this character as a space", replace_fix("Write a space", span, " ", safe=True)
-    )
-
-
 def foreign_name(span: Span, name: str) -> Diagnostic:
     return error(span, f"invalid name `{name}`: names in scripts contain only the letters A to Z, digits and `_`")
 
@@ -123,11 +117,6 @@ def number(span: Span, raw: str, meant: str | None) -> Diagnostic:
     return error(span, f"the engine does not read `{raw}` as a number", notes=(note,) if raw[-1].isalpha() else ())
 
 
-def unit(span: Span, name: str) -> Diagnostic:
-    note = "write the number in the unit of the entry"
-    return error(span, f"unexpected unit `{name}`: scripts have no units", notes=(note,))
-
-
 def too_large(span: Span, raw: str) -> Diagnostic:
     hexadecimal = raw[:2] in ("0x", "0X")
     if not hexadecimal and not raw.isdecimal():
@@ -135,11 +124,6 @@ def too_large(span: Span, raw: str) -> Diagnostic:
     fixes = () if hexadecimal else (replace_fix(f"Write `{raw}.0`", span, f"{raw}.0"),)
     message = f"`{raw}` is too large for a whole number: the newest engine reads it as 0, older ones refuse it"
     return error(span, message, *fixes)
-
-
-def glued_hexadecimal(span: Span) -> Diagnostic:
-    fix = replace_fix("Put a space between them", Span(span.end, span.end), " ", safe=True)
-    return error(span, "a hexadecimal number and the `..` after it need a space between them", fix)
 
 
 def no_such(text: str, span: Span) -> Diagnostic:
@@ -173,15 +157,6 @@ def unary_plus(text: str, span: Span) -> Diagnostic:
     return error(span, message, replace_fix("Remove the `+`", span, "", safe=True))
 
 
-def leading_semicolon(span: Span) -> Diagnostic:
-    message = "unexpected `;` at the start of a script: it separates statements"
-    return error(span, message, replace_fix("Remove it", span, "", safe=True))
-
-
-def unopened_bracket(span: Span) -> Diagnostic:
-    return error(span, "unexpected `)`: no bracket is open")
-
-
 def unclosed_bracket(text: str, bracket: Span, at: Span) -> Diagnostic:
     if at.start == len(text):
         end = len(text.rstrip())
@@ -189,18 +164,6 @@ def unclosed_bracket(text: str, bracket: Span, at: Span) -> Diagnostic:
     if text[at.start] == ";":
         return error(at, "unexpected `;` inside brackets")
     return error(bracket, f"missing `)` before `{text[at.start : at.end]}`")
-
-
-def ternary_without_colon(span: Span) -> Diagnostic:
-    return error(span, "a `?` needs both values: `condition ? this : that`")
-
-
-def colon_alone(span: Span) -> Diagnostic:
-    return error(span, "unexpected `:` without `?`; assign a value with `:=`")
-
-
-def assignment_after_ternary(span: Span) -> Diagnostic:
-    return error(span, "an assignment in the last part of `? :` must be in brackets: `c ? a : (b := 1)`")
 
 
 def not_assignable(operator: Span, is_equals: bool) -> Diagnostic:
@@ -222,10 +185,6 @@ def prose(text: str, start: int) -> Diagnostic:
     words = " ".join(text[start:].split()[:3])
     note = "since 4.9 the engine may load it and fail at the first tick, when it looks for variables of these names"
     return error(whole, f"this is prose, not a script: `{words} …` has no operator", notes=(note,))
-
-
-def call(span: Span, name: str) -> Diagnostic:
-    return error(span, f"unexpected call `{name}(…)`: scripts have no functions")
 
 
 def two_operands(text: str, left: Span, right: Span) -> Diagnostic:

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from typing import Final, NoReturn
 
-from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.syntax.script import mistakes
+from btq_lang.syntax.script.mistakes import error
 from btq_lang.syntax.script.tokens import BEGINS, END, ERROR, NAME, NUMBER, OPERANDS, TEXT, tokenize
 from btq_lang.syntax.script.tree import (
     ASSIGNMENT,
@@ -93,7 +94,10 @@ class _Parser:
         while self.kinds[self.at] == ";":
             self.at += 1
         if self.at:
-            self.problems.append(mistakes.leading_semicolon(Span(self.starts[0], self.ends[self.at - 1])))
+            span = Span(self.starts[0], self.ends[self.at - 1])
+            fix = replace_fix("Remove it", span, "", safe=True)
+            message = "unexpected `;` at the start of a script: it separates statements"
+            self.problems.append(error(span, message, fix))
 
     def statement_boundary(self, statement: Expression) -> None:
         """Decide whether what follows a statement without `;` is another statement or a mistake.
@@ -157,7 +161,7 @@ class _Parser:
         then = self.expression(0)
         height = max(height, self.height)
         if self.kinds[self.at] != ":":
-            self.unclosed(mistakes.ternary_without_colon(self.span(question)))
+            self.unclosed(error(self.span(question), "a `?` needs both values: `condition ? this : that`"))
         self.at += 1
         otherwise = self.expression(TERNARY)
         return Ternary(condition, then, otherwise, condition.start, otherwise.end), max(height, self.height)
@@ -232,15 +236,16 @@ class _Parser:
             self.unreadable()
         waiting = None if before == ";" or before == ")" or before in OPERANDS else self.span(at - 1)
         if waiting is None and kind == ")":
-            self.stop(mistakes.unopened_bracket(self.span(at)))
+            self.stop(error(self.span(at), "unexpected `)`: no bracket is open"))
         if waiting is None and kind == ":":
-            self.stop(mistakes.colon_alone(self.span(at)))
+            self.stop(error(self.span(at), "unexpected `:` without `?`; assign a value with `:=`"))
         self.stop(mistakes.missing_operand(self.text, waiting, self.span(at)))
 
     def unexpected(self, statement: Expression) -> NoReturn:
         """Report that what follows a statement neither separates nor begins one."""
         if RANK.get(self.kinds[self.at]) == ASSIGNMENT and isinstance(statement, Ternary):
-            self.stop(mistakes.assignment_after_ternary(self.span(self.at)))
+            message = "an assignment in the last part of `? :` must be in brackets: `c ? a : (b := 1)`"
+            self.stop(error(self.span(self.at), message))
         self.no_operand()
 
     def unclosed(self, problem: Diagnostic) -> NoReturn:
@@ -261,10 +266,14 @@ class _Parser:
         if last - first > 1:
             self.prose(self.starts[first])
         left, right = self.span(first), self.span(last)
+        both = Span(left.start, right.end)
         if self.is_call():
-            self.stop(mistakes.call(Span(left.start, right.end), self.text[left.start : left.end]))
+            name = self.text[left.start : left.end]
+            self.stop(error(both, f"unexpected call `{name}(…)`: scripts have no functions"))
         if self.is_unit():
-            self.stop(mistakes.unit(Span(left.start, right.end), self.text[right.start : right.end]))
+            notes = ("write the number in the unit of the entry",)
+            name = self.text[right.start : right.end]
+            self.stop(error(both, f"unexpected unit `{name}`: scripts have no units", notes=notes))
         self.stop(mistakes.two_operands(self.text, left, right))
 
     def is_word(self, index: int) -> bool:

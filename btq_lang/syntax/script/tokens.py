@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.syntax.script import mistakes
 from btq_lang.syntax.script.tree import ASSIGNMENT, RANK
 from btq_lang.util.text import Span
@@ -72,7 +72,9 @@ def tokenize(text: str) -> Tokens:
         elif kind == NUMBER:
             _check_number(tokens, text, match)
         elif kind == "blank":
-            tokens.problems.append(mistakes.strange_blank(Span(start, end)))
+            fix = replace_fix("Write a space", Span(start, end), " ", safe=True)
+            message = "the engine does not accept this character as a space"
+            tokens.problems.append(mistakes.error(Span(start, end), message, fix))
             continue
         elif kind != TEXT:
             kind = _slip(tokens, text, match)
@@ -117,7 +119,9 @@ def _check_number(tokens: Tokens, text: str, match: re.Match[str]) -> None:
         tokens.problems.append(mistakes.number(span, raw, meant))
         tokens.meant[len(tokens.kinds)] = meant or raw[: -len(garbage)]
     elif raw[:2] in _HEXADECIMAL and text.startswith(".", span.end):
-        tokens.problems.append(mistakes.glued_hexadecimal(span))
+        fix = replace_fix("Put a space between them", Span(span.end, span.end), " ", safe=True)
+        message = "a hexadecimal number and the `..` after it need a space between them"
+        tokens.problems.append(mistakes.error(span, message, fix))
     elif not _fits(raw):
         tokens.problems.append(mistakes.too_large(span, raw))
 
