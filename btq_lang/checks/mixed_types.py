@@ -16,7 +16,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import port_type
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
-from btq_lang.checks.pointers import pointed_at, remaps_all
+from btq_lang.checks.pointers import passed_on, pointed_at
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
@@ -106,15 +106,9 @@ def _handed_on(view: View, seen: ResolvedNode) -> Iterator[tuple[str, int | None
     if seen.id is None or not seen.id.text:
         return
     given = {pair.key.text: at for at, pair in reversed([*enumerate(seen.node.attributes)]) if pair.value is not None}
-    shares_all = remaps_all(seen)
     for port, meetings in view.ask(_types_below, seen.id.text).items():
         at = given.get(port)
-        value = seen.node.attributes[at].value if at is not None else None
-        key: str | None = port if port[0] == "@" else None
-        if key is None and value is not None:
-            key = pointed_at(port, value.text)
-        elif key is None and shares_all and port[0] != "_":
-            key = port
+        key = port if port[0] == "@" else passed_on(seen, port)
         if key:
             yield from ((key, at, meeting) for meeting in meetings)
 
@@ -143,13 +137,8 @@ def _given(view: View, caller: str, tree: str, key: str) -> Iterator[str | None]
     """The names of an entry of another tree in the SubTree nodes of one tree; None: it is that tree's own; an empty
     text: a value."""
     for seen in _nodes(view, caller):
-        if not seen.is_subtree or seen.node.id is None or seen.node.id.text != tree:
-            continue
-        value = seen.node.attribute(key)
-        if value is not None:
-            yield pointed_at(key, value.text) or ""
-        else:
-            yield key if remaps_all(seen) and key[0] != "_" else None
+        if seen.is_subtree and seen.node.id is not None and seen.node.id.text == tree:
+            yield passed_on(seen, key)
 
 
 def _nodes(view: View, tree: str) -> tuple[ResolvedNode, ...]:

@@ -17,3 +17,11 @@ def remaps_all(seen: ResolvedNode) -> bool:
     """Whether a SubTree gets every entry under its own name; it never gets private ones, which begin with `_`."""
     value = seen.node.attribute("_autoremap")
     return value is not None and value.text in ("true", "True", "TRUE", "1")
+
+
+def passed_on(seen: ResolvedNode, name: str) -> str | None:
+    """The entry that a SubTree passes to its tree under a name; empty: a value; None: the entry is that tree's own."""
+    value = seen.node.attribute(name)
+    if value is not None:
+        return pointed_at(name, value.text) or ""
+    return name if remaps_all(seen) and name[:1] != "_" else None

@@ -40,20 +40,6 @@ class SortedNodes:
         by_flow: the nodes of which it is known what they do, by their flow.
     """
 
-    __slots__ = (
-        "all",
-        "by_flow",
-        "by_tag",
-        "categorized",
-        "demanding",
-        "given",
-        "marked",
-        "named",
-        "placeholders",
-        "strangers",
-        "subtrees",
-    )
-
     def __init__(self, nodes: tuple[ResolvedNode, ...]) -> None:
         self.all: Final = nodes
         self.given: Final = [seen for seen in nodes if seen.node.attributes]

@@ -14,7 +14,7 @@ from btq_lang.catalog.nav2 import FILES, TREE_OF_GOAL, ports_of
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.entries import blackboards, mentions
-from btq_lang.checks.pointers import pointed_at, remaps_all
+from btq_lang.checks.pointers import passed_on, pointed_at
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Pair, Word, port_named
@@ -171,9 +171,8 @@ def _is_set_before(store: Store[Workspace], viewpoint: str, tree: str, key: str)
     if port is not None and port.default is not None and not is_pointer(port.default.text):
         return True
     for node in callers(store, viewpoint, tree):
-        value = node.node.attribute(key)
-        given = pointed_at(key, value.text) if value is not None else key if remaps_all(node) else None
-        if value is not None and given is None:
+        given = passed_on(node, key)
+        if given == "":
             return True
         if given is not None and node.tree is not None and store.ask(_is_set_before, viewpoint, node.tree, given):
             return True

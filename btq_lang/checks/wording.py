@@ -78,31 +78,11 @@ def _time() -> Dimension:
 _OPPOSITE = {"<=": ">", "<": ">=", ">=": "<", ">": "<="}
 _BOUNDS = {"<=": "at most", "<": "less than", ">=": "at least", ">": "more than"}
 _COMPARISONS = {
-    "at most": "<=",
-    "at maximum": "<=",
-    "maximum of": "<=",
-    "up to": "<=",
-    "within": "<=",
-    "less than": "<",
-    "fewer than": "<",
-    "lower than": "<",
-    "smaller than": "<",
-    "shorter than": "<",
-    "below": "<",
-    "under": "<",
-    "at least": ">=",
-    "at minimum": ">=",
-    "minimum of": ">=",
-    "more than": ">",
-    "longer than": ">",
-    "greater than": ">",
-    "higher than": ">",
-    "larger than": ">",
-    "above": ">",
-    "exceed": ">",
-    "exceeds": ">",
-    "exceeded": ">",
-    "exceeding": ">",
+    **dict.fromkeys(("at most", "at maximum", "maximum of", "up to", "within"), "<="),
+    **dict.fromkeys(("less than", "fewer than", "lower than", "smaller than", "shorter than", "below", "under"), "<"),
+    **dict.fromkeys(("at least", "at minimum", "minimum of"), ">="),
+    **dict.fromkeys(("more than", "longer than", "greater than", "higher than", "larger than", "above"), ">"),
+    **dict.fromkeys(("exceed", "exceeds", "exceeded", "exceeding"), ">"),
 }
 _TRIES = frozenset(("times", "attempts", "tries", "retries"))
 # Words by which a sentence may mean more or less than its one comparison.

@@ -7,6 +7,8 @@ Outside the workspace, diagnostics have no anchors.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from btq_lang.diagnostics.rules import RULES, Severity
 from btq_lang.diagnostics.rules import Tag as Tag
 from btq_lang.util.record import Record, replace
@@ -94,12 +96,14 @@ def shifted(diagnostic: Diagnostic, by: int) -> Diagnostic:
             return place
         return Place(place.span.shifted(by))
 
-    return replace(
-        diagnostic,
-        span=diagnostic.span.shifted(by),
-        related=tuple(Related(move(related.place), related.message) for related in diagnostic.related),
-        fixes=tuple(
-            Fix(fix.title, tuple(Change(move(change.place), change.text) for change in fix.changes), fix.safe)
-            for fix in diagnostic.fixes
-        ),
-    )
+    return relocated(diagnostic, diagnostic.span.shifted(by), move)
+
+
+def relocated(diagnostic: Diagnostic, span: Span, move: Callable[[Place], Place]) -> Diagnostic:
+    """The diagnostic at another span, with each of its other places moved."""
+
+    def moved(fix: Fix) -> Fix:
+        return Fix(fix.title, tuple([Change(move(each.place), each.text) for each in fix.changes]), fix.safe)
+
+    related = tuple([Related(move(each.place), each.message) for each in diagnostic.related])
+    return replace(diagnostic, span=span, related=related, fixes=tuple(map(moved, diagnostic.fixes)))

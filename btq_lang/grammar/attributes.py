@@ -317,11 +317,7 @@ class AttributeParser(RequirementParser):
 
     def list_goes_on(self, qualities: bool = False) -> bool:
         """Skip a comma if another element follows it; in brackets an attribute may follow instead."""
-        if self.at_word("and") and self.kinds[self.index + 1] in (NAME, STRING) and not self.group:
-            gone = Span(self.last_end() + self.base, self.here().end)
-            fix = replace_fix("Write `,`", gone, ",", safe=True)
-            self.complain("syntax-error", self.here(), "expected `,` instead of `and`", (), (fix,))
-            self.advance()
+        if self.kinds[self.index + 1] in (NAME, STRING) and not self.group and self.accept_and():
             return True
         if not self.at(","):
             return False

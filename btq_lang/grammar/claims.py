@@ -222,12 +222,7 @@ class ClaimParser(ConditionParser):
                 return None
             while path := self.path("a node"):
                 paths.append(path)
-                if self.at_word("and"):
-                    gone = Span(self.last_end() + self.base, self.here().end)
-                    fix = replace_fix("Write `,`", gone, ",", safe=True)
-                    self.complain("syntax-error", self.here(), "expected `,` instead of `and`", (), (fix,))
-                    self.advance()
-                elif not self.accept(","):
+                if not (self.accept_and() or self.accept(",")):
                     break
             return Sum(start, self.last_end(), tuple(paths))
         return self.path("a node")

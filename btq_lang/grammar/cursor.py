@@ -189,6 +189,15 @@ class Cursor:
             return True
         return False
 
+    def accept_and(self) -> bool:
+        """Report and skip `and` where a comma separates."""
+        if not self.at_word("and"):
+            return False
+        fix = replace_fix("Write `,`", Span(self.last_end() + self.base, self.here().end), ",", safe=True)
+        self.complain("syntax-error", self.here(), "expected `,` instead of `and`", (), (fix,))
+        self.advance()
+        return True
+
     def accept_word(self, word: str) -> bool:
         if self.kind == NAME and self.raw == word:
             self.advance()

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from importlib import import_module
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
+from btq_lang.diagnostics.model import Place, relocated
 from btq_lang.render.report import Finding as Finding
 from btq_lang.render.report import Report as Report
 from btq_lang.render.report import Trouble as Trouble
@@ -50,20 +50,11 @@ def with_paths(report: Report, shown: Callable[[str], str]) -> Report:
     def place(old: Place) -> Place:
         return old if old.path is None else replace(old, path=shown(old.path))
 
-    def diagnostic(old: Diagnostic) -> Diagnostic:
-        if not old.related and not old.fixes:
-            return old
-        return replace(
-            old,
-            related=tuple(Related(place(related.place), related.message) for related in old.related),
-            fixes=tuple(
-                Fix(fix.title, tuple(Change(place(change.place), change.text) for change in fix.changes), fix.safe)
-                for fix in old.fixes
-            ),
-        )
-
     return Report(
-        tuple(Finding(shown(old.path), old.text, diagnostic(old.diagnostic)) for old in report.findings),
+        tuple(
+            Finding(shown(old.path), old.text, relocated(old.diagnostic, old.diagnostic.span, place))
+            for old in report.findings
+        ),
         {shown(path): text for path, text in report.texts.items()},
         tuple(map(shown, report.checked)),
         tuple(replace(trouble, path=shown(trouble.path)) for trouble in report.troubles),

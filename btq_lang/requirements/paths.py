@@ -6,6 +6,7 @@ nodes may be elsewhere (a library, an include that was not found) a path without
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
@@ -44,13 +45,17 @@ class PathReader:
         source: the text that is read, if it is not text of the file, and the place at which all of it is reported.
     """
 
-    def __init__(self, store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> None:
+    def __init__(
+        self, store: Store[Workspace], viewpoint: str, path: str, facts: Facts, known: Collection[str] | None = None
+    ) -> None:
+        """known: the only signals that may be named, without contexts; None: all signals and contexts."""
         self.store: Final = store
         self.viewpoint: Final = viewpoint
         self.path: Final = path
         self.parameters: dict[str, Parameter] = {}
         self.source: tuple[str, Span] | None = None
         self.facts: Final = facts
+        self._known: Final = known
         self._problems: dict[tuple[str, Span, str], Problem] = {}
 
     @property
@@ -68,6 +73,8 @@ class PathReader:
         """The names of a kind: parameters, signals, contexts, nodes, kinds, tags."""
         if kind == "parameters":
             return tuple(self.parameters)
+        if kind in _DECLARED and self._known is not None:
+            return tuple(self._known) if kind == "signals" else ()
         if kind in _DECLARED:
             return inputs.names(self.store, self.viewpoint, _DECLARED[kind])
         if kind == "nodes":

@@ -6,7 +6,7 @@ different units.  Verbs are for `clauses`.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from math import isfinite
 from typing import Final, TypeAlias
 
@@ -167,20 +167,6 @@ def _contexts_in(store: Store[Workspace], viewpoint: str, written: Context) -> I
 class Reader(PathReader):
     """Reads values and conditions too."""
 
-    def __init__(
-        self,
-        store: Store[Workspace],
-        viewpoint: str,
-        path: str,
-        facts: Facts,
-        parameters: dict[str, Parameter] | None = None,
-        known: Collection[str] | None = None,
-    ) -> None:
-        """known: the only signals that may be named, without contexts; None: all signals and contexts."""
-        super().__init__(store, viewpoint, path, facts)
-        self.parameters = parameters or {}
-        self._known: Final = known
-
     # ---- look-ups ----
 
     def signal(self, name: str) -> Signal | None:
@@ -194,12 +180,6 @@ class Reader(PathReader):
         if self._known is not None:
             return False
         return inputs.definition(self.store, self.viewpoint, Kind.CONTEXT, name) is not None
-
-    def names(self, kind: str) -> tuple[str, ...]:
-        """As for a path reader."""
-        if self._known is not None and kind in ("signals", "contexts"):
-            return tuple(self._known) if kind == "signals" else ()
-        return super().names(kind)
 
     # ---- values ----
 
@@ -501,10 +481,6 @@ class Reader(PathReader):
             return True
         if left.dimension == right.dimension or is_count_of(left, right) or is_count_of(right, left):
             return self._same_level(left, right)
-        for number, other in ((left, right), (right, left)):
-            if number.is_bare and other.unit is not None:
-                self._bare(number, f"`{self._at(other.span)}` is in {other.unit}", other.unit)
-                return False
         self._mismatch(left, right, "compare")
         return False
 
@@ -515,7 +491,11 @@ class Reader(PathReader):
         return False
 
     def _mismatch(self, left: Term, right: Term, what: str) -> None:
-        """Report that two values measure different things; `what` cannot be done with them."""
+        """Report that two values measure different things, or one lacks its unit; `what` cannot be done with them."""
+        for number, other in ((left, right), (right, left)):
+            if number.is_bare and other.unit is not None:
+                self._bare(number, f"`{self._at(other.span)}` is in {other.unit}", other.unit)
+                return
         shown = [f"`{self._at(term.span)}` ({in_words(term)})" for term in (left, right)]
         preposition = {"compare": "with", "add": "and", "subtract": "and"}[what]
         message = f"cannot {what} {f' {preposition} '.join(shown)}"
@@ -584,10 +564,6 @@ class Reader(PathReader):
         if written.operator in "*/":
             return self._product(value, left, right, span)
         if left.dimension != right.dimension:
-            for number, other in ((left, right), (right, left)):
-                if number.is_bare and other.unit is not None:
-                    self._bare(number, f"`{self._at(other.span)}` is in {other.unit}", other.unit)
-                    return None
             self._mismatch(left, right, "add" if written.operator == "+" else "subtract")
             return None
         level = sum_level(written.operator, left.level, right.level)

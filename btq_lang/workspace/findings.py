@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
+from btq_lang.diagnostics.model import Diagnostic, Place, relocated
 
 if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
@@ -95,15 +95,9 @@ def _is_same(one: tuple[str, object], other: tuple[str, object]) -> bool:
 
 
 def _placed(one: Diagnostic, by: int, starts: dict[int, int]) -> Diagnostic:
-    def moved(change: Change) -> Change:
-        return Change(_absolute(change.place, by, starts), change.text)
+    def absolute(place: Place) -> Place:
+        if place.path is None:
+            return Place(place.span.shifted(by)) if place.anchor is None else place
+        return Place(place.span.shifted(starts[id(place.anchor)]), place.path) if place.anchor is not None else place
 
-    related = tuple([Related(_absolute(each.place, by, starts), each.message) for each in one.related])
-    fixes = tuple([Fix(fix.title, tuple(map(moved, fix.changes)), fix.safe) for fix in one.fixes])
-    return Diagnostic(one.rule, one.span.shifted(by), one.message, related, one.notes, fixes, one.tags, one.severity)
-
-
-def _absolute(place: Place, by: int, starts: dict[int, int]) -> Place:
-    if place.path is None:
-        return Place(place.span.shifted(by)) if place.anchor is None else place
-    return Place(place.span.shifted(starts[id(place.anchor)]), place.path) if place.anchor is not None else place
+    return relocated(one, one.span.shifted(by), absolute)

@@ -160,19 +160,15 @@ class Workspace:
 
     # ---- includes and scopes ----
 
-    def included(self, path: str, include: str) -> str | None:
-        """The file that an `include` in `path` refers to, if it is there."""
-        for candidate in include_candidates(self.project, path, include):
-            if candidate in self.files:
-                return candidate
-        return None
+    def included(self, path: str, include: str, of_package: bool = False) -> str | None:
+        """The file that an `include` in `path` refers to, if it is there; files of a ROS package are known only on the
+        robot."""
+        candidates = () if of_package else include_candidates(self.project, path, include)
+        return next((each for each in candidates if each in self.files), None)
 
     def included_by(self, path: str, include: Include) -> str | None:
-        """As `included`; files of a ROS package are known only on the robot."""
-        return None if include.path is None else self._target(path, include.path.text, is_of_package(include))
-
-    def _target(self, path: str, include: str, is_of_package: bool) -> str | None:
-        return None if is_of_package else self.included(path, include)
+        """As `included`."""
+        return None if include.path is None else self.included(path, include.path.text, is_of_package(include))
 
     def closure(self, path: str) -> tuple[str, ...]:
         """A file and all that it includes, included ones first; each once, even if they include each other."""
@@ -207,7 +203,7 @@ class Workspace:
 
     def _targets(self, path: str) -> Iterator[str]:
         for named in self.files[path].included_paths:
-            target = self._target(path, *named)
+            target = self.included(path, *named)
             if target is not None:
                 yield target
 
