@@ -283,11 +283,7 @@ def is_tree_of_mission(workspace: Workspace, viewpoint: str, name: str) -> bool:
 @of_viewpoint
 def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str]:
     """The names that a tree of the mission cannot have in XML, because other trees or nodes have them, with what has
-    each.
-
-    Args:
-        but: the tree that needs a name.
-    """
+    each."""
     target = workspace.project.target
     taken = dict.fromkeys(BUILTINS, "a built-in node")
     trees: dict[str, str] = {}

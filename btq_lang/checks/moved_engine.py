@@ -57,11 +57,7 @@ def is_between(since: str, until: str, after: str, origin: str, target: str) -> 
 
 
 def new_in_target(view: View, checks: tuple[Check, ...], found: list[Diagnostic]) -> Iterator[Diagnostic]:
-    """What the target refuses, or reads otherwise, and the version that the tree is for does not.
-
-    Args:
-        found: what the checks find for that version.
-    """
+    """What the target refuses, or reads otherwise, and the version that the tree is for does not."""
     workspace = view.workspace.moved
     moved = View(workspace.store, view.viewpoint, view.facts)
     known = {(each.rule, each.span) for each in found if is_severe(each)}
@@ -85,11 +81,7 @@ def is_severe(found: Diagnostic) -> bool:
 
 
 def of_target(found: Diagnostic, target: str) -> Diagnostic:
-    """What is found for a target alone, as a finding of the rules about moving on.
-
-    Args:
-        target: its name, for a message.
-    """
+    """What is found for a target alone, as a finding of the rules about moving on."""
     breaks = found.effective_severity is Severity.ERROR or found.rule == "not-an-engine-node"
     notes = (*found.notes, f"in {target} this is {found.rule}: `btq explain {found.rule}`")
     return replace(found, rule="target-breaks" if breaks else "target-differs", notes=notes, severity=None)

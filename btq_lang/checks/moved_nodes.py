@@ -57,11 +57,7 @@ def _collects(view: View, seen: ResolvedNode) -> bool:
 
 
 def changed(view: View, seen: ResolvedNode, name: Word, change: Change) -> Iterator[Diagnostic]:
-    """A row about a node, if the value of its port is one that the row concerns.
-
-    Args:
-        name: the node's, as written.
-    """
+    """A row about a node, if the value of its port is one that the row concerns."""
     value = seen.node.attribute(change.port) if change.port else None
     if not change.matches(value.text if value is not None else None):
         return

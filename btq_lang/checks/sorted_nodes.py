@@ -15,11 +15,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def sorted_nodes(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> SortedNodes:
-    """The nodes of a tree, sorted.
-
-    Args:
-        path: the file in which it is written.
-    """
+    """The nodes of a tree, sorted."""
     return SortedNodes(store.ask(tree_nodes, viewpoint, path, tree).all)
 
 

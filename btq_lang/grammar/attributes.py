@@ -317,8 +317,8 @@ class AttributeParser(RequirementParser):
 
     def list_goes_on(self, qualities: bool = False) -> bool:
         """Skip a comma if another element follows it; in brackets an attribute may follow instead."""
-        if self.kinds[self.index + 1] in (NAME, STRING) and not self.group and self.accept_and():
-            return True
+        if self.at_word("and") and self.kinds[self.index + 1] in (NAME, STRING) and not self.group:
+            return self.accept_and()
         if not self.at(","):
             return False
         following = self.index + 1

@@ -59,11 +59,7 @@ class ClaimParser(ConditionParser):
         return self.verb(start, subject)
 
     def verb(self, start: int, subject: Subject | None) -> Claim:
-        """Verb = "takes" Bound | "succeeds" [ "within" Bounded ] | "needs" Cond | …; the verb of a subject
-
-        Args:
-            start: of the claim.
-        """
+        """Verb = "takes" Bound | "succeeds" [ "within" Bounded ] | "needs" Cond | …; the verb of a subject"""
         verb = self.take()
         bound: Bound | None = None
         condition: Condition | None = None
@@ -169,11 +165,7 @@ class ClaimParser(ConditionParser):
             self.expected(f"a verb after `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
 
     def blank_in_path(self, path: Subject | None, follow: frozenset[str]) -> bool:
-        """Report `Inspect Dock succeeds`, where a path is written `Inspect/Dock`, and skip the rest.
-
-        Args:
-            follow: the words that may follow the path.
-        """
+        """Report `Inspect Dock succeeds`, where a path is written `Inspect/Dock`, and skip the rest."""
         index = self.index
         while self.kinds[index] in (NAME, STRING) and not (self.kinds[index] == NAME and self.raws[index] in follow):
             index += 1

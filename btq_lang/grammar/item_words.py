@@ -18,16 +18,18 @@ ITEM_WORDS: Final = (
 )
 
 
+@lru_cache(1_000)
 def item_word_meant(word: str) -> str:
     """The item word nearest to another word; empty if none is near."""
-    return _meant(word)
+    likely = near(word, ITEM_WORDS, limit=1)
+    return likely[0] if likely else ""
 
 
 def read_as(word: str) -> str:
     """The item word that a misspelt one is read as, or empty: a model may be meant as a node of the tree above, and an
     include must be found without parsing the text.
     """
-    meant = _meant(word)
+    meant = item_word_meant(word)
     return "" if meant in CATEGORIES or (meant == "include" and not may_include(word)) else meant
 
 
@@ -38,9 +40,3 @@ def may_include(text: str) -> bool:
     """
     folded = text.casefold()
     return "inc" in folded or "ude" in folded
-
-
-@lru_cache(1_000)
-def _meant(word: str) -> str:
-    likely = near(word, ITEM_WORDS, limit=1)
-    return likely[0] if likely else ""

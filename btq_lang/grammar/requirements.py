@@ -75,11 +75,7 @@ class RequirementParser(ClauseParser):
         self.go_to(self.index)
 
     def skip_key(self, words: tuple[str, ...], instead: str) -> bool:
-        """Report and skip an attribute's key where only the value belongs, as in `description = "in time"`.
-
-        Args:
-            instead: what to write instead of the key.
-        """
+        """Report and skip an attribute's key where only the value belongs, as in `description = "in time"`."""
         value = self.index + 2
         if self.kind != NAME or self.raw not in words or self.kinds[value] not in (NAME, STRING):
             return False

@@ -163,11 +163,6 @@ class TreeBudgets:
     __slots__ = ("_claims", "_composed", "_held", "_outcomes", "_successes")
 
     def __init__(self, tree: ResolvedTree, applied: tuple[Applied, ...], outcomes: Mapping[str, Outcome]) -> None:
-        """
-        Args:
-            applied: what applies to its nodes.
-            outcomes: of the trees that it runs, by their names.
-        """
         self._outcomes = outcomes
         self._claims: dict[int, list[tuple[Applied, Claim]]] = {}  # the claims that count, by the `id` of the node
         for each in applied:

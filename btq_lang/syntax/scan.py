@@ -76,11 +76,7 @@ def maps_of(text: str) -> Maps:
 
 
 def name_end(text: str, words: str, start: i64) -> i64:
-    """The end of the NAME that begins at `start`, which is a letter or `_`.
-
-    Args:
-        words: of the `Maps` of the text.
-    """
+    """The end of the NAME that begins at `start`, which is a letter or `_`."""
     size: i64 = len(text)
     end: i64 = words.find("\0", start + 1)
     while end >= 0:
@@ -131,11 +127,7 @@ def blanks_end(text: str, start: i64, size: i64) -> i64:
 
 def line_opening(text: str, ink: str, start: i64) -> tuple[i64, i64]:
     """Skip blank lines; returns where the line of the next word or comment begins (`start`, if it is the same line),
-    and where its blanks end.
-
-    Args:
-        ink: of the `Maps` of the text.
-    """
+    and where its blanks end."""
     at: i64 = ink.find("x", start)
     while at >= 0:
         code: i64 = ord(text[at])

@@ -1,24 +1,4 @@
-"""The project file: `btq.toml`, or the table `[tool.btq]` of a pyproject.toml.
-
-    engine = "4.10"                   # or a list; without it files must hold for every known version of 4
-    qualities = "iso25010-2023"       # or "iso25010-2011"
-    include-paths = ["missions"]      # where includes are searched, after the including file's own folder
-    nodes = ["nav2-jazzy", "src/**/*.cpp"]    # declared in all files: nodes that btq knows, and those of C++ sources
-    exclude = ["generated/"]          # what the check of a folder leaves out: see globs.py
-    select = ["unknown-node"]         # only these rules
-    ignore = ["unused-tree"]          # all but these
-    baseline = "btq-baseline.json"    # findings that btq check does not report
-
-    [rules]
-    missing-port = "warning"          # error, warning, info, hint, off
-
-    [[overrides]]                     # other severities in some files: see overrides.py
-    include = ["vendor/"]
-    ignore = ["unknown-node"]
-
-    [evidence]                        # logs of what robots did: see project_evidence.py
-
-    [[factory]]                       # what one program registers: see factories.py
+"""The project file: `btq.toml`, or the table `[tool.btq]` of a pyproject.toml, with the keys of `KEYS`.
 
 One invariant: every text gives a project and never an exception; what is wrong in it is left out and reported.  Not
 known here: the disk, and where the file was found.  A new key is a row of `KEYS`; `project_schema` describes its form.

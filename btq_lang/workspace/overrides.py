@@ -1,12 +1,5 @@
 """`[[overrides]]` of the project file: rules for some of its files, such as those of a vendor.
 
-    [[overrides]]
-    include = ["vendor/", "**/*.old.btq"]   # patterns of paths: see globs.py
-    ignore = ["unknown-node"]               # off in these files
-
-    [overrides.rules]
-    missing-port = "hint"                   # and these with another severity
-
 One invariant: for each rule the last override that names it counts, before `[rules]` of the project.  What the project
 or the command line leaves out with `select` and `ignore` stays out everywhere.
 """
@@ -41,12 +34,7 @@ class Override(Record):
 def severities_at(
     root: str, severities: Severities, overrides: tuple[Override, ...], path: str
 ) -> Mapping[str, Severity | None]:
-    """The severities of rules in a file.
-
-    Args:
-        root: the folder of the project, which patterns are relative to.
-        severities: those of the project.
-    """
+    """The severities of rules in a file."""
     found = dict(severities)
     for override in overrides:
         if _matcher(override.include, root)(path):

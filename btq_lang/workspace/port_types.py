@@ -36,11 +36,7 @@ class Meeting(Record):
 
 
 def meetings(scope: Scope, version: str, tree: str, port: str) -> Iterator[Meeting]:
-    """The ports of a known type to which a port of a tree is assigned, in the tree and in those below it.
-
-    Args:
-        version: of the engine.
-    """
+    """The ports of a known type to which a port of a tree is assigned, in the tree and in those below it."""
     waiting = [(tree, port)]
     seen = set(waiting)
     for name, key in waiting:

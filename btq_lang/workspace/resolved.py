@@ -23,11 +23,7 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def tree_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> ResolvedTree:
-    """The nodes of a tree.
-
-    Args:
-        path, facts: where it is written.
-    """
+    """The nodes of a tree."""
     return ResolvedTree(path, facts, cache(partial(inputs.declared, store, viewpoint)))
 
 

@@ -14,7 +14,7 @@ from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import NAME
-from btq_lang.util.record import Record, fields_of
+from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
 Target: TypeAlias = (
@@ -173,17 +173,8 @@ def _asked_by(requirement: syntax.Requirement) -> frozenset[str]:
 
 def _words_in(part: object) -> frozenset[str]:
     """Each name, and of `a-b`, which may be meant as a subtraction, both sides too."""
-    names: list[str] = []
-    waiting = [part]
-    while waiting:
-        part = waiting.pop()
-        if isinstance(part, syntax.Word):
-            if part.kind == NAME:
-                names.append(part.text)
-        elif isinstance(part, tuple):
-            waiting += part
-        elif part is not None and not isinstance(part, str | int):
-            waiting += [getattr(part, field) for field in fields_of(part)]
+    words = [word for word in syntax.walk(part) if isinstance(word, syntax.Word)]
+    names = [word.text for word in words if word.kind == NAME]
     return frozenset([*names, *(side for name in names if "-" in name for side in name.split("-"))])
 
 

@@ -121,11 +121,7 @@ class Workspace:
         return Store(self)
 
     def pass_on(self, after: Workspace, topics: Iterable[Hashable]) -> None:
-        """Pass the cached answers on to the workspace after an edit.
-
-        Args:
-            topics: in which the two may differ.
-        """
+        """Pass the cached answers on to the workspace after an edit."""
         store = after.__dict__["store"] = self.__dict__.pop("store", None) or Store(self)
         store.advance(after, topics)
 
