@@ -169,7 +169,7 @@ class Store(Generic[State]):
         return tuple(self._inputs)
 
     def advance(self, state: State, topics: Iterable[Hashable]) -> None:
-        """Set a new state.  It is read when the next question comes: what differs only until then invalidates nothing."""
+        """Set a new state, read when the next question comes: what differs only until then invalidates nothing."""
         self._state = state
         self._touched.update(topics)
 
