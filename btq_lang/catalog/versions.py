@@ -69,27 +69,7 @@ STRICT_NUMBERS: Final = Change("4.9", "reads numbers as std::from_chars does: no
 JSON_LISTS: Final = Change("4.9", "reads a list from `json:[1, 2]`", "new")
 TYPED_CONSTANTS: Final = Change("4.9.1", "keeps a number that a SubTree gives to a port as a number", "differs")
 
-CHANGES: Final = (
-    ENTRIES_OF_SUBTREE,
-    LAST_TREE_COUNTS,
-    ID_IN_COMPACT_FORM,
-    UNDERSCORES,
-    ENTRY_WITHOUT_DOLLAR,
-    PORTS_OF_SUBTREE,
-    OUTPUT_IN_BRACES,
-    ID_OF_EACH_TREE,
-    DEEP_TREES,
-    ONE_ASYNC_SEQUENCE,
-    NO_EXPLICIT_CHILD,
-    SCRIPT_RANKS,
-    BOOL_LISTS,
-    NAME_RULES,
-    UNIQUE_SUBTREES,
-    NEW_SCRIPTS,
-    STRICT_NUMBERS,
-    JSON_LISTS,
-    TYPED_CONSTANTS,
-)
+CHANGES: Final = tuple([each for each in [*globals().values()] if isinstance(each, Change)])  # all of the above
 
 
 @cache
