@@ -36,6 +36,7 @@ from btq_lang.requirements.model import Mission, Running, Span, Target, Total, V
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.explain import Explainer
     from btq_lang.evidence.guards import Guard, Refusal
     from btq_lang.evidence.identity import Joined
     from btq_lang.evidence.odds import Limits
@@ -77,8 +78,7 @@ class JudgedClause:
 
     Attributes:
         judged: the claim as it is judged.
-        explain: gives what led to a violation, from its judgement and path.
-        explain_run: the same for a clause judged over a run, from its judgement, the run and the other nodes.
+        explainer: of the current log.
     """
 
     def __init__(self, demand: Demand, limits: Limits = "one look", with_measures: bool = False) -> None:
@@ -110,8 +110,7 @@ class JudgedClause:
         self._missing = ""
         self._has_run = self._waits = False
         self._records: Final[list[Callable[[Judgement, int, int, str], None]]] = []
-        self.explain: Callable[[Judgement, str], tuple[Link, ...]] = lambda judgement, path: ()
-        self.explain_run: Callable[[Judgement, OverRun, Nearby], tuple[Link, ...]] = lambda judgement, run, others: ()
+        self.explainer: Explainer
 
     def record(self, record: Callable[[Judgement, int, int, str], None]) -> None:
         """Give each judgement to a function, with begin and end of what is judged, and the path of its node."""
@@ -167,7 +166,7 @@ class JudgedClause:
             self._has_run = True
             self._lose_margins()
             judgement = Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}")
-            self._add(judgement, path, refusal.time, refusal.time, self.explain(judgement, path))
+            self._add(judgement, path, refusal.time, refusal.time, self.explainer.chain(self.claim, judgement, path))
 
     def end_run(self, run: Run, root: Activation) -> None:
         """Judge the open run, which has ended; `root`: the activation of its root."""
@@ -208,7 +207,7 @@ class JudgedClause:
             judged.sort(key=lambda each: each[0].at if each[0] is not None else 0)
         for found, place, over in judged:
             if found is not None and found.holds is False:
-                chain = self.explain_run(found, over, place.others)
+                chain = self.explainer.over_run.chain(self.judged, found, over, place.others)
                 since = found.since if found.since is not None else root.begin
                 found = Judgement(False, found.at, found.sentence, found.measure)
                 self._add(found, place.path, since, root.end, chain)
@@ -272,7 +271,7 @@ class JudgedClause:
         if judgement is None:
             self._tally.cut_off += of.outcome == "O"
         else:
-            chain = self.explain(judgement, path) if judgement.holds is False else ()
+            chain = self.explainer.chain(self.claim, judgement, path) if judgement.holds is False else ()
             since = judgement.since if judgement.since is not None else of.begin
             self._add(judgement, path, since, of.end, chain)
 

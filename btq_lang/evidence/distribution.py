@@ -73,10 +73,7 @@ class Distribution:
             low=self._origin + low * self._step,
             step=self._step,
             counts=tuple(self._counts.get(at, 0) for at in range(low, high + 1)),
-            bound=self._last.bound.si,
-            bound_text=self._last.bound.text,
-            goal=goal.si if goal is not None else None,
-            goal_text=goal.text if goal is not None else "",
+            marks={"bound": self._last.bound, **({"goal": goal} if goal is not None else {})},
             unit=self._last.unit,
         )
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache, partial
+from functools import cache
 from typing import TYPE_CHECKING, Final, Protocol
 
 from btq_lang.evidence.clause import ClauseFindings, JudgedClause
@@ -126,8 +126,7 @@ class MissionEvaluation:
         over_runs = any(clause.is_over_run for clause in self._clauses)
         explainer = Explainer(tree, at, signals, has_clauses_over_runs=over_runs)
         for clause in self._clauses:
-            clause.explain = partial(explainer.chain, clause.claim)
-            clause.explain_run = partial(explainer.over_run.chain, clause.judged)
+            clause.explainer = explainer
         for listener in self.listeners:
             listener.join(joined, self._clauses)
         self._contexts.join(joined, signals, history)

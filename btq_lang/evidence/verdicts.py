@@ -5,7 +5,7 @@ One invariant: writers compute nothing from it, so a table, JSON and a page agre
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.util.record import Record
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.margins import Margins
     from btq_lang.evidence.model import Outcome
     from btq_lang.evidence.odds import Limits
+    from btq_lang.requirements.model import Value
     from btq_lang.workspace.resolved import ResolvedNode
 
     Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised"]
@@ -89,17 +90,14 @@ class Histogram(Record):
     Attributes:
         low, step: where the first step begins, and how large each is.
         counts: how many values are in each step.
-        bound, goal: to compare them with; goal: None without one.
+        marks: the bound and perhaps a goal, to compare them with, by what each is.
         unit: of the bound, to print values in.
     """
 
     low: float
     step: float
     counts: tuple[int, ...]
-    bound: float
-    bound_text: str
-    goal: float | None
-    goal_text: str
+    marks: Mapping[str, Value]
     unit: Unit | None
 
 

@@ -96,10 +96,8 @@ def _row(requirement: RequirementVerdict, clause: ClauseVerdict, mission: Missio
 
 
 def _histogram(found: Histogram) -> str:
-    marks = [("bound", found.bound, found.bound_text)]
-    marks += [("goal", found.goal, found.goal_text)] if found.goal is not None else []
-    low = min(found.low, *(value for _, value, _ in marks))
-    high = max(found.low + found.step * len(found.counts), *(value for _, value, _ in marks))
+    low = min(found.low, *(mark.si for mark in found.marks.values()))
+    high = max(found.low + found.step * len(found.counts), *(mark.si for mark in found.marks.values()))
     span = high - low or 1.0
 
     def across(value: float) -> float:
@@ -108,7 +106,7 @@ def _histogram(found: Histogram) -> str:
     values = sum(found.counts)
     first, last = quantity(found.low, found.unit), quantity(found.low + found.step * len(found.counts), found.unit)
     label = f"{counted(values, 'value')} from {first} to {last}; "
-    label += ", ".join(f"{kind} {text}" for kind, _, text in marks)
+    label += ", ".join(f"{kind} {mark.text}" for kind, mark in found.marks.items())
     parts = [f'<svg class="histogram" viewBox="0 0 {_WIDE} {_HIGH}" role="img" aria-label="{escape(label)}">']
     for at, number in enumerate(found.counts):
         if number:
@@ -120,12 +118,12 @@ def _histogram(found: Histogram) -> str:
                 f" to {escape(quantity(found.low + (at + 1) * found.step, found.unit))}</title></rect>"
             )
     parts.append(f'<path class="axis" d="M{_EDGE} {_GROUND}H{_WIDE - _EDGE}"/>')
-    for line, (kind, value, text) in enumerate(marks):
-        x, y = across(value), _TEXT * (line + 1) - 2
+    for line, (kind, mark) in enumerate(found.marks.items()):
+        x, y = across(mark.si), _TEXT * (line + 1) - 2
         anchor = "end" if x > _WIDE / 2 else "start"
         shift = -3 if anchor == "end" else 3
         parts.append(f'<path class="{kind}" d="M{x} {_TEXT * line}V{_GROUND}"/>')
-        parts.append(f'<text x="{x + shift:g}" y="{y}" style="text-anchor: {anchor}">{kind} {escape(text)}</text>')
+        parts.append(f'<text x="{x + shift:g}" y="{y}" style="text-anchor: {anchor}">{kind} {escape(mark.text)}</text>')
     for x, anchor, value in ((_EDGE, "start", low), (_WIDE - _EDGE, "end", high)):
         text = escape(quantity(value, found.unit))
         parts.append(f'<text x="{x}" y="{_HIGH - 3}" style="text-anchor: {anchor}">{text}</text>')
