@@ -67,7 +67,7 @@ class ClauseFindings(Record):
     """
 
     tally: Tally | Recent
-    margins: Margins | None
+    margins: Margins
     paths: tuple[str, ...]
     missing: str
     has_run: bool
@@ -95,7 +95,7 @@ class JudgedClause:
         self.judged: Final = replace(within(claim, requirement.scopes), subject=subject)
         self._edge: Final = edge_of(self.judged, subject, requirement) if with_measures else None
         self._extremes: Final = self._edge.extremes if self._edge is not None else ()
-        self._margins: Final = Margins(self._tally.counts_runs) if isinstance(self._tally, Tally) else None
+        self._margins: Final = Margins(odds is not None and odds.experiments == "runs")
         self._with_measures: Final = with_measures
         self._events: Final = _events(claim, subject)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
@@ -103,8 +103,8 @@ class JudgedClause:
         self._not_judged: Final = self._why_not()
         self._nodes: Final[list[int]] = []  # of the current log, as are these:
         self._places: Final[list[_Place]] = []
-        self._signals: Signals | None = None
-        self._history: History | None = None
+        self._signals: Signals
+        self._history: History
         self._waiting: Final[list[tuple[Activation, Observed, str]]] = []  # until it is known what else ran meanwhile
         self._paths: Final[dict[str, None]] = {}
         self._missing = ""
@@ -149,7 +149,7 @@ class JudgedClause:
             return
         self._waits = self._waits or activation.started[1] != activation.ended[1]
         if guard is not None and self._is_own(guard):
-            self._lose_margins()
+            self._margins.is_exact = False  # with another bound the guard would have done something else
             sentence = f"stopped by its own guard after {duration(activation.seconds)}"
             self._count(Judgement(False, activation.end, sentence), activation, path)
         elif self._judge is not None and self._running:
@@ -164,7 +164,7 @@ class JudgedClause:
         own = self.claim.verb == refusal.verb and self.requirement.name == refusal.requirement
         if own or (VERBS[self.claim.verb].limits == "success" and VERBS[refusal.verb].operand == "condition"):
             self._has_run = True
-            self._lose_margins()
+            self._margins.is_exact = False
             judgement = Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}")
             self._add(judgement, path, refusal.time, refusal.time, self.explainer.chain(self.claim, judgement, path))
 
@@ -179,16 +179,9 @@ class JudgedClause:
         if root.timing in CUT_BY_GAP and self._nodes:
             lost = Judgement(None, root.end, ROWS_LOST)
             self._add(lost, next(iter(self._paths)), root.end, root.end, ())
-            if self._margins is not None:
-                self._margins.add(margins.UNKNOWN, margins.UNKNOWN, None)
+            self._margins.add(margins.UNKNOWN, margins.UNKNOWN, None)
         self._tally.end_run(run)
-        if self._margins is not None:
-            self._margins.end_run(run.number)
-
-    def _lose_margins(self) -> None:
-        """Note that with another bound a guard would have done something else."""
-        if self._margins is not None:
-            self._margins.is_exact = False
+        self._margins.end_run(run.number)
 
     def _judge_over(self, root: Activation) -> None:
         """Count what is judged over the run, in order of time for all uses of a subtree together: a window may keep
@@ -197,7 +190,9 @@ class JudgedClause:
         assert self._judge_run is not None, "the clause is judged by runs"
         judged: list[tuple[Judgement | None, _Place, OverRun]] = []
         for place in self._places:
-            over = self._over(root, place)
+            observed = Observed(self._signals, place.others, root.started, root.ended)
+            own = self._history.of(place.uids)
+            over = OverRun(self.claim.verb, self.requirement.scopes, root, own, observed)
             judged += [(_clocked(each, root), place, over) for each in self._judge_run(self.judged, over)]
             if self._extremes:
                 self._measure(
@@ -216,15 +211,14 @@ class JudgedClause:
 
     def _judge_one(self, activation: Activation, observed: Observed, path: str, root: Activation | None = None) -> None:
         """Count an activation; `root`: of the run, if the judgement depends on the order of events."""
-        assert self._judge is not None, "the clause is judged by its activations"
         counts = in_scope(self.requirement.scopes, self.claim.verb, observed)
         if counts is False:
             return
         judgement = self._judged_as(self.judged, activation, observed, counts)
-        self._count(judgement if root is None else _clocked(judgement, root), activation, path)
+        self._count(_clocked(judgement, root), activation, path)
         if self._extremes:
             found = [self._judged_as(each, activation, observed, counts) for each in self._extremes]
-            self._measure([[one if root is None else _clocked(one, root)] for one in found], activation)
+            self._measure([[_clocked(one, root)] for one in found], activation)
 
     def _judged_as(
         self, claim: Claim, activation: Activation, observed: Observed, counts: bool | Unknown
@@ -246,7 +240,6 @@ class JudgedClause:
         Args:
             extremes: those with a bound that every measure keeps, and with one that none does.
         """
-        assert self._margins is not None, "a window has no edge"
         assert self._edge is not None, "its bound may be moved"
         within, beyond = extremes
         is_first_decisive = self.claim.verb in WHILE_IT_RUNS
@@ -260,12 +253,6 @@ class JudgedClause:
             si = next((each.si for each in measures if each is not None), None)
             value = self._edge.across(si) if si is not None else None
             self._margins.add(_kind(kept, of), _kind(broken, of), value)
-
-    def _over(self, root: Activation, place: _Place) -> OverRun:
-        assert self._history is not None, "the clause is joined with a log"
-        assert self._signals is not None, "likewise"
-        observed = Observed(self._signals, place.others, root.started, root.ended)
-        return OverRun(self.claim.verb, self.requirement.scopes, root, self._history.of(place.uids), observed)
 
     def _count(self, judgement: Judgement | None, of: Activation, path: str) -> None:
         if judgement is None:
@@ -355,8 +342,7 @@ class JudgedClause:
     def add(self, findings: ClauseFindings, runs: int) -> None:
         """Add what was found in later logs; `runs`: how many runs were before them."""
         self._tally.add_all(findings.tally, runs)  # type: ignore[arg-type]  # one clause has tallies of one class
-        if self._margins is not None and findings.margins is not None:
-            self._margins.add_all(findings.margins, runs)
+        self._margins.add_all(findings.margins, runs)
         self._paths.update(dict.fromkeys(findings.paths))
         self._missing = self._missing or findings.missing
         self._has_run = self._has_run or findings.has_run
@@ -396,7 +382,7 @@ class JudgedClause:
 
     def _measures(self) -> Measures:
         edge, odds = self._edge, self.requirement.odds
-        is_exact = edge is not None and self._margins is not None and self._margins.is_exact
+        is_exact = edge is not None and self._margins.is_exact
         return Measures(
             key=key_of(self.requirement, self.claim, edge),
             place=self.demand.place,
@@ -453,9 +439,9 @@ def _known(subject: Subject | None) -> Target | None:
     return subject if isinstance(subject, Target) else None
 
 
-def _clocked(judgement: Judgement | None, root: Activation) -> Judgement | None:
-    """The judgement, unknown if the clock was set back during the run: it depends on the order of events."""
-    if judgement is None or root.timing != "broken":
+def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement | None:
+    """The judgement, unknown if it depends on the order of events in a run during which the clock was set back."""
+    if judgement is None or root is None or root.timing != "broken":
         return judgement
     return Judgement(None, judgement.at, CLOCK_SET_BACK)
 

@@ -92,7 +92,8 @@ class OverRun(Record):
         before: bool | Unknown = False
         for moment in (*self.observed.moments(condition), None):
             now = truth(condition, self.observed, moment) if moment is not None else False
-            if moment is not None and _is_like(now, before):
+            is_like = now is before or (isinstance(now, Unknown) and isinstance(before, Unknown))
+            if moment is not None and is_like:
                 continue
             end = moment if moment is not None else self.observed.end
             if before is not False:
@@ -133,10 +134,6 @@ def target_of(event: Event) -> Target:
         return Target(subject.node)
     assert subject is not None, "only `when` has no subject"
     return subject
-
-
-def _is_like(one: bool | Unknown, other: bool | Unknown) -> bool:
-    return one is other or (isinstance(one, Unknown) and isinstance(other, Unknown))
 
 
 _OUTCOMES: Final = {"succeeds": "S", "fails": "F", "finishes": "SF", "halts": "H"}

@@ -23,7 +23,7 @@ class BagDatabase:
         self._path: Final = path
         self._remarks: Final = remarks
         self._stack: Final = ExitStack()
-        self._database: sqlite3.Connection | None = None
+        self._database: sqlite3.Connection
         self.connections: list[Connection] = []
 
     def open(self) -> None:
@@ -53,7 +53,6 @@ class BagDatabase:
         Raises:
             sqlite3.Error: the next one cannot be read.
         """
-        assert self._database is not None, "the file is open"
         wanted = {each.id: each for each in connections}
         for topic, received, data in self._database.execute(
             "SELECT topic_id, timestamp, data FROM messages ORDER BY id"

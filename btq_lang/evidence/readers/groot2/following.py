@@ -81,7 +81,7 @@ class Following:
         self._address: Final = address
         self._publisher = b""  # its ID
         self._is_there = False
-        self._tree: LoggedTree | None = None
+        self._tree: LoggedTree
         self._boards: Sequence[str] = ()  # none if they cannot be read
         self._started = 0  # when the recording began, on the robot's clock
         self._ahead = 0  # how far that is ahead of ours
@@ -182,7 +182,6 @@ class Following:
 
     def _quiet(self, since: int) -> Iterator[Event]:
         """Nothing has changed since the last request, so all statuses must be those that were there then."""
-        assert self._tree is not None, "connected"
         if self._at_rest is not None and not self._statuses.items() <= self._at_rest.items():
             yield from self._begin_again("another program took some", since)
             return
