@@ -35,7 +35,6 @@ class Quality(Record):
         name: as the standard prints it.
         parent: the id of the characteristic it is part of.
         kind: product or in-use: of the ISO's models; robotics: an addition; ai: of ISO/IEC 25059.
-        editions: that have the id with this definition.
         nearest: of a robotics quality, the nearest one of the 2023 edition.
         measures: of a robotics quality, what to measure, in words.
     """
@@ -45,7 +44,6 @@ class Quality(Record):
     definition: str
     parent: str | None
     kind: Literal["product", "in-use", "robotics", "ai"]
-    editions: tuple[Edition, ...]
     source: str
     nearest: str | None = None
     measures: str = ""
@@ -272,15 +270,14 @@ class _Index:
 def _of_edition(edition: Edition) -> Iterable[Quality]:
     for its, kind, source, model in MODELS:
         for id_, definition, below in model if its == edition else ():
-            yield Quality(id_, _name(id_), definition, None, kind, (edition,), source)
+            yield Quality(id_, _name(id_), definition, None, kind, source)
             for part, part_definition in below:
-                yield Quality(f"{id_}.{part}", _name(part), part_definition, id_, kind, (edition,), source)
-    both: tuple[Edition, ...] = ("2011", "2023")
+                yield Quality(f"{id_}.{part}", _name(part), part_definition, id_, kind, source)
     for id_, definition, nearest, measures in ROBOTICS:
         name = id_.replace("-", " ")
-        yield Quality(id_, name, definition, None, "robotics", both, "robotics practice", nearest, measures)
+        yield Quality(id_, name, definition, None, "robotics", "robotics practice", nearest, measures)
     for parent, part, definition in AI:
-        yield Quality(f"{parent}.{part}", _name(part), definition, parent, "ai", both, "ISO/IEC 25059:2023")
+        yield Quality(f"{parent}.{part}", _name(part), definition, parent, "ai", "ISO/IEC 25059:2023")
 
 
 def _name(id_: str) -> str:

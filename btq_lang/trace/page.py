@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.graph.placing import place
 from btq_lang.graph.svg import STYLE, colours, part
 from btq_lang.render.page_style import PAGE_STYLE
-from btq_lang.trace.overview import WAYS, At, NodeRow, Overview, RequirementRow, TreeRow
+from btq_lang.trace.overview import WAYS, At, Overview, RequirementRow, TreeRow
 from btq_lang.trace.page_parts import SCRIPT, TRACE_STYLE
 from btq_lang.trace.verdicts import VERDICT_STYLE, verdicts
 from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
@@ -49,7 +49,12 @@ def _lines(overview: Overview, missions: Sequence[MissionVerdicts]) -> Iterator[
     if missions:
         yield from verdicts(missions, {each.name: each.key for each in overview.requirements})
     yield '<div class="beside">'
-    yield from _tables(overview)
+    yield '<div class="tables">'
+    yield from _requirements(overview)
+    yield from _concerns(overview)
+    yield from _gaps(overview)
+    yield from _totals(overview)
+    yield "</div>"
     yield from _trees(overview)
     yield "</div></main>"
     yield '<p class="live" role="status" aria-live="polite"></p>'
@@ -81,15 +86,6 @@ def _navigation(overview: Overview, has_verdicts: bool) -> Iterator[str]:
 
 
 # ---- tables ----
-
-
-def _tables(overview: Overview) -> Iterator[str]:
-    yield '<div class="tables">'
-    yield from _requirements(overview)
-    yield from _concerns(overview)
-    yield from _gaps(overview)
-    yield from _totals(overview)
-    yield "</div>"
 
 
 def _requirements(overview: Overview) -> Iterator[str]:
@@ -185,15 +181,11 @@ def _concerns(overview: Overview) -> Iterator[str]:
         yield f'<tr class="row" id="{each.key}" data-note="{each.key}" data-way="" data-of="{of}">'
         name = f'<a class="name" href="#{each.key}">{escape(shown_quality(each))}</a>'
         yield f'<th scope="row">{name} {_at(each.at)}{text}</th>'
-        yield f"<td>{_node_list([nodes[key] for key in each.concerns])}</td>"
+        lines = [f"<li>{_link(key, nodes[key].name, nodes[key].at)}</li>" for key in each.concerns]
+        yield f"<td><ul>{''.join(lines)}</ul></td>" if lines else "<td></td>"
         links = ", ".join(f'<a href="#{key}">{escape(names[key])}</a>' for key in each.requirements)
         yield f"<td>{links or _NONE}</td></tr>"
     yield "</tbody></table></section>"
-
-
-def _node_list(nodes: Sequence[NodeRow]) -> str:
-    lines = "".join(f"<li>{_link(node.key, node.name, node.at)}</li>" for node in nodes)
-    return f"<ul>{lines}</ul>" if lines else ""
 
 
 def _gaps(overview: Overview) -> Iterator[str]:

@@ -106,13 +106,11 @@ def _table(
         max(cells_of(title), *(cells_of(line) for row in cells for line in row[at])) for at, title in enumerate(heading)
     ]
     widths = narrowed(widths, width - _BETWEEN * (len(widths) - 1))
-    yield _row(
-        [_shortened(title, room) for title, room in zip(heading, widths, strict=True)],
-        widths,
-        numbers_from,
-        paint,
-        "message",
-    )
+    titles = [
+        title if cells_of(title) <= room else cut(title, 0, room - 1)
+        for title, room in zip(heading, widths, strict=True)
+    ]
+    yield _row(titles, widths, numbers_from, paint, "message")
     yield paint("gutter", _row(["-" * room for room in widths], widths, numbers_from, paint))
     for row in cells:
         in_lines = [
@@ -131,10 +129,6 @@ def _row(cells: Sequence[str], widths: Sequence[int], numbers_from: int, paint: 
         shown = paint(_WAYS.get(cell, "message"), cell) if cell in _WAYS or (style and at == 0) else cell
         parts.append(blanks + shown if at >= numbers_from else shown + blanks)
     return (" " * _BETWEEN).join(parts).rstrip()
-
-
-def _shortened(text: str, room: int) -> str:
-    return text if cells_of(text) <= room else cut(text, 0, room - 1)
 
 
 _LEAST: Final = 60

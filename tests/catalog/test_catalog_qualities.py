@@ -69,7 +69,6 @@ def test_the_models_of_the_iso(edition: Edition, facts: Any) -> None:
             assert definitions[f"{id_}.{id_}"] == "(same as the characteristic)"
             definitions[f"{id_}.{id_}"] = definitions[id_]
     assert {quality.id: quality.definition for quality in ours} == definitions
-    assert {quality.editions for quality in ours} == {(edition,)}
 
 
 @pytest.mark.parametrize(
@@ -100,7 +99,7 @@ def test_robotics_qualities(facts: Any) -> None:
         for quality in ours
     ] == facts["robotics"]
     assert all(get(quality.nearest or "") is not None for quality in ours)
-    assert {(quality.parent, quality.editions) for quality in ours} == {(None, BOTH)}
+    assert {quality.parent for quality in ours} == {None}
 
 
 def test_additions_for_artificial_intelligence(facts: Any) -> None:
