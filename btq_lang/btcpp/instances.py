@@ -9,10 +9,10 @@ Source: XMLParser::PImpl::recursivelyCreateSubtree and createNodeFromXML in src/
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from typing import Final
 
-from btq_lang.btcpp.document import Element, Raw
+from btq_lang.btcpp.document import Document, Element, Raw
 from btq_lang.btcpp.reader import read
 from btq_lang.util.record import Record
 
@@ -35,13 +35,10 @@ class Instance(Record):
     parent: int | None
 
 
-def instances(trees: Mapping[str, Element], main: str) -> Iterator[Instance]:
-    """The nodes of a tree and of the subtrees in it, in the order of their numbers.
-
-    Args:
-        trees: the elements `BehaviorTree`, by ID.
-        main: the ID of the tree that runs.
-    """
+def instances(documents: Iterable[Document], main: str) -> Iterator[Instance]:
+    """The nodes of the tree with the ID `main` and of the subtrees in it, in the order of their numbers."""
+    tops = (each for document in documents for each in document.root.elements if each.tag == "BehaviorTree")
+    trees = {ID: tree for tree in tops if (ID := tree.get("ID")) is not None}
     uid: int | None = 0
     top = trees.get(main)
     callers: tuple[Element, ...] = ()

@@ -6,15 +6,16 @@ and path are as the build wrote them: another file that the XML includes may hav
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
-from btq_lang.btcpp.document import Element
 from btq_lang.btcpp.instances import instances
+from btq_lang.btcpp.marks import described
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.side_file import FORMAT, VERSIONS
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, replace
+from btq_lang.workspace.workspace import Workspace
 
 
 class OfElements(Record):
@@ -27,6 +28,23 @@ class OfElements(Record):
 
     problem: str
     lines: Mapping[int, tuple[str, ...]]
+
+
+def said_in_xml(workspace: Workspace, path: str, side: str | None) -> OfElements:
+    """What the side file says of each element, else the lines that the build has described at it.
+
+    Args:
+        side: the text of the side file of an XML file; None if there is none.
+    """
+    origin = workspace.files[path].origin
+    found = OfElements("", {})
+    if origin is None:
+        return found
+    if side is not None:
+        *included, _ = workspace.registered_with(path)
+        origins = (workspace.files[each].origin for each in included)
+        found = of_elements(side, origin.text, tuple(each.text for each in origins if each is not None))
+    return replace(found, lines={**dict(described(origin.text)), **found.lines})
 
 
 @lru_cache(maxsize=2)  # a request for each move of the mouse
@@ -50,22 +68,13 @@ def of_elements(side: str, xml: str, included: tuple[str, ...]) -> OfElements:
         main = data["main_tree"]
     except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
         return OfElements("cannot be read", {})
-    roots = [document.root for text in (xml, *included) if (document := read(text).document) is not None]
+    documents = [document for text in (xml, *included) if (document := read(text).document) is not None]
     found: dict[int, dict[str, None]] = {}
-    own = {id(element) for element in roots[0].walk()} if roots else set()
-    for each in instances(_trees(roots), main):
+    own = {id(element) for element in documents[0].root.walk()} if documents else set()
+    for each in instances(documents, main):
         if id(each.element) in own and each.uid in lines and paths.get(each.uid) == each.path:
             found.setdefault(each.element.tag_span.start, {}).update(dict.fromkeys(lines[each.uid]))
     return OfElements("", {at: tuple(of_it) for at, of_it in found.items()})
-
-
-def _trees(roots: Sequence[Element]) -> dict[str, Element]:
-    return {
-        ID: element
-        for root in roots
-        for element in root.elements
-        if element.tag == "BehaviorTree" and (ID := element.get("ID")) is not None
-    }
 
 
 def _lines_by_number(data: Mapping[str, Any]) -> Iterator[tuple[int, list[str]]]:

@@ -160,17 +160,11 @@ class RunningTree:
 
     def __init__(self, built: Built, nodes: Nodes, main: str | None) -> None:
         written = {id(built.elements[id(node.node)]): node for node in nodes.all if id(node.node) in built.elements}
-        trees = {
-            ID: element
-            for document in built.documents
-            for element in document.root.elements
-            if element.tag == "BehaviorTree" and (ID := element.get("ID")) is not None
-        }
         self._written = written
         self._of: dict[int, list[Instance]] = {}
         self.all = [
             (instance, written.get(id(instance.element)))
-            for instance in (instances(trees, main) if main is not None else ())
+            for instance in (instances(built.documents, main) if main is not None else ())
         ]
         for instance, node in self.all:
             if node is not None:

@@ -9,6 +9,8 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, Quality, parts, siblings
 from btq_lang.catalog.units import BASES, Unit, convert, dimension_name, parse_unit, to_si
+from btq_lang.checks.includes import include_line
+from btq_lang.checks.lookups import head
 from btq_lang.diagnostics.rules import RULES, page
 from btq_lang.ide.cpp_places import cpp_link
 from btq_lang.ide.meaning import (
@@ -18,13 +20,15 @@ from btq_lang.ide.meaning import (
     defined_elsewhere,
     everywhere,
     home_of,
+    quality_match,
     quality_of,
 )
+from btq_lang.ide.meaning import own_quality as declared_quality
 from btq_lang.ide.outline import clauses_detail
 from btq_lang.ide.ports import NodePort, ports_of_kind, ports_of_tree
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import Apply, Context, Model, QualityDecl, Requirement, Signal, Tree, Word, walk
-from btq_lang.util.text import Span, counted
+from btq_lang.util.text import Edit, Span, counted
 from btq_lang.workspace import inputs
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.references import What
@@ -264,6 +268,54 @@ def words(name: str) -> str | None:
     """The meanings of words of the language, in each place where they may occur; None if there are none."""
     found = (f"**{one.words}** ({one.part}) · `{one.form}`\n\n{one.sentence}" for one in phrases_of(name))
     return "\n\n".join(found) or None
+
+
+def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str | None:
+    """A description in Markdown of a proposal of this kind and name, if there is one."""
+    if kind == "node":
+        found = _definition(workspace, path, Kind.MODEL, name)
+        return node_kind(workspace, found.path if found else path, name)
+    if kind == "tree":
+        return tree(workspace, path, name)
+    if kind == "requirement":
+        found = _definition(workspace, path, Kind.REQUIREMENT, name)
+        return requirement(workspace, path, found) if found else None
+    if kind in ("signal", "context"):
+        found = _definition(workspace, path, Kind.SIGNAL if kind == "signal" else Kind.CONTEXT, name)
+        return declared(workspace, found) if found else None
+    if kind == "quality":
+        own = declared_quality(workspace, path, name) or _definition(workspace, path, Kind.QUALITY, name)
+        match = quality_match(workspace, path, name)
+        if own is not None:
+            return own_quality(workspace, own)
+        return quality(workspace, path, match.quality) if match.quality else None
+    if kind == "keyword":
+        return words(name)
+    if kind == "rule":
+        return rule(name)
+    if kind == "port":
+        node, _, wanted = name.rpartition("/")
+        category, _, called = node.rpartition(" ")
+        known = ports_of_tree(workspace, path, called) if category == "SubTree" else ()
+        known = known or ports_of_kind(workspace, path, called)
+        return next((port(one) for one in known if one.name == wanted), None)
+    return None
+
+
+def include_edits(workspace: Workspace, path: str, other: str) -> tuple[Edit, ...]:
+    """The edits that add a proposal to the file's scope.
+
+    Args:
+        other: the file that defines it; empty if it is in scope.
+    """
+    if other not in workspace.files:
+        return ()
+    at, line = include_line(head(workspace.store, path), path, other)
+    return (Edit(Span(at, at), line),)
+
+
+def _definition(workspace: Workspace, path: str, kind: Kind, name: str) -> Definition | None:
+    return workspace.scope(path).find(kind, name) or next(defined_elsewhere(workspace, kind, name), None)
 
 
 _SI = ("s", "m", "kg", "A", "K", "rad", "bit", "m/s", "m/s^2", "rad/s", "Hz", "N", "Pa", "J", "W", "V", "ohm", "A*s")

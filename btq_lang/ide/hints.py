@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from btq_lang.btcpp.side_elements import said_in_xml
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Place
 from btq_lang.ide import describe
-from btq_lang.ide.built_xml import said_in_xml
 from btq_lang.ide.clause_enforcement import missions_of
 from btq_lang.ide.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
 from btq_lang.ide.outline import requirement_detail

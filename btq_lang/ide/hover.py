@@ -1,18 +1,18 @@
-"""Hover: explains what is at the cursor."""
+"""Hover: explains what is at the cursor.  Signature help: the ports of the node in whose brackets it is."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from btq_lang.btcpp.side_elements import said_in_xml
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import phrase_at
 from btq_lang.ide import describe
-from btq_lang.ide.built_xml import said_in_xml
 from btq_lang.ide.cpp_places import cpp_link
 from btq_lang.ide.meaning import Found, Subject, at, definition, everywhere, quality_match, subject
 from btq_lang.ide.navigation import writes
-from btq_lang.ide.place import item_tokens
-from btq_lang.ide.ports import port_of
+from btq_lang.ide.place import item_tokens, place_at
+from btq_lang.ide.ports import port_of, ports_of_kind, ports_of_tree
 from btq_lang.syntax.tokens import NAME
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
@@ -139,3 +139,41 @@ def _port(workspace: Workspace, found: Found) -> str | None:
         return None
     link = cpp_link(workspace, found.path, node.id.text, port.name) if node.id is not None else ""
     return "\n\n".join(filter(None, (describe.port(port), link)))
+
+
+class Parameter(Record):
+    """A port: its label is a part of the signature's."""
+
+    label: str
+    documentation: str
+
+
+class Signature(Record):
+    """The ports of the node on one line.  active: the one that is being given a value; None: a name that is not a
+    port."""
+
+    label: str
+    parameters: tuple[Parameter, ...]
+    active: int | None
+
+
+def signature_help(workspace: Workspace, path: str, offset: int) -> Signature | None:
+    """The ports of the node in whose brackets an offset is."""
+    place = place_at(workspace, path, offset)
+    node = place.node
+    if node is None or place.depth == 0:
+        return None
+    if node.is_subtree:
+        ports = ports_of_tree(workspace, path, node.name)
+    else:
+        ports = ports_of_kind(workspace, path, node.name, node.quoted)
+    if not ports:
+        return None
+    parameters = tuple(Parameter(port.signature, describe.port(port)) for port in ports)
+    label = f"{node.name} ({', '.join(parameter.label for parameter in parameters)})"
+    names = [port.name for port in ports]
+    if place.key is not None:
+        active = names.index(place.key) if place.key in names else None
+    else:
+        active = next((index for index, name in enumerate(names) if name not in place.given), None)
+    return Signature(label, parameters, active)

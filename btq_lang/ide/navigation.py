@@ -1,11 +1,13 @@
-"""Definition, declaration, references and highlights of the word at a place."""
+"""From the word at a place to its definition, its type, its uses and its path."""
 
 from __future__ import annotations
 
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.ide.block import node_at
 from btq_lang.ide.cpp_places import cpp_place
-from btq_lang.ide.meaning import Found, Subject, at, definition, everywhere, subject
+from btq_lang.ide.meaning import Found, Subject, at, definition, entry_at, everywhere, own_quality, quality_of, subject
 from btq_lang.ide.ports import port_of
-from btq_lang.syntax.tree import Model
+from btq_lang.syntax.tree import Model, Node, Tree, is_name, written
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.file import Definition
@@ -115,6 +117,58 @@ def writes(workspace: Workspace, found: Found) -> bool:
         return False
     port = port_of(workspace, found.path, node, pair.key.text)
     return port is not None and port.direction != "input"
+
+
+def goto_implementation(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...]:
+    """The nodes that refer to the requirement at a place; for everything else, the definition."""
+    found = at(workspace, path, offset)
+    wanted = subject(workspace, found) if found is not None else None
+    if found is None or wanted is None or wanted.what is not What.REQUIREMENT:
+        return goto_definition(workspace, path, offset)
+    targets = {}
+    for one in everywhere(workspace, wanted):
+        node = one.mention.node
+        if node is not None and one.entry is not None:
+            name = node.head.span.shifted(one.entry.start)
+            whole = Span(node.start, node.block_end).shifted(one.entry.start)
+            targets[one.path, name] = Target(one.path, whole, name, found.span)
+    return tuple(targets.values())
+
+
+def goto_type(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...]:
+    """The model or the tree of a named node; the declaration of a requirement's custom quality."""
+    found = at(workspace, path, offset)
+    if found is None:
+        return ()
+    place: Definition | None = None
+    wanted = subject(workspace, found)
+    if wanted.what is What.INSTANCE:
+        node = next((one.mention.node for one in everywhere(workspace, wanted) if one.mention.node is not None), None)
+        if node is not None and node.id is not None:
+            scope = workspace.scope(path)
+            place = scope.find(Kind.MODEL, node.id.text) or scope.find(Kind.TREE, node.id.text)
+    elif wanted.what is What.REQUIREMENT and (requirement := definition(workspace, path, wanted)) is not None:
+        quality = quality_of(requirement)
+        place = own_quality(workspace, requirement.path, quality.names[-1].text) if quality is not None else None
+    if place is None:
+        return ()
+    return (Target(place.path, place.whole, place.span, found.span),)
+
+
+def node_path(workspace: Workspace, path: str, offset: int) -> str | None:
+    """The names of the tree and of all nodes down to the one at a place, instance names before kinds; unnamed control
+    nodes that are symbols are left out, for no path can name them.  None if there is no node."""
+    entry = entry_at(workspace, path, offset)
+    standing = node_at(workspace.files[path], entry, offset) if entry is not None else None
+    if standing is None or entry is None or not isinstance(entry.item, Tree):
+        return None
+    parents: dict[int, Node] = {id(child): node for node in entry.item.walk() for child in node.nodes}
+    line: list[Node] = [standing.node]
+    while (parent := parents.get(id(line[-1]))) is not None:
+        line.append(parent)
+    words = [entry.item.name, *(node.name or node.id for node in reversed(line))]
+    names = [word.text for word in words if word is not None and (word.quoted or is_name(word.text))]
+    return "/".join(map(written, names))
 
 
 _WITHOUT_REFERENCES = frozenset((What.QUANTITY, What.UNIT, What.ATTRIBUTE, What.EDITION, What.RULE))

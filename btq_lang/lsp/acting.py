@@ -29,7 +29,7 @@ def register(server: Server) -> None:
             return []
         workspace, path = place
         only = [str(getattr(kind, "value", kind)) for kind in params.context.only or ()]
-        found = features.code_actions(
+        found = features.actions.code_actions(
             workspace, path, convert.span(*place, params.range), only, session.diagnostics(path)
         )
         return [convert.action(workspace, path, action, server.versions_for_edits()) for action in found]
@@ -37,20 +37,20 @@ def register(server: Server) -> None:
     @server.feature(types.WORKSPACE_WILL_RENAME_FILES, types.FileOperationRegistrationOptions([_ALL]))
     def will_rename(params: types.RenameFilesParams) -> types.WorkspaceEdit | None:
         moves = {convert.path(file.old_uri): convert.path(file.new_uri) for file in params.files}
-        found = [(workspace, features.moved_files(workspace, moves)) for workspace in session.workspaces()]
+        found = [(workspace, features.moves.moved_files(workspace, moves)) for workspace in session.workspaces()]
         edits = [convert.workspace_edit(*each, server.versions_for_edits()) for each in found if each[1]]
         return convert.merged(edits) if edits else None
 
     @server.feature(types.TEXT_DOCUMENT_ON_TYPE_FORMATTING, types.DocumentOnTypeFormattingOptions("\n", [")"]))
     def typed(params: types.DocumentOnTypeFormattingParams) -> list[types.TextEdit]:
         answer = server.ask(
-            params.text_document, params.position, lambda *at: features.typed(at[0], at[1], at[2], params.ch)
+            params.text_document, params.position, lambda *at: features.on_type.on_type(at[0], at[1], at[2], params.ch)
         )
         return convert.edits(*answer) if answer else []
 
     @server.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
     def linked(params: types.LinkedEditingRangeParams) -> types.LinkedEditingRanges | None:
-        answer = server.ask(params.text_document, params.position, features.linked_ranges)
+        answer = server.ask(params.text_document, params.position, features.on_type.linked_ranges)
         if answer is None or not answer[2]:
             return None
         return types.LinkedEditingRanges([convert.range(answer[0], answer[1], span) for span in answer[2]])

@@ -19,12 +19,14 @@ if TYPE_CHECKING:
 def register(server: Server) -> None:
     convert = server.convert
 
-    def colours(document: types.TextDocumentIdentifier) -> tuple[str, features.Colours] | None:
+    def colours(document: types.TextDocumentIdentifier) -> tuple[str, features.colours.Colours] | None:
         place = server.at(document, reads=True)
         if place is None:
             return None
         _raise_if_unread(*place)
-        make = features.colours if place[0].files[place[1]].origin is None else features.colours_in_xml
+        make = (
+            features.colours.colours if place[0].files[place[1]].origin is None else features.xml_colours.colours_in_xml
+        )
         server.count += 1
         found = server.tokens[place[1]] = str(server.count), make(*place, convert.encoding)
         return found
@@ -35,7 +37,7 @@ def register(server: Server) -> None:
         """
         place, is_done = server.at(document), False
         while place is not None and not is_done:
-            for _ in features.making(*place, convert.encoding):
+            for _ in features.colours.making(*place, convert.encoding):
                 await asyncio.sleep(0)
                 if server.at(document) != place:
                     break
@@ -43,7 +45,7 @@ def register(server: Server) -> None:
                 is_done = True
             place = server.at(document)
 
-    def whole(found: tuple[str, features.Colours] | None) -> Json:
+    def whole(found: tuple[str, features.colours.Colours] | None) -> Json:
         return Json(f'{{"resultId": "{found[0]}", "data": {found[1].as_json}}}') if found else Json('{"data": []}')
 
     legend = types.SemanticTokensLegend(list(TYPES), list(MODIFIERS))
@@ -64,7 +66,7 @@ def register(server: Server) -> None:
         found = colours(params.text_document)
         if found is None or before is None or before[0] != params.previous_result_id:
             return whole(found)
-        changes = features.delta(before[1], found[1])
+        changes = features.colours.delta(before[1], found[1])
         edits = [f'{{"start": {one.start}, "deleteCount": {one.gone}, "data": {one.come}}}' for one in changes]
         return Json(f'{{"resultId": "{found[0]}", "edits": [{", ".join(edits)}]}}')
 
@@ -76,7 +78,11 @@ def register(server: Server) -> None:
         workspace, path = place
         _raise_if_unread(workspace, path)
         within = convert.span(workspace, path, params.range)
-        make = features.encoded_within if workspace.files[path].origin is None else features.encoded_in_xml
+        make = (
+            features.colours.encoded_within
+            if workspace.files[path].origin is None
+            else features.xml_colours.encoded_in_xml
+        )
         return {"data": make(workspace, path, within, convert.encoding)}
 
 

@@ -30,7 +30,7 @@ def register(server: Server) -> None:
     @server.command(NODE_PATH)
     def path_of_node(place: types.TextDocumentPositionParams) -> str | None:
         """The path of the node at a position."""
-        answer = server.ask(place.text_document, place.position, features.path_of_node, reads=True)
+        answer = server.ask(place.text_document, place.position, features.navigation.node_path, reads=True)
         return answer[2] if answer else None
 
     def mission(document: types.TextDocumentIdentifier, *, reads: bool = False) -> tuple[Workspace, str]:

@@ -32,7 +32,7 @@ from btq_lang.util.version import __version__
 from btq_lang.workspace.queries import Cancelled
 
 if TYPE_CHECKING:
-    from btq_lang.ide import Colours
+    from btq_lang.ide.colours import Colours
     from btq_lang.workspace.workspace import Workspace
 
 T = TypeVar("T")
@@ -385,8 +385,8 @@ class Server(LanguageServer):
         for path in [path for path in self.session.open if path not in self._ready]:
             place = self.at(types.TextDocumentIdentifier(self.convert.uri(path)))
             if place is not None:
-                tokens = features.making(*place, self.convert.encoding) if self.asks_for_tokens else ()
-                for _ in chain(self.protocol.getting_ready(), tokens, features.getting_ready(*place)):
+                tokens = features.colours.making(*place, self.convert.encoding) if self.asks_for_tokens else ()
+                for _ in chain(self.protocol.getting_ready(), tokens, features.readiness.getting_ready(*place)):
                     await asyncio.sleep(PAUSE if self.answering else 0)
             self._ready.add(path)
 

@@ -21,7 +21,7 @@ def register(server: Server) -> None:
         answer = server.ask(
             params.text_document,
             params.position,
-            lambda workspace, path, offset: features.explain(
+            lambda workspace, path, offset: features.hover.hover(
                 workspace, path, offset, side, session.evidence(workspace)
             ),
             reads=True,
@@ -33,7 +33,7 @@ def register(server: Server) -> None:
         types.SignatureHelpOptions(trigger_characters=["("], retrigger_characters=["=", " ", ","]),
     )
     def signature(params: types.SignatureHelpParams) -> types.SignatureHelp | None:
-        answer = server.ask(params.text_document, params.position, features.signature_help)
+        answer = server.ask(params.text_document, params.position, features.hover.signature_help)
         return convert.signature(answer[2]) if answer and answer[2] else None
 
     @server.feature(
@@ -43,7 +43,7 @@ def register(server: Server) -> None:
     def completion(params: types.CompletionParams) -> Json | None:
         context = params.context or types.CompletionContext(types.CompletionTriggerKind.Invoked)
         feature = partial(
-            features.complete,
+            features.completion.complete,
             asked=context.trigger_kind == types.CompletionTriggerKind.Invoked,
             trigger=context.trigger_character or "",
             snippets=server.takes_snippets,
@@ -59,8 +59,8 @@ def register(server: Server) -> None:
         path = str(data.get("path"))
         workspace = session.workspace_of(path)
         if workspace is not None:
-            text = features.documented(workspace, path, str(data.get("kind")), str(data.get("name")))
+            text = features.describe.documentation(workspace, path, str(data.get("kind")), str(data.get("name")))
             item.documentation = markdown(text) if text else None
-            edits = features.include_edits(workspace, path, str(data.get("include") or ""))
+            edits = features.describe.include_edits(workspace, path, str(data.get("include") or ""))
             item.additional_text_edits = convert.edits(workspace, path, edits) or None
         return item

@@ -22,7 +22,7 @@ SHOW_REFERENCES = "btq.showReferences"  # a command of the editor, which opens i
 def register(server: Server) -> None:
     session, convert = server.session, server.convert
 
-    def item(workspace: Workspace, tree: features.TreeItem) -> types.CallHierarchyItem:
+    def item(workspace: Workspace, tree: features.calls.TreeItem) -> types.CallHierarchyItem:
         return types.CallHierarchyItem(
             tree.name,
             types.SymbolKind.Class,
@@ -32,15 +32,16 @@ def register(server: Server) -> None:
             data={"path": tree.path, "span": [*tree.span], "name": [*tree.name_span]},
         )
 
-    def tree_of(given: types.CallHierarchyItem) -> tuple[Workspace, features.TreeItem] | None:
+    def tree_of(given: types.CallHierarchyItem) -> tuple[Workspace, features.calls.TreeItem] | None:
         data = given.data if isinstance(given.data, dict) else {}
         workspace = session.workspace_of(str(data.get("path")))
         if workspace is None:
             return None
-        return workspace, features.TreeItem(given.name, data["path"], Span(*data["span"]), Span(*data["name"]))
+        return workspace, features.calls.TreeItem(given.name, data["path"], Span(*data["span"]), Span(*data["name"]))
 
     def calls(
-        given: types.CallHierarchyItem, feature: Callable[[Workspace, features.TreeItem], tuple[features.Call, ...]]
+        given: types.CallHierarchyItem,
+        feature: Callable[[Workspace, features.calls.TreeItem], tuple[features.calls.Call, ...]],
     ) -> Iterator[tuple[types.CallHierarchyItem, list[types.Range]]]:
         if answer := tree_of(given):
             workspace = answer[0]
@@ -49,16 +50,16 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
     def prepare(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem] | None:
-        answer = server.ask(params.text_document, params.position, features.prepare_calls, reads=True)
+        answer = server.ask(params.text_document, params.position, features.calls.prepare_calls, reads=True)
         return [item(answer[0], answer[2])] if answer and answer[2] else None
 
     @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
     def incoming(params: types.CallHierarchyIncomingCallsParams) -> list[types.CallHierarchyIncomingCall]:
-        return [types.CallHierarchyIncomingCall(*call) for call in calls(params.item, features.callers)]
+        return [types.CallHierarchyIncomingCall(*call) for call in calls(params.item, features.calls.callers)]
 
     @server.feature(types.CALL_HIERARCHY_OUTGOING_CALLS)
     def outgoing(params: types.CallHierarchyOutgoingCallsParams) -> list[types.CallHierarchyOutgoingCall]:
-        return [types.CallHierarchyOutgoingCall(*call) for call in calls(params.item, features.called)]
+        return [types.CallHierarchyOutgoingCall(*call) for call in calls(params.item, features.calls.called)]
 
     @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
     def hints(params: types.InlayHintParams) -> list[types.InlayHint]:
@@ -74,7 +75,7 @@ def register(server: Server) -> None:
                 tooltip=markdown(hint.tooltip),
                 padding_left=not hint.label.startswith(":"),
             )
-            for hint in features.inlay_hints(workspace, path, convert.span(workspace, path, params.range))
+            for hint in features.hints.inlay_hints(workspace, path, convert.span(workspace, path, params.range))
         ]
 
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
@@ -84,7 +85,7 @@ def register(server: Server) -> None:
             return []
         workspace, path = place
         found = []
-        for lens in features.code_lenses(workspace, path, session.side_file(path), session.evidence(workspace)):
+        for lens in features.hints.code_lenses(workspace, path, session.side_file(path), session.evidence(workspace)):
             range_ = convert.range(workspace, path, lens.span)
             uses = [convert.location(workspace, *use) for use in lens.places]
             if not uses:

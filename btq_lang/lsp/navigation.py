@@ -21,9 +21,11 @@ def register(server: Server) -> None:
     def links(
         document: types.TextDocumentIdentifier,
         position: types.Position,
-        feature: Callable[[Workspace, str, int], tuple[features.Target, ...]],
+        feature: Callable[[Workspace, str, int], tuple[features.navigation.Target, ...]],
     ) -> list[types.LocationLink] | list[types.Location]:
-        def found(workspace: Workspace, path: str, offset: int) -> tuple[Workspace, tuple[features.Target, ...]]:
+        def found(
+            workspace: Workspace, path: str, offset: int
+        ) -> tuple[Workspace, tuple[features.navigation.Target, ...]]:
             from btq_lang.catalog.nav2 import FILES  # as all of the catalog, after the start
 
             targets = feature(workspace, path, offset)
@@ -50,19 +52,19 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     def definition(params: types.DefinitionParams) -> list[types.LocationLink] | list[types.Location]:
-        return links(params.text_document, params.position, features.goto_definition)
+        return links(params.text_document, params.position, features.navigation.goto_definition)
 
     @server.feature(types.TEXT_DOCUMENT_DECLARATION)
     def declaration(params: types.DeclarationParams) -> list[types.LocationLink] | list[types.Location]:
-        return links(params.text_document, params.position, features.goto_definition)
+        return links(params.text_document, params.position, features.navigation.goto_definition)
 
     @server.feature(types.TEXT_DOCUMENT_IMPLEMENTATION)
     def implementation(params: types.ImplementationParams) -> list[types.LocationLink] | list[types.Location]:
-        return links(params.text_document, params.position, features.goto_implementation)
+        return links(params.text_document, params.position, features.navigation.goto_implementation)
 
     @server.feature(types.TEXT_DOCUMENT_TYPE_DEFINITION)
     def type_definition(params: types.TypeDefinitionParams) -> list[types.LocationLink] | list[types.Location]:
-        return links(params.text_document, params.position, features.goto_type)
+        return links(params.text_document, params.position, features.navigation.goto_type)
 
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     def references(params: types.ReferenceParams) -> list[types.Location]:
@@ -70,14 +72,14 @@ def register(server: Server) -> None:
         answer = server.ask(
             params.text_document,
             params.position,
-            lambda *at: features.find_references(at[0], at[1], at[2], wanted),
+            lambda *at: features.navigation.find_references(at[0], at[1], at[2], wanted),
             reads=True,
         )
         return [convert.location(answer[0], path, span) for path, span in answer[2]] if answer else []
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
     def highlight(params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
-        answer = server.ask(params.text_document, params.position, features.highlights, reads=True)
+        answer = server.ask(params.text_document, params.position, features.navigation.highlights, reads=True)
         kinds = {True: types.DocumentHighlightKind.Write, False: types.DocumentHighlightKind.Read}
         return [
             types.DocumentHighlight(convert.range(answer[0], answer[1], each.span), kinds[each.writes])
@@ -87,10 +89,10 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
     def prepare(params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
-        answer = server.ask(params.text_document, params.position, features.prepare_rename, reads=True)
+        answer = server.ask(params.text_document, params.position, features.rename.prepare_rename, reads=True)
         if answer is None:
             return None
-        if isinstance(answer[2], features.Refusal):
+        if isinstance(answer[2], features.rename.Refusal):
             raise Refused(answer[2].reason)
         return types.PrepareRenamePlaceholder(convert.range(answer[0], answer[1], answer[2].span), answer[2].name)
 
@@ -99,12 +101,12 @@ def register(server: Server) -> None:
         answer = server.ask(
             params.text_document,
             params.position,
-            lambda *at: features.renamed(at[0], at[1], at[2], params.new_name),
+            lambda *at: features.rename.rename(at[0], at[1], at[2], params.new_name),
             reads=True,
         )
         if answer is None:
             return None
-        if isinstance(answer[2], features.Refusal):
+        if isinstance(answer[2], features.rename.Refusal):
             raise Refused(answer[2].reason)
         return convert.workspace_edit(answer[0], answer[2].edits, server.versions_for_edits())
 
@@ -113,5 +115,5 @@ def register(server: Server) -> None:
         return [
             convert.symbol(workspace, match)
             for workspace in session.workspaces()
-            for match in features.workspace_symbols(workspace, params.query)
+            for match in features.outline.workspace_symbols(workspace, params.query)
         ]

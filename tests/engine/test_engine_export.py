@@ -219,8 +219,7 @@ def assert_same_tree(answer: Answer, workspace: Workspace, path: str) -> None:
     assert main is not None
     assert [(node.ID, node.name, node.parent) for node in answer.tree] == list(said(workspace, path, main.symbol.name))
     documents = [export(workspace, each).document for each in workspace.closure(path)]
-    trees = {str(each.get("ID")): each for document in documents for each in document.root.elements}
-    numbered = instances(trees, str(documents[-1].root.get("main_tree_to_execute")))
+    numbered = instances(documents, str(documents[-1].root.get("main_tree_to_execute")))
     assert [(node.uid, node.path) for node in answer.tree] == [(each.uid, each.path) for each in numbered]
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import pytest
 from engine_loader import Answer, Engine, job
 
-from btq_lang.btcpp.document import Document, Element, write
+from btq_lang.btcpp.document import Document, write
 from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.instances import instances
@@ -128,8 +128,7 @@ def test_random_trees_do_the_same(engine: Engine, seed: int) -> None:
 
 def lives(answer: Answer, document: Document) -> Iterator[list[tuple[int, str]]]:
     """What each node of the mission goes through: the ticks, and what it is from then on."""
-    trees = {str(each.get("ID")): each for each in document.root.elements if isinstance(each, Element)}
-    for instance in instances(trees, "Main"):
+    for instance in instances([document], "Main"):
         if instance.element.get(MARK) is None:
             yield [
                 (tick, now)

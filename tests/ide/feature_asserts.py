@@ -22,23 +22,26 @@ from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.ide.actions import Action, code_actions
 from btq_lang.ide.calls import called, callers, prepare_calls
-from btq_lang.ide.colours import colours, difference
+from btq_lang.ide.colours import colours, difference, encoded_within, groups, stretch_of
 from btq_lang.ide.completion import Completion, complete
-from btq_lang.ide.documentation import documentation, include_edits
+from btq_lang.ide.describe import documentation, include_edits
 from btq_lang.ide.hints import code_lenses, inlay_hints
-from btq_lang.ide.hover import hover
+from btq_lang.ide.hover import hover, signature_help
 from btq_lang.ide.legend import MODIFIERS, TYPES
 from btq_lang.ide.moves import moved_files
-from btq_lang.ide.navigation import find_references, goto_definition, highlights
-from btq_lang.ide.node_path import node_path
+from btq_lang.ide.navigation import (
+    find_references,
+    goto_definition,
+    goto_implementation,
+    goto_type,
+    highlights,
+    node_path,
+)
 from btq_lang.ide.on_type import linked_ranges, on_type
 from btq_lang.ide.outline import Outline, document_symbols, workspace_symbols
 from btq_lang.ide.proposals import Proposal
 from btq_lang.ide.readiness import getting_ready
-from btq_lang.ide.relations import goto_implementation, goto_type
 from btq_lang.ide.rename import Refusal, prepare_rename, rename
-from btq_lang.ide.semantic_tokens import encoded_within, groups, stretch_of
-from btq_lang.ide.signature import signature_help
 from btq_lang.ide.structure import document_links, folding_ranges, selection_range
 from btq_lang.lexer import tokens as tokens_of
 from btq_lang.parser import parse

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from btq_lang.ide import complete, place
+from btq_lang.ide import place
+from btq_lang.ide.completion import complete
 from btq_lang.syntax.tokens import Token
 from btq_lang.util.text import Span
 from btq_lang.workspace.file import File

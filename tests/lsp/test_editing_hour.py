@@ -18,12 +18,11 @@ from btq_lang.ide.calls import prepare_calls
 from btq_lang.ide.colours import colours
 from btq_lang.ide.completion import complete
 from btq_lang.ide.hints import code_lenses, inlay_hints
-from btq_lang.ide.hover import hover
+from btq_lang.ide.hover import hover, signature_help
 from btq_lang.ide.navigation import find_references, goto_definition, highlights
 from btq_lang.ide.on_type import linked_ranges
 from btq_lang.ide.outline import document_symbols, workspace_symbols
 from btq_lang.ide.rename import prepare_rename
-from btq_lang.ide.signature import signature_help
 from btq_lang.ide.structure import document_links, folding_ranges, selection_range
 from btq_lang.lsp.session import Session
 from btq_lang.util.text import Span

@@ -627,7 +627,7 @@ def test_an_edit_ends_what_is_made_ready_in_a_pause(tmp_path: Path, monkeypatch:
         server.check_soon(server.session.edit(path, WRONG))  # all is there already
         await asyncio.sleep(0.05)
 
-    monkeypatch.setattr("btq_lang.ide.getting_ready", making, raising=False)
+    monkeypatch.setattr("btq_lang.ide.readiness.getting_ready", making, raising=False)
     asyncio.run(type_meanwhile())
     assert steps == [WRONG] * 3 + [RIGHT] * 100
 
@@ -659,7 +659,7 @@ def test_nothing_is_made_ready_while_somebody_waits(tmp_path: Path, monkeypatch:
         while len(steps) < 100:
             await asyncio.sleep(0)
 
-    monkeypatch.setattr("btq_lang.ide.getting_ready", making, raising=False)
+    monkeypatch.setattr("btq_lang.ide.readiness.getting_ready", making, raising=False)
     asyncio.run(ask_meanwhile())
 
 
@@ -680,8 +680,10 @@ def test_tokens_are_made_in_a_pause_for_an_editor_that_asks_for_them(
         while "the rest" not in made:
             await asyncio.sleep(0)
 
-    monkeypatch.setattr("btq_lang.ide.making", lambda *_: iter(made.append("tokens") or ()), raising=False)
-    monkeypatch.setattr("btq_lang.ide.getting_ready", lambda *_: iter(made.append("the rest") or ()), raising=False)
+    monkeypatch.setattr("btq_lang.ide.colours.making", lambda *_: iter(made.append("tokens") or ()), raising=False)
+    monkeypatch.setattr(
+        "btq_lang.ide.readiness.getting_ready", lambda *_: iter(made.append("the rest") or ()), raising=False
+    )
     asyncio.run(pause())
     assert made == [*["tokens"] * asks, "the rest"]
 
@@ -934,7 +936,7 @@ def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: P
     program = (
         "import btq_lang.ide as features\n"
         "def broken(*_): raise ZeroDivisionError('broken')\n"
-        "features.explain = broken\n"
+        "features.hover.hover = broken\n"
         "from btq_lang.server import main; main([])\n"
     )
     editor = Editor(tmp_path, program=program)
@@ -985,7 +987,7 @@ def test_a_request_that_cannot_be_read_is_answered(tmp_path: Path) -> None:
 def test_what_is_printed_does_not_get_into_the_protocol(tmp_path: Path) -> None:
     program = (
         "import btq_lang.ide as features\n"
-        "features.explain = lambda *_: print('Content-Length: 3')\n"
+        "features.hover.hover = lambda *_: print('Content-Length: 3')\n"
         "from btq_lang.server import main; main([])\n"
     )
     editor = Editor(tmp_path, program=program)
@@ -999,7 +1001,7 @@ def test_an_editor_that_traces_is_told_what_the_server_does(tmp_path: Path) -> N
     program = (
         "import btq_lang.ide as features\n"
         "def broken(*_): raise ZeroDivisionError('broken')\n"
-        "features.signature_help = broken\n"
+        "features.hover.signature_help = broken\n"
         "from btq_lang.server import main; main([])\n"
     )
     editor = Editor(tmp_path, program=program, trace="messages")
@@ -1140,7 +1142,7 @@ from btq_lang.lsp import editor
 from btq_lang.lsp import session
 from btq_lang import ide as features
 editor.MAX_REST = 60
-check, complete = session.Session.findings, features.complete
+check, complete = session.Session.findings, features.completion.complete
 def slow(self, path):
     print(f"check of {len(self.open[path])} characters", file=sys.stderr)
     found = check(self, path)
@@ -1149,7 +1151,7 @@ def slow(self, path):
 def say(*place, **wanted):
     print("completion", file=sys.stderr)
     return complete(*place, **wanted)
-session.Session.findings, features.complete = slow, say
+session.Session.findings, features.completion.complete = slow, say
 from btq_lang.server import main
 main([])
 """
