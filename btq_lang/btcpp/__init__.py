@@ -5,8 +5,7 @@ reader      XML text to document, as the engine reads it; `strict` reports what 
 importing   a document as a mission; `wording` spells its words, `version3` translates files of version 3, `generated`
             removes what a build has added
 export      a mission as a document; `source` is what its parts share, `trees`, `models`, `attributes`, `descriptions`
-            and `spelling` the parts, `fragment` checks elements that a mission spells out,
-            `undeclared` makes models of nodes that are used but not declared
+            and `spelling` the parts
 enforcement the nodes that requirements add, and how each clause is enforced; `enforceability`: whether it can be,
             `guards` what that takes, `around` that as data, `conditions` its scripts, `keys` its names,
             `wrappers` adds the elements and removes them
@@ -18,7 +17,7 @@ side_file   what of a mission its XML cannot hold; `instances` numbers the nodes
 restoring   a mission from its XML and its side file
 xsd         a schema of XML files with a project's nodes; `interfaces`: what these may have inside and beside them
 marks       what a build puts into the XML so that an import knows it
-recognition which XML is the engine's
+recognition which XML is the engine's, and what it defines
 typed_xml   the tag at a place of XML that is being typed
 
 One invariant: no other package knows XML.

@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.document import Attribute, Content, Document, Element, escape
-from btq_lang.btcpp.models import Models, model_element
+from btq_lang.btcpp.models import Models, model_element, suggested_model, undeclared
 from btq_lang.btcpp.source import Remark, Source
 from btq_lang.btcpp.spelling import spelt
 from btq_lang.btcpp.trees import Trees
-from btq_lang.btcpp.undeclared import suggested_model, undeclared
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax.tree import Entry, Include, Model, Root, Tree, Verbatim
 from btq_lang.syntax.tree import Models as ModelsItem

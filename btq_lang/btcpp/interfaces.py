@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.btcpp.undeclared import undeclared
+from btq_lang.btcpp.models import undeclared
 from btq_lang.catalog.kinds import CHILDREN, NodeKind, PortKind
 from btq_lang.catalog.literals import values_of
 from btq_lang.catalog.name_kinds import Kind

@@ -1,4 +1,4 @@
-"""Which XML is BehaviorTree.CPP's, recognized by its text alone.
+"""Which XML is BehaviorTree.CPP's, and what it defines, mostly recognized by its text alone.
 
 One invariant: no file that the engine loads trees or models from is passed over.  Many other files are called .xml, and
 some of them have the document element `root` too.  Whether the XML is well-formed is not known here.
@@ -10,6 +10,7 @@ import re
 from typing import Final
 
 from btq_lang.btcpp.document import unescape
+from btq_lang.util.record import Record
 
 
 def may_be_mission(head: str) -> bool:
@@ -44,6 +45,30 @@ def _prolog(xml: str) -> int:
     """Where the document element begins."""
     found = _PROLOG.match(xml)
     return found.end() if found is not None else 0
+
+
+class ListedTrees(Record):
+    """The trees of a file.
+
+    Attributes:
+        ids: of all trees that have one, in order.
+        main: the tree that it names as the main one.
+    """
+
+    ids: tuple[str, ...]
+    main: str | None
+
+
+def listed_trees(xml: str) -> ListedTrees | None:
+    """The trees of a file as Nav2 lists them before it registers the file; None if it cannot be parsed."""
+    from lxml import etree  # as the rest of this room, only where there is XML
+
+    try:
+        root = etree.fromstring(xml.encode(), etree.XMLParser(resolve_entities=False, encoding="utf-8"))
+    except etree.XMLSyntaxError:
+        return None
+    found = (each.get("ID") for each in root.findall("BehaviorTree"))
+    return ListedTrees(tuple(each for each in found if each is not None), root.get("main_tree_to_execute"))
 
 
 _PROLOG: Final = re.compile(r"(?:[^<]+|<\?.*?\?>|<!--.*?-->|<!(?!--)[^>]*>)*", re.DOTALL)

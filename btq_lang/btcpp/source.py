@@ -10,10 +10,9 @@ from typing import Final
 
 from btq_lang.btcpp.constants import types_below
 from btq_lang.btcpp.document import Comment, Content, Raw, escape
-from btq_lang.btcpp.fragment import fragment_problem
 from btq_lang.btcpp.spelling import FORBIDDEN, as_comment, spelt
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.names import legal_name, model_name_problem
+from btq_lang.catalog.names import is_xml_name, legal_name, model_name_problem
 from btq_lang.syntax.tree import Entry, Verbatim, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Placed, Span
@@ -136,6 +135,21 @@ class Source:
         for match in FORBIDDEN.finditer(self.file.text):
             message = f"XML does not allow the character U+{ord(match[0]):04X}"
             self.problems[Remark(self.path, Span(match.start(), match.end()), message)] = None
+
+
+def fragment_problem(text: str) -> str | None:
+    """What is wrong with a text that should be one element; None if it is one.  Prefixes need no declaration."""
+    if text[:1] != "<" or not is_xml_name(text[1:2]):
+        return "`xml` takes one element; its text must begin with `<`"
+    from lxml import etree  # here, for few files have such elements, and it takes long to import
+
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True)
+    try:
+        etree.fromstring(text.encode("utf-8", "replace"), parser)
+    except etree.XMLSyntaxError:
+        wrong = [each for each in parser.error_log if each.domain != etree.ErrorDomains.NAMESPACE]
+        return f"not a well-formed element: {wrong[0].message.rstrip()}" if wrong else None
+    return None
 
 
 _BLANKS: Final = (" ", "\t")

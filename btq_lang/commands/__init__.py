@@ -5,9 +5,9 @@ command line comes in, and text on the standard streams and files go out.  How t
 other packages do that.
 
     arguments.py the command line, and which module runs which command
-    files.py, factory_files.py, xml_below.py, ignored.py   input files, by project and factory, and which XML counts
+    files.py, factory_files.py, xml_below.py   input files, by project and factory, and which XML counts
     output.py, options.py, reporting.py   output, options of a check, its report
-    fixing.py, text_diff.py, ignoring.py   what a check changes
+    fixing.py, ignoring.py   what a check changes
     baseline.py, since.py   which findings are known, and which files have changed
     check.py, format.py, build.py …   the commands
     shell/           completion scripts

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import glob
 import os
 import sys
 from argparse import Namespace
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final
 
 from btq_lang.btcpp.enforcement import ClauseEnforcement, Enforcement
@@ -18,11 +19,11 @@ from btq_lang.catalog.versions import is_before_4
 from btq_lang.commands.building import errors, for_target
 from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
 from btq_lang.commands.output import is_coloured, tell
-from btq_lang.commands.stale_outputs import stale_outputs
 from btq_lang.diagnostics.model import Place
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Span, counted
+from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_whole
 
 
@@ -144,9 +145,6 @@ def _outputs(group: Group, places: Places, options: Namespace) -> tuple[Output, 
     )
 
 
-# ---- what is wrong ----
-
-
 def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
     """Print the errors that prevent the build; returns whether there are any."""
     findings = [
@@ -242,9 +240,6 @@ def _same_place(made: list[Output]) -> Iterator[str]:
             yield f"{shown(other)} and {shown(output.path)} would both be written to {shown(output.place)}"
 
 
-# ---- what is written, and where ----
-
-
 def _targets(output: Output) -> Iterator[Target]:
     """The XML of a mission and its side file; an outdated side file is removed."""
     yield Target(output.place, output.text, _old_text(output.place))
@@ -321,6 +316,24 @@ def _take_back(targets: list[Target]) -> None:
         except OSError as error:
             problem = LoadProblem(target.path, f"was changed and cannot be restored: {error.strerror}")
             print(f"btq: {problem}", file=sys.stderr)
+
+
+def stale_outputs(folders: Iterable[str]) -> list[str]:
+    """The files in some folders that a build made and whose mission is no longer beside them.
+
+    Subfolders are not searched, nor are targets of `-o`, which have no missions beside them.
+    """
+    found: list[str] = []
+    for folder in sorted(set(folders)):
+        for xml in sorted(glob.glob(os.path.join(glob.escape(folder), "*.xml"))):
+            stem = os.path.splitext(xml)[0]
+            if any(os.path.exists(stem + suffix) for suffix in SUFFIXES) or not is_generated(read(xml)[0] or ""):
+                continue
+            found.append(xml)
+            side = side_path(xml)
+            if os.path.exists(side) and is_side_file(read(side)[0] or ""):
+                found.append(side)
+    return found
 
 
 _GUESSES_SHOWN: Final = 8

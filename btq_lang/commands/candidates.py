@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from btq_lang.btcpp.as_built import as_built
 from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import side_path, xml_path
-from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import Files
+from btq_lang.commands.opening import Disk
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.readers.side import SideFile, side_file_at, side_files_beside
 from btq_lang.workspace.loader import find_project

@@ -149,7 +149,7 @@ def _report(
     if options.add_ignore is not None:
         return _add_ignores(groups, findings, options, files)
     if options.target is not None:
-        from btq_lang.commands.together import together
+        from btq_lang.commands.target import together
 
         findings = together(findings)
     why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)

@@ -12,9 +12,9 @@ from btq_lang.btcpp.as_built import Built, as_built
 from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of
 from btq_lang.btcpp.recognition import is_mission
-from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import STDIN, Files, Group
 from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
+from btq_lang.commands.opening import Disk
 from btq_lang.commands.output import is_coloured
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.diff import Place, as_json, as_markdown, as_text

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.btcpp.opening import with_source
 from btq_lang.checks import check_each
 from btq_lang.commands.files import Group, write_stdout
+from btq_lang.render.colour import painter
 from btq_lang.util.record import replace
 from btq_lang.workspace.fixes import fixed
 from btq_lang.workspace.loader import LoadProblem, shown, write_whole
@@ -17,6 +19,7 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.workspace.file import File
+
 
 _ROUNDS: Final = 10  # of fixing: a fix may enable another
 
@@ -75,7 +78,6 @@ def write_fixes(
 
 def show_fixes(before: Iterable[Group], after: Iterable[Group], is_coloured: bool) -> bool:
     """Print what would be written as a unified diff; returns whether there is anything."""
-    from btq_lang.commands.text_diff import text_diff
 
     is_changed = False
     seen: set[str] = set()
@@ -93,3 +95,22 @@ def _with_files(workspace: Workspace, files: Mapping[str, File]) -> Workspace:
     """The workspace with other files in the place of those of the same paths."""
     known = {path: files.get(path, file) for path, file in workspace.files.items()}
     return Workspace(known, workspace.project, workspace.factory)
+
+
+def text_diff(path: str, old: str, new: str, *, is_coloured: bool = False) -> Iterator[str]:
+    """The lines of the unified diff of a file, each with its end, which `git apply -p0` and `patch` can apply.
+
+    Lines end at `\\n` alone, so a change of line ends shows and the diff has the bytes of the files.
+    """
+    from difflib import unified_diff  # fixes need none
+
+    paint = painter(is_coloured)
+    for line in unified_diff(_lines(old), _lines(new), path, path):
+        body = line.removesuffix("\n")
+        yield (paint(body[:1], body) if body[:1] in ("+", "-") else body) + "\n"
+        if body == line:
+            yield "\\ No newline at end of file\n"
+
+
+def _lines(text: str) -> list[str]:
+    return re.findall(r"[^\n]*\n|[^\n]+", text)

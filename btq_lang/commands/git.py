@@ -1,4 +1,4 @@
-"""The texts of a file's revisions in git.  Git runs as a process, here and in `ignored`.
+"""The texts of a file's revisions in git.  Git runs as a process, here and in `xml_below`.
 
 One invariant: nothing is written, and git reads no external argument as an option.
 """

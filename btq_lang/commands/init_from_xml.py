@@ -12,19 +12,22 @@ import shlex
 import sys
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from functools import cache
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.names import is_port_name
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, ports_of
 from btq_lang.catalog.versions import VERSION_3, VERSIONS
 from btq_lang.checks import check_each
 from btq_lang.checks.engines import words_of_3
+from btq_lang.commands.explain_nav2 import models_of
 from btq_lang.commands.files import Files
-from btq_lang.commands.nav2_used import nav2_line
-from btq_lang.commands.xml_patterns import patterns
+from btq_lang.commands.xml_below import XmlBelow
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.file import GROOT_SUFFIX
-from btq_lang.workspace.loader import absolute, shown, write_whole
+from btq_lang.workspace.loader import absolute, matching, shown, write_whole
 from btq_lang.workspace.workspace import Workspace
 
 _HEAD = "# What holds for all missions of this project\n"
@@ -35,6 +38,7 @@ _MANY_MORE = 10
 _EXCLUDED = """\
 exclude = {}  # converted; delete the line when `btq build` writes these files
 """
+_OF_VERSION_3 = ("humble", "iron")  # their Nav2 has version 3 of the engine, and so trees without BTCPP_format
 
 
 def run(options: Namespace) -> int:
@@ -215,3 +219,96 @@ def _connected(workspace: Workspace) -> list[list[str]]:
     needed = [sorted(each) for each in groups.values() if not needing.isdisjoint(each)]
     with_trees = [[path for path in each if workspace.files[path].of_type(Tree)] for each in needed]
     return [each for each in with_trees if len(each) > 1]
+
+
+def patterns(folder: str, paths: Collection[str], others: Collection[str]) -> Iterator[str]:
+    """Patterns for some XML files, relative to a folder and without suffix.
+
+    A folder that has several of the files, and no other XML of the engine, is one pattern; with the folders below it,
+    if that is true of them too.
+
+    Args:
+        others: the rest of the engine's XML.
+    """
+    known = XmlBelow()
+    taken: set[str] = set()
+
+    @cache
+    def matches_no_other(pattern: str) -> bool:
+        found = {*matching(folder, f"{pattern}.xml")}.difference(paths)
+        return found.isdisjoint(others) and not any(map(known.is_mission, found))
+
+    for path in paths:
+        if path in taken:
+            continue
+        for place in _folders(path, folder):
+            start = "" if place == folder else f"{posixpath.relpath(place, folder)}/"
+            below = {each for each in paths if each.startswith(f"{place}/")}
+            here = {each for each in below if posixpath.dirname(each) == place}
+            if start and here and len(here) < len(below) and matches_no_other(f"{start}**/*"):
+                taken |= below
+                yield f"{start}**/*"
+                break
+            if path in here and len(here) > 1 and matches_no_other(f"{start}*"):
+                taken |= here
+                yield f"{start}*"
+                break
+        else:
+            yield posixpath.relpath(path, folder).removesuffix(".xml")
+
+
+def _folders(path: str, top: str) -> Iterator[str]:
+    """The folders that a file is in, from the top."""
+    names = posixpath.dirname(posixpath.relpath(path, top)).split("/")
+    yield top
+    for number in range(1, len(names) + 1) if names != [""] else ():
+        yield posixpath.join(top, *names[:number])
+
+
+def nav2_line(workspace: Workspace, holds: Callable[[str], bool]) -> str:
+    """The line of a project file that names Nav2's nodes, a comment if it is unknown which; empty if XML uses none.
+
+    Args:
+        holds: whether such a line may be written, as far as its effect on the project is concerned.
+    """
+    used = _used(workspace)
+    if not any(used.values()):
+        return ""  # a `Wait` alone may be anybody's
+    fitting = [each for each in _of_format(workspace, used) if _has(each, used)]
+    if len(fitting) == 1:
+        line = f'nodes = ["nav2-{fitting[0]}"]  # the only distribution of Nav2 with the nodes and ports of the trees\n'
+        if holds(line):
+            return line
+        fitting.clear()
+    fit = f"they fit {', '.join(fitting)}" if fitting else "no distribution has all of these nodes and ports"
+    return f'# nodes = ["nav2-DISTRIBUTION"]  # the trees use nodes of Nav2; name yours: {fit}\n'
+
+
+def _of_format(workspace: Workspace, used: Mapping[str, set[str]]) -> Iterator[str]:
+    """The distributions whose engine reads the format of the files that use some nodes."""
+    formats = {
+        "BTCPP_format" in file.source for file in workspace.files.values() if not file.used(Kind.MODEL).isdisjoint(used)
+    }
+    for each in DISTRIBUTIONS:
+        if formats <= {each not in _OF_VERSION_3}:
+            yield each
+
+
+def _used(workspace: Workspace) -> Mapping[str, set[str]]:
+    """The nodes of Nav2 in XML, each with the ports that have values; one that has other ports is the project's own."""
+    used: dict[str, set[str]] = {}
+    for file in workspace.files.values():
+        for facts in file.facts.values():
+            for use in facts.summary.uses:
+                if use.kind is Kind.MODEL and use.node is not None and ports_of(use.name) is not None:
+                    given = (pair.key.text for pair in use.node.attributes)
+                    used.setdefault(use.name, set()).update(filter(is_port_name, given))
+    return {name: ports for name, ports in used.items() if ports <= (ports_of(name) or set())}
+
+
+def _has(distribution: str, used: Mapping[str, set[str]]) -> bool:
+    models = models_of(distribution)
+    return all(
+        name in models and ports <= {port.id.text for port in models[name].ports if port.id is not None}
+        for name, ports in used.items()
+    )

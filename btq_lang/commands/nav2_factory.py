@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.nav2.findings import Loaded, findings, wrong_goals
-from btq_lang.nav2.goals import goals_in
-from btq_lang.nav2.loaded import Load, Loads
+from btq_lang.nav2.loaded import Load, Loads, goals_in
 from btq_lang.nav2.names import distribution_unknown, file_findings
 from btq_lang.nav2.parameters import Parameters, read_parameters
 from btq_lang.nav2.yaml_reader import YamlMissing, YamlProblem

@@ -5,23 +5,26 @@ from __future__ import annotations
 import os
 import sys
 from argparse import Namespace
-from typing import TYPE_CHECKING, TypeAlias
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.btcpp import reader
+from btq_lang.catalog.cpp_classes import ENGINE
 from btq_lang.commands.output import write_output
-from btq_lang.commands.plugin_files import exported_nodes
-from btq_lang.cpp.findings import findings
+from btq_lang.cpp.findings import UNSEEN, findings
 from btq_lang.cpp.grammar import GrammarMissing
 from btq_lang.cpp.model import CppNodes
 from btq_lang.cpp.nodes import read_nodes
-from btq_lang.util.text import LineIndex, counted
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.util.text import LineIndex, Span, counted
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import CPP_SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, absolute, collect, head, read, shown
 
 if TYPE_CHECKING:
-    from btq_lang.diagnostics.model import Diagnostic
-
     Exported: TypeAlias = tuple[str, tuple[Diagnostic, ...]]  # the text, and what its nodes leave unseen
+    from btq_lang.btcpp.document import Element
+
 
 FORMATS = ("btq", "xml", "html")
 
@@ -97,3 +100,29 @@ def _written(found: CppNodes, form: str, sources: str) -> str:
     from btq_lang.commands.node_writers import as_btq, as_xml
 
     return (as_btq if form == "btq" else as_xml)(found.nodes, sources)
+
+
+def exported_nodes(text: str) -> tuple[Diagnostic, ...] | None:
+    """The nodes that a file exports, each as what cannot be seen, because the program that loads it gives the ID.
+
+    None if it is not for pluginlib.
+
+    Source: https://wiki.ros.org/pluginlib/PluginDescriptionFile
+    """
+    document = reader.read(text).document
+    if document is None or document.root.tag not in _ROOTS:
+        return None
+    return tuple(_nodes(document.root))
+
+
+def _nodes(element: Element) -> Iterator[Diagnostic]:
+    for each in element.elements:
+        base = each.get("base_class_type") or ""
+        if each.tag == "class" and base.startswith("BT::") and base.removeprefix("BT::") in ENGINE:
+            name = each.get("type") or ""
+            message = f"exports `{name}`, a {base}, to pluginlib; under which ID trees have it cannot be seen"
+            yield Diagnostic(UNSEEN, Span(each.start, each.end), message)
+        yield from _nodes(each)
+
+
+_ROOTS: Final = ("library", "class_libraries")

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
+
 from btq_lang.commands.files import Files
 from btq_lang.util.record import replace
+from btq_lang.workspace.loader import read
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -54,3 +57,20 @@ def open_workspace(*paths: str, factory: str | None = None) -> Workspace:
 def _shown_from_root(workspace: Workspace) -> Workspace:
     """The workspace with paths in messages relative to its project, whatever the current folder."""
     return workspace.with_project(replace(workspace.project, folders=()))
+
+
+class Disk:
+    """The files on the disk, as one side of a comparison with another revision."""
+
+    def is_file(self, path: str) -> bool:
+        return os.path.isfile(path)
+
+    def text(self, path: str) -> str | None:
+        return read(path)[0]
+
+    def workspace(self, path: str, known: dict[str, str]) -> Workspace | None:
+        files = Files()
+        files.overlay.update(known)
+        groups, problems = files.groups(known)
+        group = next((group for group in groups if path in group.given), None)
+        return None if problems or group is None else group.workspace

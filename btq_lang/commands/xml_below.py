@@ -6,11 +6,11 @@ One invariant: each file that people wrote for the engine is in the result, unle
 from __future__ import annotations
 
 import os
+import subprocess
 from collections.abc import Hashable, Iterable, Set
 
 from btq_lang.btcpp.marks import is_built_of, is_generated, named_beside
 from btq_lang.btcpp.recognition import defined_in, is_mission, may_be_mission
-from btq_lang.commands.ignored import ignored
 from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import absolute, head, read, stamp
 
@@ -87,3 +87,36 @@ def _named_by_side_file(path: str) -> tuple[str, ...]:
     except (ValueError, LookupError, TypeError):
         return ()
     return (absolute(os.path.join(os.path.dirname(path), mission)),) if isinstance(mission, str) else ()
+
+
+def ignored(paths: Iterable[str]) -> frozenset[str]:
+    """Those of some absolute paths that git ignores, none without git; a file that is tracked is not ignored."""
+    repository_of: dict[str, str | None] = {}  # by folder
+    by_repository: dict[str, list[str]] = {}
+    for path in paths:
+        repository = _repository(os.path.dirname(path), repository_of)
+        if repository is not None and path != repository:
+            by_repository.setdefault(repository, []).append(path)
+    return frozenset().union(*(_ignored_in(root, below) for root, below in by_repository.items()))
+
+
+def _repository(folder: str, known: dict[str, str | None]) -> str | None:
+    """The nearest folder above with a `.git`, which is a file in a submodule or a second working tree."""
+    if folder not in known:
+        above = os.path.dirname(folder)
+        if os.path.exists(f"{folder}/.git"):
+            known[folder] = folder
+        else:
+            known[folder] = _repository(above, known) if above != folder else None
+    return known[folder]
+
+
+def _ignored_in(root: str, paths: list[str]) -> frozenset[str]:
+    given = "\0".join(path.removeprefix(f"{root.rstrip('/')}/") for path in paths)
+    try:
+        run = subprocess.run(
+            ["git", "-C", root, "check-ignore", "-z", "--stdin"], input=os.fsencode(given), capture_output=True
+        )
+    except OSError:  # git is not installed
+        return frozenset()
+    return frozenset(f"{root.rstrip('/')}/{path}" for path in os.fsdecode(run.stdout).split("\0") if path)

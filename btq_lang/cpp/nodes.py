@@ -9,13 +9,11 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.cpp.grammar import arguments, callee, enclosing, field, place_of, text_of, walk
-from btq_lang.cpp.library_ports import library_ports
+from btq_lang.cpp.grammar import arguments, callee, contents, enclosing, field, place_of, text_of, walk
 from btq_lang.cpp.model import CppNode, CppNodes, Place
 from btq_lang.cpp.ports import Body, PortsReader, Provided
 from btq_lang.cpp.source import Call, Source
-from btq_lang.cpp.sources import Sources
-from btq_lang.cpp.ticks import ends_within_tick
+from btq_lang.cpp.sources import Bound, Sources, library_ports
 from btq_lang.cpp.uses import Uses
 from btq_lang.cpp.values import string
 from btq_lang.util.record import replace
@@ -174,6 +172,38 @@ def _is_of_template(call: Call) -> bool:
     return False
 
 
+def ends_within_tick(sources: Sources, bound: Bound) -> bool:
+    """Whether the nodes of a class are seen never to return RUNNING.
+
+    Only the engine says so, which throws if a SyncActionNode returns it, or each `return` of a `tick` that no class of
+    the engine continues at a later tick.
+    """
+    above = list(sources.ancestry(bound))
+    outside = {each.name.rpartition("::")[2] for each in above if each.class_ is None}
+    if outside != {"ActionNodeBase"}:
+        return outside == {"SyncActionNode"}
+    for each in above:
+        bodies = sources.methods(each, "tick")
+        if bodies or (each.class_ is not None and "tick" in each.class_.promised):
+            return len(bodies) == 1 and _answers(bodies[0][0])
+    return False
+
+
+def _answers(tick: Node) -> bool:
+    returns = [each for each in walk(tick, _FUNCTIONS) if each.type == "return_statement"]
+    return bool(returns) and all(len(contents(each)) == 1 and _is_answer(contents(each)[0]) for each in returns)
+
+
+def _is_answer(value: Node) -> bool:
+    """Whether an expression is SUCCESS or FAILURE, or a choice between them."""
+    if value.type == "parenthesized_expression":
+        return _is_answer(contents(value)[0])
+    if value.type == "conditional_expression":
+        branches = (field(value, "consequence"), field(value, "alternative"))
+        return all(each is not None and _is_answer(each) for each in branches)
+    return text_of(value).rpartition("::")[2] in ("SUCCESS", "FAILURE")
+
+
 _SIMPLE: Final[dict[str, Category]] = {
     "registerSimpleAction": "Action",
     "registerSimpleCondition": "Condition",
@@ -183,3 +213,4 @@ _ENGINES: Final = ("registerNodeType", "registerBuilder")
 _OTHERS: Final = re.compile(
     r"register(BehaviorTreeFrom\w+|From\w*Plugins?|ScriptingEnums?|PolymorphicCast)|RegisterJsonDefinition"
 ).fullmatch
+_FUNCTIONS: Final = frozenset(("lambda_expression",))

@@ -9,11 +9,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.cpp.grammar import arguments, callee, contents, enclosing, field, named, place_of, text_of, walk
-from btq_lang.cpp.library_ports import library_ports
 from btq_lang.cpp.model import CppPort, Place
-from btq_lang.cpp.source import REGISTERS
-from btq_lang.cpp.sources import Bound, Sources
-from btq_lang.cpp.type_names import substituted
+from btq_lang.cpp.source import REGISTERS, substituted
+from btq_lang.cpp.sources import Bound, Sources, library_ports
 from btq_lang.cpp.values import Frame, default, string, type_of
 from btq_lang.util.record import Record
 

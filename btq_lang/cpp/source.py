@@ -6,7 +6,7 @@ One invariant: a name is kept with the namespaces and classes around it; what it
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.cpp.grammar import (
@@ -23,7 +23,6 @@ from btq_lang.cpp.grammar import (
     walk,
 )
 from btq_lang.cpp.model import Unseen
-from btq_lang.cpp.type_names import parts, plain
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
@@ -204,9 +203,39 @@ def _parameters(node: Node | None) -> tuple[str, ...]:
     return tuple(names)
 
 
+def plain(text: str) -> str:
+    """A type without superfluous blanks: `std::vector<int>`."""
+    text = _BLANKS.sub(" ", text.strip()).removeprefix("typename ").removeprefix("::")
+    return _AROUND.sub(r"\1", text).replace(",", ", ")
+
+
+def parts(text: str) -> tuple[str, list[str]]:
+    """The name of a type and the arguments of its template: `Base` and `int` of `Base<int>`."""
+    text = plain(text)
+    name, sign, inside = text.partition("<")
+    if not sign or not text.endswith(">"):
+        return text, []
+    depth, begin, found = 0, 0, []
+    for at, sign in enumerate(inside[:-1]):
+        depth += sign in "<({"
+        depth -= sign in ">)}"
+        if sign == "," and not depth:
+            found.append(inside[begin:at].strip())
+            begin = at + 1
+    return name, [*found, inside[begin:-1].strip()]
+
+
+def substituted(text: str, meanings: Mapping[str, str]) -> str:
+    """A type in which the parameters of a template are replaced by what they mean."""
+    return plain(_WORD.sub(lambda match: meanings.get(match[0], match[0]), text))
+
+
 _CLASSES: Final = frozenset(("class_specifier", "struct_specifier"))
 _OF_BASES: Final = ("access_specifier", "virtual")
 _QUOTED: Final = re.compile(r'"((?:[^"\\]|\\.)*)"')
 ACCESSES: Final = ("getInput", "setOutput", "getLockedPortContent", "getInputStamped")
 REGISTERS: Final = re.compile(r"[rR]egister[A-Z]\w*|CreateRosNodePlugin").fullmatch
 _MATTERS: Final = re.compile(r"providedPorts|Port\s*[<(]|[rR]egister[A-Z]\w*\s*[<(]|getInput|setOutput").search
+_BLANKS: Final = re.compile(r"\s+")
+_AROUND: Final = re.compile(r" ?(::|[<>,]) ?")
+_WORD: Final = re.compile(r"(?<![\w:])[A-Za-z_]\w*")

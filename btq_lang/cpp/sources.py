@@ -9,17 +9,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final, TypeVar
 
-from btq_lang.catalog.cpp_classes import ENGINE, LIBRARIES
+from btq_lang.catalog.cpp_classes import ENGINE, LIBRARIES, NUMBERED_TAGS, ROS_PORTS, TAGS
+from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.cpp.grammar import place_of
-from btq_lang.cpp.model import Place, Unseen
-from btq_lang.cpp.source import Class, Function, Source
-from btq_lang.cpp.type_names import parts, substituted
+from btq_lang.cpp.model import CppPort, Place, Unseen
+from btq_lang.cpp.source import Class, Function, Source, parts, substituted
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from tree_sitter import Node
 
     from btq_lang.catalog.kinds import Category
+
 
 T = TypeVar("T", Class, Function)
 
@@ -221,6 +222,25 @@ def _whole(found: Class | Function) -> str:
 
 def _last(name: str) -> str:
     return name.rpartition("::")[2]
+
+
+def library_ports(bound: Bound, place: Place) -> dict[str, CppPort] | None:
+    """The ports of a class of the engine or of behaviortree_ros2, by name, each at a place; None for any other class,
+    which may provide any port."""
+    name = bound.name.rpartition("::")[2]
+    if name in ROS_PORTS:
+        key, text = ROS_PORTS[name]
+        return {key: CppPort(key, "input", "std::string", "", "", text, place)}
+    numbered = NUMBERED_TAGS.get(name)
+    tag = numbered.format(bound.meanings.get("0")) if numbered is not None else TAGS.get(name)
+    if name not in ENGINE or (tag is not None and tag not in BUILTINS):
+        return None
+    ports = {}
+    for port in BUILTINS[tag].ports if tag is not None else ():
+        of_item = name == "LoopNode" and port.name == "value"
+        type_ = bound.meanings.get("0", port.type) if of_item else port.type
+        ports[port.name] = CppPort(port.name, port.direction, type_, port.default, port.default or "", port.doc, place)
+    return ports
 
 
 _MOST_ALIASES: Final = 20  # an alias may mean itself

@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.cpp.grammar import arguments, callee, contents, field, literal, named, text_of
+from btq_lang.cpp.source import substituted
 from btq_lang.cpp.sources import Bound, Sources
-from btq_lang.cpp.type_names import substituted
 
 if TYPE_CHECKING:
     from tree_sitter import Node

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
 from btq_lang.btcpp.marks import is_generated
-from btq_lang.btcpp.undeclared import made_models
+from btq_lang.btcpp.models import made_models
 from btq_lang.diff import Change, Place, compare
 from btq_lang.diff.changes import GUARD, Detail
 from btq_lang.util.record import Record, replace

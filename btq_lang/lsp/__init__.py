@@ -21,28 +21,14 @@ from btq_lang.lsp import (
     documents,
     explaining,
     hints,
-    layout,
     lifecycle,
     logs,
     navigation,
-    structure,
 )
 from btq_lang.lsp.editor import Server
 
 
 def register(server: Server) -> None:
     """Register all handlers with pygls."""
-    for group in (
-        lifecycle,
-        documents,
-        navigation,
-        explaining,
-        structure,
-        colours,
-        layout,
-        acting,
-        hints,
-        commands,
-        logs,
-    ):
+    for group in (lifecycle, documents, navigation, explaining, colours, acting, hints, commands, logs):
         group.register(server)

@@ -1,12 +1,22 @@
-"""Code actions, renamed files, and on-type formatting."""
+"""Code actions, renamed files, and formatting.
+
+A text with a syntax error is not formatted.  The reason is only logged: the error is underlined already, and a message
+box would open at every save that formats.
+"""
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
 from btq_lang import ide as features
 from btq_lang.lsp.editor import Server
 from btq_lang.lsp.protocol import Plain
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.workspace import Workspace
+
 
 KINDS = [
     types.CodeActionKind.QuickFix,
@@ -54,3 +64,32 @@ def register(server: Server) -> None:
         if answer is None or not answer[2]:
             return None
         return types.LinkedEditingRanges([convert.range(answer[0], answer[1], span) for span in answer[2]])
+
+    @server.feature(types.TEXT_DOCUMENT_FORMATTING)
+    @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
+    def formatted(
+        params: types.DocumentFormattingParams | types.DocumentRangeFormattingParams,
+    ) -> list[types.TextEdit] | None:
+        place = server.at(params.text_document)
+        if place is None or _is_refused(server, *place):
+            return None
+        from btq_lang.formatter import format_range, format_text  # imported on use, like features
+
+        text = place[0].files[place[1]].text
+        if isinstance(params, types.DocumentFormattingParams):
+            return convert.edits(*place, format_text(text).edits)
+        return convert.edits(*place, format_range(text, *convert.span(*place, params.range)))
+
+
+def _is_refused(server: Server, workspace: Workspace, path: str) -> bool:
+    """Whether a file has a syntax error, which is then logged."""
+    from btq_lang.formatter import refused  # as above
+
+    file = workspace.files[path]
+    error = refused(file.parsed)
+    if error is None:
+        return False
+    line, column = file.lines.position(error.span.start)
+    message = f"{path}:{line + 1}:{column + 1}: cannot format a file with an error: {error.message}"
+    server.window_log_message(types.LogMessageParams(types.MessageType.Warning, message))
+    return True

@@ -1,4 +1,4 @@
-"""Definition, references and rename."""
+"""Definition, references and rename; outline, folding, selection and links."""
 
 from __future__ import annotations
 
@@ -50,12 +50,11 @@ def register(server: Server) -> None:
             for target in targets
         ]
 
-    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
-    def definition(params: types.DefinitionParams) -> list[types.LocationLink] | list[types.Location]:
-        return links(params.text_document, params.position, features.navigation.goto_definition)
-
     @server.feature(types.TEXT_DOCUMENT_DECLARATION)
-    def declaration(params: types.DeclarationParams) -> list[types.LocationLink] | list[types.Location]:
+    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
+    def definition(
+        params: types.DefinitionParams | types.DeclarationParams,
+    ) -> list[types.LocationLink] | list[types.Location]:
         return links(params.text_document, params.position, features.navigation.goto_definition)
 
     @server.feature(types.TEXT_DOCUMENT_IMPLEMENTATION)
@@ -116,4 +115,31 @@ def register(server: Server) -> None:
             convert.symbol(workspace, match)
             for workspace in session.workspaces()
             for match in features.outline.workspace_symbols(workspace, params.query)
+        ]
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
+    def outline(params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
+        place = server.at(params.text_document, reads=True)
+        return [convert.outline(*place, each) for each in features.outline.document_symbols(*place)] if place else []
+
+    @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
+    def folds(params: types.FoldingRangeParams) -> list[types.FoldingRange]:
+        place = server.at(params.text_document)
+        return [convert.fold(*place, each) for each in features.structure.folding_ranges(*place)] if place else []
+
+    @server.feature(types.TEXT_DOCUMENT_SELECTION_RANGE)
+    def selections(params: types.SelectionRangeParams) -> list[types.SelectionRange]:
+        found = [
+            server.ask(params.text_document, position, features.structure.selection_range)
+            for position in params.positions
+        ]
+        return [convert.selection(*each) for each in found if each is not None]
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_LINK)
+    def includes(params: types.DocumentLinkParams) -> list[types.DocumentLink]:
+        place = server.at(params.text_document, reads=True)
+        return [
+            types.DocumentLink(convert.range(*place, link.span), target=convert.uri(link.target))
+            for link in (features.structure.document_links(*place) if place else ())
+            if place and link.target is not None
         ]

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.btcpp.listed_trees import listed_trees
+from btq_lang.btcpp.recognition import listed_trees
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS
 from btq_lang.diagnostics.model import Diagnostic, Place, Related

@@ -13,7 +13,9 @@ from collections.abc import Callable, Iterator
 from functools import cache, partial
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.btcpp.listed_trees import listed_trees
+from btq_lang.btcpp.recognition import listed_trees
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nav2 import TREE_OF_GOAL, ports_of
 from btq_lang.catalog.nav2.navigator import NAVIGATORS, OWN_PACKAGE
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import Severity
@@ -28,6 +30,7 @@ from btq_lang.workspace.loader import absolute, collect, matching, package_folde
 if TYPE_CHECKING:
     ReadFile: TypeAlias = Callable[[str], str | None]
     FindPackage: TypeAlias = Callable[[str], str | None]
+    from btq_lang.workspace.workspace import Workspace
 
 
 class Located(Record):
@@ -256,6 +259,22 @@ def _searched(
             owners.update(zip(ids, [*places, *[places[-1]] * len(ids)], strict=False))
     files = tuple(dict.fromkeys(each.path for each in owners.values() if each.path is not None))
     return Load(label, tree, named, files, tuple(skipped), tuple(refused), folders)
+
+
+def goals_in(workspace: Workspace) -> Iterator[tuple[str, Place]]:
+    """The trees that nodes of Nav2 name for the goals that they send, in the files that a program registers, each with
+    its place; what an entry names is not known, nor what scripts and other programs send."""
+    for path in workspace.registered:
+        file = workspace.files[path]
+        for reference in workspace.uses_in(path) if TREE_OF_GOAL in file.text else ():
+            use = reference.use
+            if use.kind is not Kind.MODEL or use.node is None or TREE_OF_GOAL not in (ports_of(use.name) or ()):
+                continue
+            for pair in use.node.attributes:
+                name = pair.value.text if pair.key.text == TREE_OF_GOAL and pair.value is not None else ""
+                if name and "{" not in name and pair.value is not None:
+                    span = pair.value.span.shifted(reference.entry.start)
+                    yield name, Place(file.on_disk(span), path)
 
 
 _SHARE: Final = re.compile(r"""\$\(find-pkg-share\s+["']?([\w-]+)["']?\s*\)""")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.commands.shell.command_line import Command, Option
+from btq_lang.commands.shell import Command, Option
 
 
 def script(commands: tuple[Command, ...]) -> str:

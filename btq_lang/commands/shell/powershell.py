@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from btq_lang.commands.shell.command_line import Command, valued_options
+from btq_lang.commands.shell import Command, valued_options
 
 
 def script(commands: tuple[Command, ...]) -> str:
