@@ -54,13 +54,8 @@ class Built(Record):
 
 
 def as_built(path: str, source: Source, called: Callable[[str], str] = shown) -> Built | None:
-    """The mission of an XML file; None if it has no side file, or one that belongs to another file.
-
-    Args:
-        path: of the XML.
-        source: where both are read.
-        called: gives the name under which a file of the source is shown.
-    """
+    """The mission of an XML file; None if it has no side file, or one that belongs to another file; `called` gives the
+    name under which a file of the source is shown."""
     side = side_path(path)
     if path == side or not path.endswith(".xml") or not source.is_file(side):
         return None

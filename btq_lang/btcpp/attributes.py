@@ -21,12 +21,8 @@ def attributes_of(
     builtin: NodeKind | None = None,
     label: Word | None = None,
 ) -> list[Attribute]:
-    """The attributes for the pairs in brackets.
-
-    Args:
-        builtin: the node that has these ports; gives their units.
-        label: written before them, as `name`.
-    """
+    """The attributes for the pairs in brackets, after a label, which is the `name`; `builtin`: has the units
+    of ports."""
     attributes = [] if label is None else [Attribute("name", spelt(label))]
     for pair in pairs:
         value = pair.value

@@ -22,11 +22,7 @@ def bundle(
     target: str | None = None,
     verbatim: bool = False,
 ) -> Export:
-    """A file and all that is registered with it, XML files too, as one document; the others come first.
-
-    Args:
-        target, verbatim: as of `export`.
-    """
+    """A file and all that is registered with it, XML files too, as one document; the others come first."""
     paths = workspace.registered_with(path)
     exports = [
         export(workspace, each, target=target, verbatim=verbatim, included_as=lambda _: _IN_BUNDLE, is_bundled=True)

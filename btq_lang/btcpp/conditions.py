@@ -79,9 +79,6 @@ def condition_script(condition: Condition, stored: Stored) -> str:
 def table_script(table: Table, spelt: Callable[[Bounded], str], stored: Stored) -> str:
     """The script that gives the value of the first case that holds.
 
-    Args:
-        spelt: writes a value.
-
     Raises:
         NoScript: with the reason.
     """

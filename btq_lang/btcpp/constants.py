@@ -24,12 +24,7 @@ from btq_lang.workspace.workspace import Scope
 
 
 def fitting(types: tuple[str, ...], raw: str) -> str:
-    """A constant for a port of a subtree, spelt so that the nodes below accept it.
-
-    Args:
-        types: the port's `types_below`.
-        raw: the text between the quotes of the attribute.
-    """
+    """A constant for a port of a subtree, spelt so that the nodes below, which read it as these types, accept it."""
     if not types or not is_number(raw) or any(map(is_text, types)):
         return raw
     is_whole = _WHOLE.fullmatch(raw) is not None
@@ -43,11 +38,7 @@ def fitting(types: tuple[str, ...], raw: str) -> str:
 
 
 def types_below(scope: Scope, target: str, tree: str, port: str) -> tuple[str, ...]:
-    """The types as which a port is read in its tree or in those below; if there are none, the declared one.
-
-    Args:
-        target: the version of the engine.
-    """
+    """The types as which a port is read in its tree or in those below; if there are none, the declared one."""
     met = tuple(dict.fromkeys(meeting.type for meeting in meetings(scope, target, tree, port)))
     found = scope.find(Kind.TREE, tree)
     if met or found is None or not isinstance(found.symbol.target, Tree):

@@ -106,9 +106,6 @@ class Judge:
     ) -> tuple[Guarded, dict[str, str]]:
         """What enforces a clause, and the first values of the signals that its scripts read.
 
-        Args:
-            name, stop: as for `guarded`.
-
         Raises:
             NotEnforced: the engine cannot do it.
         """

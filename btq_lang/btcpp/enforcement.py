@@ -97,11 +97,7 @@ class _Plan(Record):
 
 
 def enforced(workspace: Workspace, path: str, export: Export, bundled: bool = False) -> Enforcement:
-    """Add to a file's export, in place, what its requirements need.
-
-    Args:
-        bundled: whether the export has all that the file includes.
-    """
+    """Add to a file's export, which may have all that the file includes, in place what its requirements need."""
     if not _has_requirements(workspace, path):
         return Enforcement(export, ())
     found = requirements(workspace, path)
@@ -122,9 +118,6 @@ def clause_enforcements(
     workspace: Workspace, path: str, bundled: bool = False
 ) -> tuple[tuple[ClauseEnforcement, ...], ...]:
     """For each of `requirements(workspace, path).applied`, in its order, how its clauses are enforced in the build.
-
-    Args:
-        bundled: as of `enforced`.
 
     Raises:
         KeyError: there is no such file.
@@ -176,12 +169,7 @@ def _plans(
 def _plan(
     workspace: Workspace, found: Requirements, path: str, files: frozenset[str], others: Sequence[_Plan]
 ) -> _Plan:
-    """The plan for some of the files that a file sees.
-
-    Args:
-        files: that are written.
-        others: the plans of the other files.
-    """
+    """The plan for some of the files that a file sees."""
     planner = _Planner(workspace, found, path, files, others)
     clauses = tuple(
         tuple([planner.enforce(applied, claim) for claim in applied.requirement.claims]) for applied in found.applied

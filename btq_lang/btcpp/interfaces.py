@@ -56,12 +56,8 @@ class Interface(Record):
 
 
 def interfaces(workspaces: Iterable[Workspace], version: str, unknown: Container[str]) -> dict[str, Interface]:
-    """The nodes that the files of some workspaces know, by name: the engine's in its order, then the others by name.
-
-    Args:
-        version: of the engine.
-        unknown: names that are used and that the checks call unknown; they are left out unless a model declares them.
-    """
+    """The nodes that the files of some workspaces know, by name: the engine's in its order, then the others by name,
+    without those that the checks call unknown unless a model declares them."""
     found = {kind.tag: _of_engine(kind, version) for kind in BUILTINS.values() if available(kind, version)}
     declared: dict[str, Interface] = {}
     used: dict[str, Interface] = {}

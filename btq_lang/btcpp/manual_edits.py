@@ -54,12 +54,7 @@ def node_guards(root: Element) -> Iterator[NodeGuards]:
 
 
 def manual_edits(root: Element, built: Iterable[NodeGuards]) -> tuple[ManualEdit, ...]:
-    """The manual edits since a build, in the order of the file.
-
-    Args:
-        root: of the XML as it is now.
-        built: the guards as they were built.
-    """
+    """The manual edits since a build, in the order of the file."""
     built = tuple(built)
     known = {guard for each in built for guard in each.guards}
     marked = {_name(each): each for each in root.walk() if each.get(MARK) is not None and _name(each)}

@@ -16,11 +16,8 @@ DESCRIPTION_MARK: Final = "[btq]"
 
 
 def generated_mark(source: str) -> str:
-    """The text of the comment that a generated file begins with: `<!--` + this + `-->`.
-
-    Args:
-        source: the name of the file it was made from, without folders.
-    """
+    """The text of the comment that a generated file begins with: `<!--` + this + `-->`; `source`: a name without
+    folders."""
     return f"{_BEGIN}{source.replace('--', '- -')}{_END}"
 
 

@@ -96,11 +96,8 @@ class Models:
         self.trees: Final[list[tuple[Entry, Tree]]] = []
 
     def rest(self, source: Source, others: Iterable[Element]) -> list[Content]:
-        """The contents to write last, in a TreeNodesModel of the file or else in a new one.
-
-        Args:
-            others: models that the file does not have itself.
-        """
+        """The contents to write last, with models that the file does not have itself, in a TreeNodesModel of the file
+        or else in a new one."""
         for entry, tree in self.trees:
             self._add_ports(source, entry, tree)
         self.loose.extend(others)

@@ -108,12 +108,8 @@ def as_xml(
     enforce: bool = True,
     included_as: IncludedAs | None = None,
 ) -> Enforcement:
-    """A file as a build writes it; without the nodes that enforce requirements if the file cannot be written.
-
-    Args:
-        bundled, verbatim, enforce: as for `outputs`.
-        included_as: as for `export`; not for a bundle.
-    """
+    """A file as a build writes it, see `outputs`; without the nodes that enforce requirements if the file cannot be
+    written."""
     if bundled:
         done = bundle(workspace, path, verbatim=verbatim)
     else:

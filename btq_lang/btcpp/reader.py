@@ -57,11 +57,7 @@ class Read(Record):
 
 
 def read(text: str) -> Read:
-    """Read an XML file.
-
-    Args:
-        text: any string at all.
-    """
+    """Read an XML file, any string at all."""
     nul = text.find("\0")
     if 0 <= nul < text.rfind(">"):
         message = "unexpected NUL character: the engine stops reading here"
@@ -178,12 +174,7 @@ class _Reader:
         return name, attributes, slash == "/", end - start, has_text
 
     def other(self, start: int, last_end: int, contents: list[Content], is_first: bool) -> int:
-        """Read what begins with `<` but is not a tag; return where it ends.
-
-        Args:
-            last_end: the end of what was read last.
-            is_first: whether nothing precedes it.
-        """
+        """Read what begins with `<` but is not a tag; return where it ends."""
         text = self.text
         if text.startswith("<!--", start):
             return self.comment(start, last_end, contents)

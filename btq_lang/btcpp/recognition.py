@@ -14,11 +14,7 @@ from btq_lang.util.record import Record
 
 
 def may_be_mission(head: str) -> bool:
-    """Whether a file that begins with a text may be XML of the engine.
-
-    Args:
-        head: some characters, or all of them.
-    """
+    """Whether a file that begins with a text, or is that text, may be XML of the engine."""
     rest = head[_prolog(head) :]
     return rest[:2] in ("", "<", "<!", "<?") or rest.startswith("<root") or "<root".startswith(rest)
 

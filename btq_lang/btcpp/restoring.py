@@ -75,13 +75,8 @@ class Lost(Record):
 
 
 def restored(xml: str, imported: str, side: str) -> Restored | None:
-    """A mission from the XML that was built from it, edited or not; None if the side file cannot be read.
-
-    Args:
-        xml: the XML file as it is now.
-        imported: its import, without the marks of a build.
-        side: the side file.
-    """
+    """A mission from the XML that was built from it, edited or not, and its import without the marks of a build; None
+    if the side file cannot be read."""
     import hashlib
     import json
 

@@ -31,11 +31,7 @@ class OfElements(Record):
 
 
 def said_in_xml(workspace: Workspace, path: str, side: str | None) -> OfElements:
-    """What the side file says of each element, else the lines that the build has described at it.
-
-    Args:
-        side: the text of the side file of an XML file; None if there is none.
-    """
+    """What the side file of an XML file says of each element, else the lines that the build has described at it."""
     origin = workspace.files[path].origin
     found = OfElements("", {})
     if origin is None:
@@ -49,11 +45,7 @@ def said_in_xml(workspace: Workspace, path: str, side: str | None) -> OfElements
 
 @lru_cache(maxsize=2)  # a request for each move of the mouse
 def of_elements(side: str, xml: str, included: tuple[str, ...]) -> OfElements:
-    """What a side file says of the elements of its XML.
-
-    Args:
-        included: the XML that `xml` includes.
-    """
+    """What a side file says of the elements of its XML, which includes other XML."""
     import hashlib
     import json
 

@@ -14,13 +14,8 @@ from btq_lang.util.text import LineIndex, Position, Span
 
 
 def not_well_formed(text: str, with_prefixes: bool = False) -> tuple[Diagnostic, ...] | None:
-    """A warning at the place where lxml refuses a text; None if it reads it.
-
-    Empty if lxml only reached limits of its own, which XML does not have.
-
-    Args:
-        with_prefixes: check prefixes of names too, which takes three times as long.
-    """
+    """A warning at the place where lxml refuses a text, with prefixes of names, which takes three times as long, or
+    without; None if it reads it, empty if it only reached limits of its own, which XML does not have."""
     from lxml import etree
 
     parser = etree.XMLParser(

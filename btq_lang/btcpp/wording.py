@@ -21,11 +21,8 @@ from btq_lang.syntax.tree import is_name
 
 
 def value(raw: str) -> str:
-    """A Value: blackboard entries and numbers bare, everything else in quotes.
-
-    Args:
-        raw: the text between the quotes of the XML.
-    """
+    """A Value for the text between the quotes of the XML: blackboard entries and numbers bare, everything else in
+    quotes."""
     match = _SIMPLE(raw)
     if match is not None:
         return raw if match.lastindex else f'"{raw}"'

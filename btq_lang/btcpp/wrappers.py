@@ -19,11 +19,8 @@ MOVED: Final = "_btq_moved"
 
 
 def wrapped(element: Element, wrappers: Sequence[Wrapper]) -> Element:
-    """The outermost of the elements around a node's, which takes over the conditions by which the node may be skipped.
-
-    Args:
-        wrappers: at least one, in the order of the definitions of the requirements.
-    """
+    """The outermost of the elements around a node's, which takes over the conditions by which the node may be skipped;
+    at least one wrapper, in the order of the definitions of the requirements."""
     ordered = sorted(wrappers, key=lambda wrapper: wrapper.rank)
     moved = _moved(element)
     made = element
@@ -37,10 +34,7 @@ def wrapped(element: Element, wrappers: Sequence[Wrapper]) -> Element:
 
 def unwrapped(element: Element, holding: Container[Element]) -> list[Content] | None:
     """The contents of a wrapper: the node as it was, with the comments around it, and nothing for an added Script or
-    ScriptCondition; None if a user has added another node.
-
-    Args:
-        holding: the elements of the document that hold a node.
+    ScriptCondition; None if a user has added another node.  `holding`: the elements of the document that hold a node.
     """
     nodes = [child for child in element.elements if child in holding]
     if len(nodes) > 1:

@@ -24,12 +24,7 @@ if TYPE_CHECKING:
 
 
 def xsd(workspaces: Sequence[Workspace], version: str, unknown: Container[str]) -> str:
-    """The schema of XML files with the nodes of some workspaces.
-
-    Args:
-        version: of the engine.
-        unknown: names that are used and that the checks call unknown.
-    """
+    """The schema of XML files with the nodes of some workspaces, without names that the checks call unknown."""
     nodes = interfaces(workspaces, version, unknown)
     remark = f" The nodes of BehaviorTree.CPP {version} and of this project, by btq schema xsd. "
     schema = _x(

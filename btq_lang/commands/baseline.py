@@ -34,11 +34,8 @@ def compared(
     findings: Sequence[Finding], groups: Iterable[Group], options: CheckOptions, is_whole: bool
 ) -> tuple[list[Finding], int, tuple[LoadProblem, ...]]:
     """The findings that are not in the baseline of the command line, or else of the project of their file; the number
-    of the others; and what is wrong with baselines.  With `--update-baseline`, they are written first.
-
-    Args:
-        is_whole: whether all files could be read; otherwise nothing is written.
-    """
+    of the others; and what is wrong with baselines.  With `--update-baseline`, they are written first if `is_whole`:
+    all files could be read."""
     checked: dict[str, set[str]] = {}
     for group in groups:
         path = absolute(options.baseline) if options.baseline else group.project.baseline

@@ -139,11 +139,8 @@ def cpp_file(
     diagnostics: tuple[Diagnostic, ...],
     before: File | None = None,
 ) -> File:
-    """A C++ source with the models of the nodes that it registers.
-
-    Args:
-        before: the file before an edit, with which this one shares what is the same.
-    """
+    """A C++ source with the models of the nodes that it registers; it shares with the file before an edit what is the
+    same."""
     models = models_in_btq(map(_certain, nodes.values()), f"the nodes that {path} registers") if nodes else ""
     places = Places((), (), lambda *_: tuple(_pieces(models, path, text, nodes)))
     # Not complete: most of what is in the C++ is not in the models, and neither can be edited by the other.

@@ -34,11 +34,6 @@ def resolved(
     """A factory with its files, and with the patterns that match none, as their package may not be here.
 
     XML that was built of a mission that is there counts as that mission; XML that is not the engine's is left out.
-
-    Args:
-        root: the folder that patterns are relative to.
-        xml: what is known of the XML files.
-        find: finds the files that match a pattern below a folder.
     """
     lost: dict[str, None] = {}
 
@@ -68,11 +63,7 @@ def resolved(
 
 
 def in_folder(pattern: str, root: str, find: Callable[[str, str], tuple[str, ...]]) -> tuple[str, ...]:
-    """The files that a pattern matches below a folder, or in a package.
-
-    Args:
-        find: as in `resolved`.
-    """
+    """The files that a pattern matches below a folder, or in a package."""
     folder, inside = _place(pattern, root)
     return find(folder, inside) if folder is not None else ()
 

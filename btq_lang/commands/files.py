@@ -75,11 +75,7 @@ def usage_problem(paths: Iterable[str]) -> str | None:
 
 
 def no_mission_below(paths: Iterable[str], groups: Iterable[Group], missing: str = "no .btq file") -> str | None:
-    """The message if folders were requested and none contains a mission.
-
-    Args:
-        missing: what was looked for, for the message.
-    """
+    """The message if folders were requested and none contains a mission."""
     folders = [path.rstrip("/") + "/" for path in paths if os.path.isdir(path)]
     if not folders or any(group.given for group in groups):
         return None
@@ -185,12 +181,7 @@ class Files:
     def _groups_of(
         self, tops: Mapping[str, str], home: Found, project_of: Callable[[str], Found], for_checks: bool
     ) -> tuple[list[Group], list[LoadProblem]]:
-        """The requested files of one project, by factory.
-
-        Args:
-            tops: those files, each with the folder in which it was requested.
-            project_of: returns the project of a file.
-        """
+        """The requested files of one project, by factory; `tops`: each with the folder in which it was requested."""
         factories, problems = self._factories(home)
         if home.project.cpp or any(each.cpp_files for each in factories):
             sources = self._sources[home.path or ""] = self.cpp.read(home, factories)
@@ -360,11 +351,8 @@ class Files:
 
 
 def _by_factory(group: Group, factories: Iterable[Factory], in_each: bool) -> Iterator[Group]:
-    """The requested files of a project that its factories register, a group for each factory that has any.
-
-    Args:
-        in_each: a file that several factories register belongs to each of them, and not only to the first.
-    """
+    """The requested files of a project that its factories register, a group for each factory that has any; a file that
+    several register belongs to the first, or `in_each` to each."""
     taken: set[str] = set()
     whole = group.workspace
     for factory in factories:

@@ -48,11 +48,8 @@ def fix(groups: Iterable[Group], is_wanted: Callable[[Diagnostic], bool]) -> tup
 def write_fixes(
     before: Iterable[Group], after: Iterable[Group], stdin: str | None
 ) -> tuple[tuple[Group, ...], tuple[LoadProblem, ...]]:
-    """Write what differs, and the new text of standard input to standard output; returns the groups as they are then.
-
-    Args:
-        stdin: the path assigned to standard input.
-    """
+    """Write what differs, and the new text of standard input to standard output; returns the groups as they
+    are then."""
     done: list[Group] = []
     trouble: list[LoadProblem] = []
     finished: dict[str, File] = {}

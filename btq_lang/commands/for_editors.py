@@ -12,11 +12,8 @@ from btq_lang.commands.files import Files
 
 
 def build_open(path: str, texts: Mapping[str, str]) -> tuple[int, tuple[str, ...], str]:
-    """`btq build` of one mission: the exit code, the built files, and the printed messages.
-
-    Args:
-        texts: override files on the disk, by path.
-    """
+    """`btq build` of one mission: the exit code, the built files, and the printed messages; texts of open files replace
+    those on the disk."""
     options = build_parser().parse_args(["build", "--color", "never", path])
     options.report = "concise"
     files = Files()

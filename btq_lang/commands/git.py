@@ -81,11 +81,7 @@ class Revisions:
 
     def workspace(self, commit: str, path: str, known: dict[str, str] | None = None) -> Workspace | None:
         """A file of a commit with all its includes there, in the first factory of today's project file that registers
-        it; None if the commit has no such file.
-
-        Args:
-            known: texts that override those of the commit, by path.
-        """
+        it; None if the commit has no such file."""
         project = find_project(path).project
         if known is None:  # else the file is built XML, restored in memory
             of_factory = next((each for each in self._factories(commit, project) if path in each.registered), None)

@@ -226,9 +226,6 @@ def patterns(folder: str, paths: Collection[str], others: Collection[str]) -> It
 
     A folder that has several of the files, and no other XML of the engine, is one pattern; with the folders below it,
     if that is true of them too.
-
-    Args:
-        others: the rest of the engine's XML.
     """
     known = XmlBelow()
     taken: set[str] = set()
@@ -267,10 +264,7 @@ def _folders(path: str, top: str) -> Iterator[str]:
 
 def nav2_line(workspace: Workspace, holds: Callable[[str], bool]) -> str:
     """The line of a project file that names Nav2's nodes, a comment if it is unknown which; empty if XML uses none.
-
-    Args:
-        holds: whether such a line may be written, as far as its effect on the project is concerned.
-    """
+    `holds`: whether a line may be written, as far as its effect on the project is concerned."""
     used = _used(workspace)
     if not any(used.values()):
         return ""  # a `Wait` alone may be anybody's

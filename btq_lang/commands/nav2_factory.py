@@ -98,11 +98,8 @@ class ParameterFile(Record):
 def parameter_file(
     factory: Factory, project: Project, project_file: str | None, sources: Sources
 ) -> tuple[ParameterFile | None, LoadProblem | None]:
-    """The parameter file of a factory, or why it could not be read.
-
-    Args:
-        factory: with its files resolved; they are those that goals name.
-    """
+    """The parameter file of a factory, or why it could not be read; the files of the factory are those that
+    goals name."""
     path = absolute(os.path.join(project.root, factory.nav2))
     known = sources.known(path)
     text, problem = (known, None) if known is not None else read(path)

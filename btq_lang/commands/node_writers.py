@@ -16,11 +16,7 @@ MADE_BY = "made by `btq nodes`"
 
 
 def as_btq(nodes: Iterable[CppNode], sources: str) -> str:
-    """The models in btq's language; an input that the code is seen to do without has an empty default.
-
-    Args:
-        sources: what the nodes were read from.
-    """
+    """The models in btq's language; an input that the code is seen to do without has an empty default."""
     return models_in_btq(map(_with_optional_inputs, nodes), _headline(sources))
 
 

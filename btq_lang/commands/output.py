@@ -54,11 +54,7 @@ def mission_problem(option: str, path: str | None, form: str | None) -> str | No
 
 
 def write_output(command: str, path: str | None, text: str) -> int:
-    """Write a text; returns the command's exit code.
-
-    Args:
-        path: the file; None or `-`: standard output.
-    """
+    """Write a text to a file, or (None, `-`) to standard output; returns the command's exit code."""
     if path is None or path == "-":
         write_stdout(text)
         return 0

@@ -32,11 +32,7 @@ class Progress:
         self.reached(self._done + 1)
 
     def reached(self, done: int, more: str = "") -> None:
-        """Set the number of steps done.
-
-        Args:
-            more: a further text to show.
-        """
+        """Set the number of steps done."""
         self._done = done
         if self._done < self._total and monotonic() >= self._next and sys.stderr.isatty():
             self._next = monotonic() + _PAUSE

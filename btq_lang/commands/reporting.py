@@ -52,11 +52,8 @@ def report_problem(options: CheckOptions) -> str | None:
 
 
 def write_report(report: Report, options: CheckOptions, mended: int) -> bool:
-    """Write the report where the options say; False if that failed, with the reason on standard error.
-
-    Args:
-        mended: the number of applied fixes.
-    """
+    """Write the report where the options say, with the number of applied fixes; False if that failed, with the reason
+    on standard error."""
     form = form_of(options, os.environ)
     # With --fix, standard output has the new text of standard input, so the report goes to standard error.
     stream = sys.stderr if options.fix and STDIN in options.paths else sys.stdout

@@ -24,11 +24,8 @@ if TYPE_CHECKING:
 
 
 def moving(groups: Iterable[Group], target: str) -> tuple[Group, ...]:
-    """The groups, to be checked for a target too.
-
-    Args:
-        target: a version of the engine, or as a project names its nodes: `nav2-lyrical`.
-    """
+    """The groups, to be checked for a target too: a version of the engine, or as a project names its nodes,
+    `nav2-lyrical`."""
     return tuple(replace(group, workspace=with_target(group.workspace, target)) for group in groups)
 
 

@@ -16,11 +16,7 @@ from btq_lang.util.text import LineIndex
 
 
 def findings(found: CppNodes, texts: Mapping[str, str]) -> dict[str, tuple[Diagnostic, ...]]:
-    """The diagnostics of some files, by path; those without any are left out.
-
-    Args:
-        texts: of the files, by path.
-    """
+    """The diagnostics of some files, by path; those without any are left out."""
     lines: dict[str, LineIndex] = {}
     of_path: dict[str, list[Diagnostic]] = {}
     for rule, place, message in _all(found):

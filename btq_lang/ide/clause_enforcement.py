@@ -19,12 +19,7 @@ _MOST_NODES = 4
 
 def enforcement_lines(workspace: Workspace, path: str, found: Definition, *, is_attached: bool) -> str:
     """A line for each clause: enforced, monitored or reviewed, with the node if that differs between nodes, and why;
-    empty if the requirement applies to nothing.
-
-    Args:
-        path: the file with the hover; if it is a part of missions, some of those are planned.
-        found: the requirement.
-        is_attached: whether something refers to it.
+    empty if the requirement applies to nothing.  If the file `path` is a part of missions, some of those are planned.
     """
     item = found.symbol.target
     assert isinstance(item, Requirement), "a requirement's symbol defines one"

@@ -15,12 +15,8 @@ from btq_lang.util.record import replace
 
 
 def listed(proposals: Sequence[Proposal], typed: str, asked: bool) -> tuple[Proposal, ...]:
-    """The entries of the list, best first.
-
-    Args:
-        typed: the part of the word before the cursor.
-        asked: whether the user requests the list; otherwise it opens by itself, but never at a complete word.
-    """
+    """The entries of the list, best first.  If nobody `asked` for it, it opens by itself, but never at a
+    complete word."""
     begun = _begun(proposals)
     is_word = any(one.label == typed and one.kind != "snippet" for one in proposals)
     if is_word and not asked and typed.lower() not in begun:
@@ -34,11 +30,8 @@ def listed(proposals: Sequence[Proposal], typed: str, asked: bool) -> tuple[Prop
 
 
 def _entries(one: Proposal, typed: str, asked: bool, is_found: bool) -> Iterator[Proposal]:
-    """The entries of one proposal: none, the proposal, or also its bare word.
-
-    Args:
-        is_found: whether an editor finds the word in another one.
-    """
+    """The entries of one proposal: none, the proposal, or also its bare word, if an editor finds the word in another
+    one."""
     if one.kind in ("keyword", "snippet") and one.label[:1].islower() and typed[:1].isupper():
         return  # editors ignore case; a name that is not a keyword begins here
     if one.kind == "snippet":

@@ -8,11 +8,8 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def cpp_place(workspace: Workspace, path: str, node: str, port: str = "") -> tuple[str, Span] | None:
-    """The class of a node, or one of its ports: the path, and the span as `File.on_disk` takes it.
-
-    Args:
-        path: of the file that uses the node; None is returned if no C++ in its scope registers it.
-    """
+    """The class of a node, or one of its ports: the path, and the span as `File.on_disk` takes it; None if no C++ in
+    the scope of the file registers it."""
     models = workspace.scope(path).all(Kind.MODEL, node)
     registered = (origin.nodes for each in models if (origin := workspace.files[each.path].origin) is not None)
     found = next((nodes[node] for nodes in registered if nodes is not None and node in nodes), None)

@@ -93,11 +93,7 @@ def tree(workspace: Workspace, path: str, name: str) -> str:
 
 def requirement(workspace: Workspace, path: str, found: Definition) -> str:
     """A requirement as it is written, with its values in SI units, its quality, what a build does about each clause,
-    and where it is used.
-
-    Args:
-        path: the file with the hover.
-    """
+    and where it is used."""
     item = found.symbol.target
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
     lines = [f"**{found.symbol.name}**{_parameters(workspace, found, item)}"]
@@ -303,11 +299,7 @@ def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str 
 
 
 def include_edits(workspace: Workspace, path: str, other: str) -> tuple[Edit, ...]:
-    """The edits that add a proposal to the file's scope.
-
-    Args:
-        other: the file that defines it; empty if it is in scope.
-    """
+    """The edits that add a proposal to the file's scope; `other`: the file that defines it, empty if it is in scope."""
     if other not in workspace.files:
         return ()
     at, line = include_line(head(workspace.store, path), path, other)

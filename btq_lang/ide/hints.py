@@ -81,10 +81,6 @@ def code_lenses(
 
     As a reader counts: a requirement that is defined at a node is used there, and has a lens only if there are more
     uses; the `Root` that names the main tree does not call it.
-
-    Args:
-        side: the text of the side file of an XML file, if it has one.
-        evidence: what logs show of the project's requirements, if there are any.
     """
     found: list[Lens] = []
     for place in workspace.defined_in(path):

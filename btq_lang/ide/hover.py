@@ -36,12 +36,7 @@ def hover(
 ) -> Hover | None:
     """The hover at a place: a node with its ports and semantics, a requirement with its text and its nodes, a quality
     with its definition, an entry with its readers and writers, a quantity in SI units, a rule's page, a word of the
-    language.
-
-    Args:
-        side: the text of the side file of an XML file, if it has one.
-        evidence: what logs show of the project's requirements, if there are any.
-    """
+    language."""
     found = at(workspace, path, offset)
     if found is None:
         return _word_of_the_language(workspace.files[path], offset)

@@ -132,11 +132,7 @@ def home_of(found: Definition) -> str:
 
 
 def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | None = None) -> Iterator[Found]:
-    """Every reference to a subject, file by file, in the order of their texts.
-
-    Args:
-        paths: the files to look in; None: all.
-    """
+    """Every reference to a subject in some files, or in all, file by file, in the order of their texts."""
     words = _spellings(wanted)
     for path in paths if paths is not None else _paths(workspace, wanted):
         file = workspace.files[path]

@@ -12,11 +12,8 @@ from btq_lang.workspace.workspace import Workspace
 
 
 def moved_files(workspace: Workspace, moves: Mapping[str, str]) -> dict[str, tuple[Edit, ...]]:
-    """The edits, by the old paths of files, that keep every include leading to the same file.
-
-    Args:
-        moves: new paths of files and folders by old ones.
-    """
+    """The edits, by the old paths of files, that keep every include leading to the same file; `moves`: new paths of
+    files and folders by old ones."""
     new = {path: _after(path, moves) for path in workspace.files}
     edits: dict[str, tuple[Edit, ...]] = {}
     for path, file in workspace.files.items():

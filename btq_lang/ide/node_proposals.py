@@ -117,11 +117,8 @@ def port_values(workspace: Workspace, path: str, entry: Entry | None, port: Node
 
 
 def in_script(workspace: Workspace, path: str, entry: Entry, before: str) -> tuple[int, tuple[Proposal, ...]]:
-    """What may follow in a script of an item, and how many characters before the cursor it replaces.
-
-    Args:
-        before: the part of the script before the cursor.
-    """
+    """What may follow in a script of an item after its part before the cursor, and how many characters of that it
+    replaces."""
     begun = re.search(r"@?\w*$", before)
     word = begun[0] if begun else ""
     others = () if word.startswith("@") else words(("true", "false"), "keyword")

@@ -56,11 +56,7 @@ def prepare_rename(workspace: Workspace, path: str, offset: int) -> Renamable | 
 
 
 def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming | Refusal:
-    """The edits that rename what the word at a place means.
-
-    Args:
-        name: without quotes, which are added where needed.
-    """
+    """The edits that rename what the word at a place means; the new name gets quotes where needed."""
     ready = prepare_rename(workspace, path, offset)
     found = at(workspace, path, offset)
     if isinstance(ready, Refusal) or found is None:

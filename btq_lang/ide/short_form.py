@@ -23,11 +23,8 @@ _Rewrites: TypeAlias = Mapping[int, tuple[Edit, ...]]
 def short_form(
     workspace: Workspace, path: str, offset: int, found: Sequence[Diagnostic] | None = None
 ) -> Iterator[Refactoring]:
-    """The refactorings of the node at a place, and of the whole file, to the short form, unless they have it already.
-
-    Args:
-        found: the diagnostics of the file, if they are known already.
-    """
+    """The refactorings of the node at a place, and of the whole file, to the short form, unless they have it
+    already."""
     file = workspace.files[path]
     entry = entry_at(workspace, path, offset)
     if entry is None or file.origin is not None:

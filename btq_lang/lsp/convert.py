@@ -122,11 +122,7 @@ class Converter:
     def workspace_edit(
         self, workspace: Workspace, edits: Mapping[str, Iterable[Edit]], versions: Mapping[str, int] | None
     ) -> types.WorkspaceEdit:
-        """A workspace edit of several files.
-
-        Args:
-            versions: of the open files; None: the editor does not support versions here.
-        """
+        """A workspace edit of several files, with the versions of open ones, if the editor supports versions here."""
         changes = {path: self.edits(workspace, path, made) for path, made in edits.items()}
         if versions is None:
             return types.WorkspaceEdit(changes={self.uri(path): made for path, made in changes.items()})
@@ -289,12 +285,7 @@ def _template(
     tags: tuple[Tag, ...],
     related: tuple[tuple[str, str], ...],
 ) -> str:
-    """A diagnostic as a JSON object, with `%d` in place of lines and columns.
-
-    Args:
-        severity: None: that of the rule.
-        related: the URI and the message of each.
-    """
+    """A diagnostic as a JSON object, with `%d` in place of lines and columns."""
     members = {
         "message": "\n".join((message, *notes)),
         "severity": _SEVERITIES[severity or RULES[rule].severity],

@@ -255,11 +255,7 @@ class Server(LanguageServer):
 
     def at(self, document: types.TextDocumentIdentifier, *, reads: bool = False) -> tuple[Workspace, str] | None:
         """The workspace and the path of a document; None if it is unknown, C++, XML that is not the engine's, or any
-        XML.
-
-        Args:
-            reads: the request changes nothing and its result has places that `convert.range` maps, so XML is allowed.
-        """
+        XML unless the request `reads`: it changes nothing, and its result has places that `convert.range` maps."""
         path = self.convert.path(document.uri)
         workspace = self.session.workspace_of(path)
         if workspace is None or workspace.files[path].is_cpp:

@@ -36,11 +36,7 @@ class Loaded(Record):
 def findings(
     parameters: Parameters, distribution: str, found: Iterable[Loaded]
 ) -> Iterator[tuple[str | None, Diagnostic]]:
-    """All that is wrong, with the file that it is in; None: the parameter file.
-
-    Args:
-        found: all trees that bt_navigator creates.
-    """
+    """All that is wrong, with the file that it is in; None: the parameter file."""
     found = tuple(found)
     libraries = Libraries(parameters, distribution)
     all_found: list[tuple[str | None, Diagnostic]] = []

@@ -129,11 +129,8 @@ class Loads:
         return self._searched(os.path.basename(path), Located(None, path))
 
     def of_goal(self, name: str, is_replaced: bool) -> Load:
-        """The tree that goals name: by the path of a file, or in Lyrical by its ID.
-
-        Args:
-            is_replaced: whether a launch file replaces `$(…)` in the name.
-        """
+        """The tree that goals name: by the path of a file, in which a launch file may replace `$(…)`, or in Lyrical by
+        its ID."""
         named = Text(name, Span(0, 0))
         if self._folders is not None and (is_id(name) or not (is_replaced or name.endswith(".xml"))):
             return self._searched(name, None, named)
