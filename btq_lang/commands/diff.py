@@ -13,7 +13,7 @@ from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of
 from btq_lang.btcpp.recognition import is_mission
 from btq_lang.commands.files import STDIN, Files, Group
-from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
+from btq_lang.commands.git import Commit, GitTrouble, revisions
 from btq_lang.commands.opening import Disk
 from btq_lang.commands.output import is_coloured
 from btq_lang.diagnostics.rules import Severity
@@ -208,21 +208,21 @@ def _of_revisions(options: Namespace) -> Iterator[Comparison]:
     for path in map(absolute, options.paths or ["."]):
         known = revisions(options.git, path)
         if not os.path.isdir(path) and not known.had_folder(path):
-            sides = _revised(known, known.old, path, True), _revised(known, known.new, path, True)
+            sides = _revised(known.old, path, True), _revised(known.new, path, True)
             if sides == (NOWHERE, NOWHERE):
-                where = known.names[known.new] if known.new is not None else "here"
-                raise Trouble(f"{shown(path)}: no such file in {known.names[known.old]} or {where}")
+                where = known.new.name if known.new is not None else "here"
+                raise Trouble(f"{shown(path)}: no such file in {known.old.name} or {where}")
             yield without_made_models(compared(*sides))
             continue
         for before, after in known.changed(path):
-            yield compared(_revised(known, known.old, before, False), _revised(known, known.new, after, False))
+            yield compared(_revised(known.old, before, False), _revised(known.new, after, False))
 
 
-def _revised(known: Revisions, revision: str | None, path: str | None, with_includes: bool) -> Side:
-    """A file at a revision; None: the working tree."""
+def _revised(commit: Commit | None, path: str | None, with_includes: bool) -> Side:
+    """A file in a commit; None: in the working tree."""
     if path is None:
         return NOWHERE
-    if revision is None:
+    if commit is None:
         if not os.path.exists(path):
             return NOWHERE
         side = _built_on_disk(path)
@@ -230,13 +230,12 @@ def _revised(known: Revisions, revision: str | None, path: str | None, with_incl
             return side if with_includes else _by_itself(side, os.path.isfile)
         group = _groups([path])[0]
         return Side(shown(path), group.workspace, group.workspace.closure(path) if with_includes else (path,), shown)
-    name = _named(known.names[revision])
-    commit = Commit(known, revision)
+    name = _named(commit.name)
     built = as_built(path, commit, name)
     if built is not None:
         side = _side(name(path), built)
         return side if with_includes else _by_itself(side, commit.is_file)
-    workspace = known.workspace(revision, path)
+    workspace = commit.workspace(path)
     if workspace is None:
         return NOWHERE
     return Side(name(path), workspace, workspace.closure(path) if with_includes else (path,), name)

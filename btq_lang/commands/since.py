@@ -102,8 +102,8 @@ class _Concerned:
     def _defined(self, path: str, name: str) -> bool:
         """Whether a changed file may have defined a tree or a node at the revision."""
         if path.endswith(SUFFIXES):
-            return name in (self._known.text(self._known.old, path) or "")
+            return name in (self._known.old.text(path) or "")
         if path not in self._defined_before:
-            text = self._known.text(self._known.old, path) if path.endswith(XML_SUFFIXES) else None
+            text = self._known.old.text(path) if path.endswith(XML_SUFFIXES) else None
             self._defined_before[path] = defined_in(text or "")
         return name in self._defined_before[path]
