@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os.path
 from collections.abc import Callable, Iterator
-from functools import partial
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import FILES, distribution_among
@@ -94,6 +93,21 @@ class ParameterFile(Record):
         named = [each.path for each in places if each.path is not None]
         return frozenset((self.path, *named, *(path for load in loads for path in load.files)))
 
+    def factory_of(self, load: Load) -> Factory:
+        """The factory for one of the trees that are created."""
+        parameters, distribution, nodes = self.parameters, self.distribution, self.factory.node_files
+        if distribution is not None and distribution_among(nodes) is None:
+            nodes = (*nodes, FILES[distribution])
+        return replace(
+            self.factory,
+            name=f"{self.factory.name} ({load.label})",
+            files=tuple(dict.fromkeys(self.sources.source_of(each) or each for each in load.files)),
+            node_files=nodes,
+            nav2=self.path,
+            has_gaps=distribution is None or not load.is_whole or bool(load.refused),
+            entries=parameters.entries(distribution) if parameters is not None and distribution is not None else (),
+        )
+
 
 def parameter_file(
     factory: Factory, project: Project, project_file: str | None, sources: Sources
@@ -124,12 +138,11 @@ def in_distribution(file: ParameterFile, distribution: str | None) -> ParameterF
     if parameters is None:
         return file
     loads = Loads(parameters, distribution, file.project.root, lambda each: sources.known(each) or read(each)[0])
-    of_load = partial(_factory_of, file.factory, parameters, distribution, file.path, sources.source_of)
+    file = replace(file, distribution=distribution)
     found = [*loads.by_default(), *map(loads.of_file, file.factory.files)]
     if distribution is not None:
-        senders = [*sources.senders, *map(of_load, found)]
-        found += _for_goals(parameters, loads, senders, of_load, sources.workspace_of)
-    whole = replace(file, distribution=distribution, factories=tuple((load, of_load(load)) for load in found))
+        found += _for_goals(file, parameters, loads, [*sources.senders, *map(file.factory_of, found)])
+    whole = replace(file, factories=tuple((load, file.factory_of(load)) for load in found))
     if distribution is None or not any(load.goals for load in found):
         return whole
     goals = tuple(dict.fromkeys(wrong_goals(parameters, distribution, _loaded(whole, sources.workspace_of))))
@@ -137,13 +150,7 @@ def in_distribution(file: ParameterFile, distribution: str | None) -> ParameterF
     return replace(whole, goals=goals, factories=factories)
 
 
-def _for_goals(
-    parameters: Parameters,
-    loads: Loads,
-    senders: list[Factory],
-    of_load: Callable[[Load], Factory],
-    workspace_of: Callable[[Factory], Workspace],
-) -> Iterator[Load]:
+def _for_goals(file: ParameterFile, parameters: Parameters, loads: Loads, senders: list[Factory]) -> Iterator[Load]:
     """The trees that goals name, also those that only the tree of another goal names."""
     found: dict[tuple[str, bool], Load] = {}
     places: dict[tuple[str, bool], dict[Place, None]] = {}
@@ -154,13 +161,13 @@ def _for_goals(
         for factory in senders:
             if frozenset(factory.files) not in walked:
                 walked.add(frozenset(factory.files))
-                for name, place in goals_in(workspace_of(factory)):
+                for name, place in goals_in(file.sources.workspace_of(factory)):
                     places.setdefault((name, False), {})[place] = None
         new = {goal: loads.of_goal(*goal) for goal in places if goal not in found}
         if not new:
             break
         found.update(new)
-        senders = [*map(of_load, new.values())]
+        senders = [*map(file.factory_of, new.values())]
     return (replace(load, goals=tuple(places[goal])) for goal, load in found.items())
 
 
@@ -213,26 +220,3 @@ def _found(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) ->
 
 def _loaded(file: ParameterFile, workspace_of: Callable[[Factory], Workspace]) -> list[Loaded]:
     return [Loaded(load, workspace_of(factory)) for load, factory in file.factories]
-
-
-def _factory_of(
-    factory: Factory,
-    parameters: Parameters,
-    distribution: str | None,
-    path: str,
-    source_of: Callable[[str], str | None],
-    load: Load,
-) -> Factory:
-    """The factory for one of the trees that are created."""
-    nodes = factory.node_files
-    if distribution is not None and distribution_among(nodes) is None:
-        nodes = (*nodes, FILES[distribution])
-    return replace(
-        factory,
-        name=f"{factory.name} ({load.label})",
-        files=tuple(dict.fromkeys(source_of(each) or each for each in load.files)),
-        node_files=nodes,
-        nav2=path,
-        has_gaps=distribution is None or not load.is_whole or bool(load.refused),
-        entries=parameters.entries(distribution) if distribution is not None else (),
-    )

@@ -143,7 +143,34 @@ class Loads:
         return self._searched(os.path.basename(name), _located(named, self._find))
 
     def _searched(self, label: str, tree: Located | None, named: Text | None = None) -> Load:
-        return _searched(label, tree, named, self._folders, self._read)
+        """What is read for a tree: its file, then those in the folders."""
+        first = tree.path if tree is not None else None
+        if self._folders is None:
+            return Load(label, tree, None, (first,) if first is not None else ())
+        paths = [first] if first is not None else []
+        for folder in self._folders:
+            paths += matching(folder.path, "*.xml") if folder.path is not None else ()
+        skipped: list[Skipped] = []
+        refused: list[Place] = []
+        owners: dict[str, Place] = {}
+        for path in dict.fromkeys(paths):
+            text = self._read(path) or ""
+            listed = listed_trees(text)
+            ids = listed.ids if listed is not None else ()
+            clash = next((each for each in ids if each in owners), None)
+            places = [Place(Span(*match.span()), path) for match in _TREE.finditer(text)] or [Place(Span(0, 0), path)]
+            if listed is not None and not listed.main and (len(ids) > 1 or (path == first and not ids)):
+                refused.append(places[min(1, len(places) - 1)])
+            elif not ids:
+                skipped.append(Skipped(places[0], None, None, text.find("<BehaviorTree") >= 0))
+            elif clash is not None:
+                at = next((each for each in places if f'"{clash}"' in text[each.span.start : each.span.end]), places[0])
+                is_certain = owners[clash].path == first  # else the other file may be the one that is skipped
+                skipped.append(Skipped(at, clash, owners[clash], not is_certain or not owners.keys() >= {*ids}, ids))
+            else:
+                owners.update(zip(ids, [*places, *[places[-1]] * len(ids)], strict=False))
+        files = tuple(dict.fromkeys(each.path for each in owners.values() if each.path is not None))
+        return Load(label, tree, named, files, tuple(skipped), tuple(refused), self._folders)
 
 
 def _located(named: Text, find: FindPackage, is_folder: bool = False) -> Located:
@@ -223,39 +250,6 @@ def _inside(package: str, is_folder: bool) -> list[str]:
 
 def _stem(path: str) -> str:
     return os.path.splitext(os.path.basename(path))[0]
-
-
-def _searched(
-    label: str, tree: Located | None, named: Text | None, folders: tuple[Located, ...] | None, read: ReadFile
-) -> Load:
-    """What is read for a tree: its file, then those in the folders; None: no folder is ever searched."""
-    first = tree.path if tree is not None else None
-    if folders is None:
-        return Load(label, tree, None, (first,) if first is not None else ())
-    paths = [first] if first is not None else []
-    for folder in folders:
-        paths += matching(folder.path, "*.xml") if folder.path is not None else ()
-    skipped: list[Skipped] = []
-    refused: list[Place] = []
-    owners: dict[str, Place] = {}
-    for path in dict.fromkeys(paths):
-        text = read(path) or ""
-        listed = listed_trees(text)
-        ids = listed.ids if listed is not None else ()
-        clash = next((each for each in ids if each in owners), None)
-        places = [Place(Span(*match.span()), path) for match in _TREE.finditer(text)] or [Place(Span(0, 0), path)]
-        if listed is not None and not listed.main and (len(ids) > 1 or (path == first and not ids)):
-            refused.append(places[min(1, len(places) - 1)])
-        elif not ids:
-            skipped.append(Skipped(places[0], None, None, text.find("<BehaviorTree") >= 0))
-        elif clash is not None:
-            at = next((each for each in places if f'"{clash}"' in text[each.span.start : each.span.end]), places[0])
-            is_certain = owners[clash].path == first  # else the other file may be the one that is skipped
-            skipped.append(Skipped(at, clash, owners[clash], not is_certain or not owners.keys() >= {*ids}, ids))
-        else:
-            owners.update(zip(ids, [*places, *[places[-1]] * len(ids)], strict=False))
-    files = tuple(dict.fromkeys(each.path for each in owners.values() if each.path is not None))
-    return Load(label, tree, named, files, tuple(skipped), tuple(refused), folders)
 
 
 def goals_in(workspace: Workspace) -> Iterator[tuple[str, Place]]:
