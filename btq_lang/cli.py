@@ -68,7 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return TROUBLE
     if unknown:
         command.error(f"unrecognized arguments: {' '.join(unknown)}")
-    return _finish(_command(name), options)
+    return _finish(name, _command(name), options)
 
 
 def _plain_check(paths: Sequence[str]) -> int:
@@ -79,7 +79,7 @@ def _plain_check(paths: Sequence[str]) -> int:
 
     gc.freeze()
     gc.enable()
-    return _finish(run, CheckOptions(paths))
+    return _finish("check", run, CheckOptions(paths))
 
 
 def _command(name: str) -> Callable[[Any], int]:
@@ -99,10 +99,15 @@ def _serve(options: Any) -> int:
     raise SystemExit(serve(options))  # standard output was the editor's and is closed: it must not be flushed
 
 
-def _finish(run: Callable[[Any], int], options: object) -> int:
+def _finish(name: str, run: Callable[[Any], int], options: object) -> int:
+    from btq_lang.commands.options import Refused
+
     try:
         code = run(options)
         sys.stdout.flush()
+    except Refused as reason:
+        print(f"btq {name}: {reason}", file=sys.stderr)
+        return TROUBLE
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:  # the reader has stopped: `btq check | head`; ruff exits with 0, too

@@ -18,6 +18,7 @@ from btq_lang.btcpp.source import Remark
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.commands.building import errors, for_target
 from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
+from btq_lang.commands.options import refuse
 from btq_lang.commands.output import is_coloured, tell
 from btq_lang.diagnostics.model import Place
 from btq_lang.render import Finding, Report, render, with_paths
@@ -56,9 +57,7 @@ class Outcome(Record):
 
 def run(options: Namespace) -> int:
     """Build once, or again and again with `--watch`."""
-    if problem := _usage_problem(options):
-        print(f"btq build: {problem}", file=sys.stderr)
-        return 2
+    refuse(_usage_problem(options))
     files = Files()
     built = build(options, files)
     if options.watch:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from btq_lang.checks import check, check_each
 from btq_lang.checks.includes import is_reported_beside
 from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
+from btq_lang.commands.options import Refused, refuse
 from btq_lang.commands.output import is_coloured, tell
 from btq_lang.commands.reporting import FOR_PEOPLE, form_of, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
@@ -33,9 +34,7 @@ _FAILS = (Severity.ERROR, Severity.WARNING)
 
 def run(options: CheckOptions) -> int:
     """Check once, or again and again with `--watch`."""
-    if problem := _usage_problem(options):
-        print(f"btq check: {problem}", file=sys.stderr)
-        return 2
+    refuse(_usage_problem(options))
     files = Files()
     code, watched = _check(options, files)
     if options.watch:
@@ -70,10 +69,6 @@ def _writing_problem(options: CheckOptions) -> str | None:
     return None
 
 
-class _Refused(Exception):
-    """What the options ask for cannot be done here; the message says why."""
-
-
 def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     """Check once; returns the exit code and the files that another run depends on."""
     trees = [path for path in options.paths if not path.endswith(YAML_SUFFIXES)]
@@ -84,10 +79,10 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     empty = no_mission_below(trees, groups, "no .btq file and no BehaviorTree.CPP XML")
     try:
         if options.update_baseline and not _has_baseline((*groups, *files.parameter_files), options):
-            raise _Refused("no baseline to update; name it with --baseline, or in btq.toml")
+            raise Refused("no baseline to update; name it with --baseline, or in btq.toml")
         parameter_files = _parameter_files(files, options)
         groups = _chosen(groups, parameter_files, options)
-    except _Refused as reason:
+    except Refused as reason:
         print(f"btq check: {reason}", file=sys.stderr)
         return 2, _watched(groups)
     watched = tuple(each.path for each in files.parameter_files)
@@ -167,7 +162,7 @@ def _parameter_files(files: Files, options: CheckOptions) -> tuple[ParameterFile
     """The parameter files of Nav2 to check.
 
     Raises:
-        _Refused: it is not known what has changed.
+        Refused: it is not known what has changed.
     """
     if not files.parameter_files:
         return ()
@@ -177,7 +172,7 @@ def _parameter_files(files: Files, options: CheckOptions) -> tuple[ParameterFile
     try:
         return requested(files, options)
     except GitTrouble as reason:
-        raise _Refused(f"--since: {reason}") from reason
+        raise Refused(f"--since: {reason}") from reason
 
 
 def _chosen(
@@ -186,18 +181,18 @@ def _chosen(
     """The groups for the target, with only what has changed.
 
     Raises:
-        _Refused: there is nothing to compare with.
+        Refused: there is nothing to compare with.
     """
     if options.target is not None:
         from btq_lang.commands.target import is_comparable, moving
 
         if parameter_files and not groups and not options.target.startswith("nav2-"):
             why = "the version of the engine changes no parameter of Nav2; name a distribution, such as nav2-lyrical"
-            raise _Refused(f"--target {options.target}: {why}")
+            raise Refused(f"--target {options.target}: {why}")
         groups = moving(groups, options.target)
         if not (is_comparable(groups, options.target) or any(each.distribution for each in parameter_files)):
             what = 'write `nodes = ["nav2-jazzy"]` into btq.toml'
-            raise _Refused(f"--target needs to know what the trees are for: {what}")
+            raise Refused(f"--target needs to know what the trees are for: {what}")
     if options.since:
         from btq_lang.commands.git import GitTrouble
         from btq_lang.commands.since import affected
@@ -205,7 +200,7 @@ def _chosen(
         try:
             groups = affected(groups, options.since)
         except GitTrouble as reason:
-            raise _Refused(f"--since: {reason}") from reason
+            raise Refused(f"--since: {reason}") from reason
     return groups
 
 

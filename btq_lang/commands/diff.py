@@ -13,8 +13,9 @@ from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of
 from btq_lang.btcpp.recognition import is_mission
 from btq_lang.commands.files import STDIN, Files, Group
-from btq_lang.commands.git import Commit, GitTrouble, revisions
+from btq_lang.commands.git import Commit, revisions
 from btq_lang.commands.opening import Disk
+from btq_lang.commands.options import Refused
 from btq_lang.commands.output import is_coloured
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.diff import Place, as_json, as_markdown, as_text
@@ -25,19 +26,11 @@ from btq_lang.workspace.file import SUFFIXES, File, is_of_package
 from btq_lang.workspace.loader import LoadProblem, absolute, collect, find_project, read, shown
 
 
-class Trouble(Exception):
-    """The arguments cannot be compared; the message says why."""
-
-
 def run(options: Namespace) -> int:
     """Compare and print; returns 0: the same, 1: different, 2: the comparison failed."""
-    try:
-        comparisons = tuple(
-            _of_revisions(options) if options.git is not None else _of_paths(options.paths, options.stdin_filename)
-        )
-    except (Trouble, GitTrouble) as trouble:
-        print(f"btq diff: {trouble}", file=sys.stderr)
-        return 2
+    comparisons = tuple(
+        _of_revisions(options) if options.git is not None else _of_paths(options.paths, options.stdin_filename)
+    )
     for comparison in comparisons:
         for side in (comparison.old, comparison.new):
             _warn(side)
@@ -86,7 +79,7 @@ def _first_error(file: File) -> str | None:
 
 def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[Comparison]:
     if len(paths) != 2:
-        raise Trouble(
+        raise Refused(
             f"expected two missions, found {len(paths)}; to compare revisions of one: btq diff --git HEAD FILE"
         )
     if STDIN in paths:
@@ -109,9 +102,9 @@ def _with_stdin(paths: list[str], stdin_filename: str | None) -> Comparison:
     """Compare a file with standard input."""
     other = next((path for path in paths if path != STDIN), None)
     if other is None:
-        raise Trouble("one of the two can be standard input, not both")
+        raise Refused("one of the two can be standard input, not both")
     if os.path.isdir(other):
-        raise Trouble(f"standard input is one file, and {other} is a folder")
+        raise Refused(f"standard input is one file, and {other} is a folder")
 
     def side(path: str) -> Side:
         if path == os.devnull:
@@ -196,7 +189,7 @@ def _groups(paths: list[str], stdin_filename: str | None = None) -> tuple[Group,
 
 def _raise(problems: tuple[LoadProblem, ...]) -> None:
     if problems:
-        raise Trouble("\nbtq diff: ".join(map(str, problems)))
+        raise Refused("\nbtq diff: ".join(map(str, problems)))
 
 
 # ---- revisions ----
@@ -204,14 +197,14 @@ def _raise(problems: tuple[LoadProblem, ...]) -> None:
 
 def _of_revisions(options: Namespace) -> Iterator[Comparison]:
     if STDIN in options.paths:
-        raise Trouble("standard input has no revisions: git show REV:FILE | btq diff - FILE")
+        raise Refused("standard input has no revisions: git show REV:FILE | btq diff - FILE")
     for path in map(absolute, options.paths or ["."]):
         known = revisions(options.git, path)
         if not os.path.isdir(path) and not known.had_folder(path):
             sides = _revised(known.old, path, True), _revised(known.new, path, True)
             if sides == (NOWHERE, NOWHERE):
                 where = known.new.name if known.new is not None else "here"
-                raise Trouble(f"{shown(path)}: no such file in {known.old.name} or {where}")
+                raise Refused(f"{shown(path)}: no such file in {known.old.name} or {where}")
             yield without_made_models(compared(*sides))
             continue
         for before, after in known.changed(path):

@@ -6,6 +6,7 @@ import sys
 from argparse import Namespace
 
 from btq_lang.commands.files import Files, usage_problem, write_stdout
+from btq_lang.commands.options import refuse
 from btq_lang.commands.output import is_coloured, tell
 from btq_lang.formatter import format_text
 from btq_lang.render.colour import painter
@@ -15,9 +16,7 @@ from btq_lang.workspace.loader import LoadProblem, shown, write_whole
 
 def run(options: Namespace) -> int:
     """Format, or with `--check` and `--diff` only report what would change."""
-    if misuse := usage_problem(options.paths):
-        print(f"btq format: {misuse}", file=sys.stderr)
-        return 2
+    refuse(usage_problem(options.paths))
     files = Files()
     groups, problems = files.groups(options.paths, options.stdin_filename)
     trouble = list(problems)

@@ -16,6 +16,7 @@ from btq_lang.btcpp.marks import is_built_of, named_beside
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.recognition import is_mission
 from btq_lang.btcpp.side_file import xml_path
+from btq_lang.commands.options import Refused
 from btq_lang.util.globs import glob_matcher
 from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import SIDE_SUFFIX, SUFFIXES, File
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.factories import Factory
 
 
-class GitTrouble(Exception):
+class GitTrouble(Refused):
     """Git is missing, or does not know a revision or file."""
 
 

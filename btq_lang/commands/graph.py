@@ -7,6 +7,7 @@ from argparse import Namespace
 
 from btq_lang.checks import check
 from btq_lang.commands.files import Files, no_mission_below, usage_problem
+from btq_lang.commands.options import Refused, refuse
 from btq_lang.commands.output import form_of, form_problem, tell, write_output
 from btq_lang.diagnostics.rules import UNREADABLE
 from btq_lang.graph import FORMATS, draw
@@ -17,9 +18,7 @@ from btq_lang.workspace.loader import LoadProblem, shown
 
 def run(options: Namespace) -> int:
     """Draw the trees of one file; of a file with errors, all valid parts."""
-    if problem := usage_problem(options.paths) or form_problem(options, FORMATS):
-        print(f"btq graph: {problem}", file=sys.stderr)
-        return 2
+    refuse(usage_problem(options.paths) or form_problem(options, FORMATS))
     groups, problems = Files().groups(options.paths, options.stdin_filename)
     given = [(group.workspace, path) for group in groups for path in group.given]
     if len(given) > 1:
@@ -32,8 +31,7 @@ def run(options: Namespace) -> int:
     ((workspace, path),) = given
     found = figures(workspace, path, options.qualities)
     if not found:
-        print(f"btq graph: {shown(path)} has no trees", file=sys.stderr)
-        return 2
+        raise Refused(f"{shown(path)} has no trees")
     if code := write_output("graph", options.output, draw(found, form_of(options, FORMATS), options.direction)):
         return code
     unread = [each for each in check(workspace, path) if each.rule in UNREADABLE]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import os
 import shlex
-import sys
 from argparse import Namespace
 
 from btq_lang.catalog.versions import VERSIONS
+from btq_lang.commands.options import Refused
 from btq_lang.workspace.loader import write_whole
 
 _PROJECT = f"""\
@@ -74,19 +74,16 @@ def run(options: Namespace) -> int:
 
         return run_from_xml(options)
     if options.convert:
-        print("btq init: --convert goes with --from-xml", file=sys.stderr)
-        return 2
+        raise Refused("--convert goes with --from-xml")
     folder = options.folder
     there = [name for name in FILES if os.path.lexists(os.path.join(folder, name))]
     if there:
-        print(f"btq init: {folder} already contains {', '.join(there)}; nothing was written", file=sys.stderr)
-        return 2
+        raise Refused(f"{folder} already contains {', '.join(there)}; nothing was written")
     try:
         os.makedirs(folder, exist_ok=True)
         for name, text in FILES.items():
             write_whole(os.path.join(folder, name), text)
     except OSError as error:
-        print(f"btq init: {error.filename or folder}: {error.strerror}", file=sys.stderr)
-        return 2
+        raise Refused(f"{error.filename or folder}: {error.strerror}") from error
     print(f"Wrote {', '.join(FILES)}. Next: btq check {shlex.quote(folder)}")
     return 0

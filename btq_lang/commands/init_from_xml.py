@@ -23,6 +23,7 @@ from btq_lang.checks import check_each
 from btq_lang.checks.engines import words_of_3
 from btq_lang.commands.explain_nav2 import models_of
 from btq_lang.commands.files import Files
+from btq_lang.commands.options import Refused
 from btq_lang.commands.xml_below import XmlBelow
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
@@ -46,12 +47,10 @@ def run(options: Namespace) -> int:
     folder = absolute(options.folder)
     target = f"{folder}/btq.toml"
     if os.path.lexists(target):
-        print(f"btq init: {shown(target)} is there already; nothing was written", file=sys.stderr)
-        return 2
+        raise Refused(f"{shown(target)} is there already; nothing was written")
     workspace = _xml_below(folder)
     if not workspace.files:
-        print(f"btq init: no BehaviorTree.CPP XML below {options.folder}; nothing was written", file=sys.stderr)
-        return 2
+        raise Refused(f"no BehaviorTree.CPP XML below {options.folder}; nothing was written")
     factories = [*_factories(workspace, folder)]
     excluded: list[str] = []
     if options.convert:
@@ -76,8 +75,7 @@ def run(options: Namespace) -> int:
     try:
         write_whole(target, f"{_HEAD}{engine}{nodes}{rest}")
     except OSError as error:
-        print(f"btq init: {shown(target)}: {error.strerror}", file=sys.stderr)
-        return 2
+        raise Refused(f"{shown(target)}: {error.strerror}") from error
     count = f"{len(factories) or 'no'} factor{'y' if len(factories) == 1 else 'ies'}"
     print(f"Wrote {shown(target)} with {count}. Next: btq check {shlex.quote(options.folder)}")
     return 0

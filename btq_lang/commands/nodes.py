@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.btcpp import reader
 from btq_lang.catalog.cpp_classes import ENGINE
+from btq_lang.commands.cpp_files import MISSING
+from btq_lang.commands.options import Refused
 from btq_lang.commands.output import write_output
 from btq_lang.cpp.findings import UNSEEN, findings
 from btq_lang.cpp.grammar import GrammarMissing
@@ -45,9 +47,8 @@ def run(options: Namespace) -> int:
         return 2
     try:
         found = read_nodes(files)
-    except GrammarMissing:
-        print("btq nodes: C++ is read with tree-sitter; install it with pip install 'btq-lang[cpp]'", file=sys.stderr)
-        return 2
+    except GrammarMissing as error:
+        raise Refused(MISSING) from error
     sources = " ".join(options.paths)
     if code := write_output("nodes", options.output, _written(found, form, sources)):
         return code

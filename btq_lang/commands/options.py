@@ -9,6 +9,16 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser
 
 
+class Refused(Exception):
+    """What a command line asks for is wrong or cannot be done; the message says why."""
+
+
+def refuse(problem: str | None) -> None:
+    """Raise `Refused` if there is a problem."""
+    if problem:
+        raise Refused(problem)
+
+
 class CheckOptions:
     """The options of `btq check` and their defaults.
 

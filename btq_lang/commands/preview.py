@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from threading import Event, Lock, Thread
 
 from btq_lang.commands.files import Files, usage_problem
+from btq_lang.commands.options import Refused, refuse
 from btq_lang.graph.picture import picture, places
 from btq_lang.preview.server import Preview
 from btq_lang.util.text import Span
@@ -23,15 +24,15 @@ from btq_lang.workspace.workspace import Workspace
 
 def run(options: Namespace) -> int:
     """Serve one file until Ctrl+C."""
-    if problem := usage_problem([options.file]) or _no_file(options.file):
-        print(f"btq preview: {problem}", file=sys.stderr)
-        return 2
+    refuse(usage_problem([options.file]))
+    if not os.path.isfile(options.file):
+        what = "expected a file, found a folder" if os.path.isdir(options.file) else "no such file"
+        raise Refused(f"{options.file}: {what}")
     mission = _Mission(absolute(options.file), shlex.split(options.on_click or ""))
     try:
         preview = Preview(options.port, mission.drawn, mission.reveal)
     except (OSError, OverflowError) as error:
-        print(f"btq preview: port {options.port}: {error}", file=sys.stderr)
-        return 2
+        raise Refused(f"port {options.port}: {error}") from error
     print(f"{shown(mission.path)} is shown at {preview.url}", flush=True)
     ended = Event()
     if options.follow:
@@ -56,14 +57,6 @@ def run(options: Namespace) -> int:
         pass
     preview.close()
     return 0
-
-
-def _no_file(path: str) -> str | None:
-    return (
-        None
-        if os.path.isfile(path)
-        else f"{path}: {'expected a file, found a folder' if os.path.isdir(path) else 'no such file'}"
-    )
 
 
 def _follow(mission: _Mission, preview: Preview, ended: Event) -> None:

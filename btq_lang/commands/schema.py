@@ -11,6 +11,7 @@ from btq_lang.btcpp.xsd import xsd
 from btq_lang.catalog.versions import targets as engine_lines
 from btq_lang.checks import check
 from btq_lang.commands.files import Files, Group, no_mission_below, usage_problem
+from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_problem, tell, write_output
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
@@ -26,9 +27,7 @@ def run(options: Namespace) -> int:
     problem = usage_problem(options.paths) or form_problem(options, (options.format,))
     if options.format == "project" and options.paths:
         problem = "`project` takes no path: its schema is the same for every project"
-    if problem:
-        print(f"btq schema: {problem}", file=sys.stderr)
-        return 2
+    refuse(problem)
     if options.format == "project":
         return write_output("schema", options.output, f"{json.dumps(project_schema(), indent=2)}\n")
     return _write_xsd(options)

@@ -6,6 +6,7 @@ import sys
 from argparse import Namespace
 
 from btq_lang.commands.files import Files, no_mission_below, usage_problem
+from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_of, form_problem, is_coloured, tell, terminal_width, write_output
 from btq_lang.trace import FORMATS
 from btq_lang.trace.missions import trace_tables
@@ -13,9 +14,7 @@ from btq_lang.trace.missions import trace_tables
 
 def run(options: Namespace) -> int:
     """Write the overview; for missions with errors, of all valid parts."""
-    if problem := usage_problem(options.paths) or form_problem(options, FORMATS):
-        print(f"btq trace: {problem}", file=sys.stderr)
-        return 2
+    refuse(usage_problem(options.paths) or form_problem(options, FORMATS))
     from btq_lang.commands.trace_evidence import verdicts_for  # it imports the readers of logs
 
     groups, problems = Files().groups(options.paths, options.stdin_filename)
