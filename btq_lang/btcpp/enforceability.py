@@ -6,35 +6,21 @@ so it depends on neither elements nor files; what is put around nodes is for `en
 
 from __future__ import annotations
 
-from collections.abc import Container
-from typing import TYPE_CHECKING, Final, Protocol
+from collections.abc import Callable, Container
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.btcpp.around import may_be_skipped
 from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
 from btq_lang.btcpp.guards import Guarded, NotEnforced, guarded
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, Span, Target
+from btq_lang.requirements.spans import node_of
 from btq_lang.workspace.resolved import ResolvedNode
 
 if TYPE_CHECKING:
-
-    class MissionView(Protocol):
-        """What a judge has to know of nodes and of the mission."""
-
-        def waits(self, node: ResolvedNode) -> bool:
-            """Whether a node can be RUNNING."""
-
-        def is_skipped(self, node: ResolvedNode) -> bool:
-            """Whether something inside a node can make the engine skip it."""
-
-        def of_span(self, span: Span) -> ResolvedNode | None:
-            """The node whose duration a span measures, if there is one."""
-
-        def begins(self) -> bool:
-            """Whether the mission begins in the files that are judged."""
-
-        def mission(self) -> ResolvedNode | None:
-            """The mission's root."""
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 
 class Elsewhere(NotEnforced):
@@ -52,14 +38,26 @@ class UnknownMission(NotEnforced):
 class Judge:
     """Judges the clauses that some files see."""
 
-    def __init__(self, view: MissionView, *, files: Container[str] | None, is_shared: bool) -> None:
+    def __init__(
+        self,
+        store: Store[Workspace],
+        viewpoint: str,
+        mission: Callable[[], ResolvedNode | None],
+        *,
+        files: Container[str] | None,
+        is_shared: bool,
+    ) -> None:
         """
         Args:
-            view: queried only for what matters.
+            viewpoint: the file whose scope counts.
+            mission: returns the mission's root, if it begins in the files that are judged; called only if it matters.
             files: that are written together; None: all.
             is_shared: whether they are a part of several missions.
         """
-        self._view: Final = view
+        self._store: Final = store
+        self._viewpoint: Final = viewpoint
+        self._budgets: Final = Budgets(store, viewpoint)
+        self._mission: Final = mission
         self._files: Final = files
         self._is_shared: Final = is_shared
 
@@ -92,7 +90,7 @@ class Judge:
         if (
             isinstance(subject, Span)
             and VERBS[claim.verb].limits == "completion"
-            and (node := self._view.of_span(subject)) is not None
+            and (node := node_of(subject, self._budgets)) is not None
         ):
             return node
         if not isinstance(subject, Target | Mission):
@@ -110,23 +108,34 @@ class Judge:
             NotEnforced: the engine cannot do it.
         """
         made = guarded(requirement, claim, node, name, stop, self._is_shared)
-        if VERBS[claim.verb].limits and claim.limit is not None and not self._view.waits(node):
+        if VERBS[claim.verb].limits and claim.limit is not None and not self._budgets.composed(node).waits:
             raise NotEnforced(f"{node.shown} completes within one tick")
         for each in dict.fromkeys(each for each, _ in made.wrappers):
             if self._files is not None and each.path not in self._files:
                 raise Elsewhere(each)
-            _can_stand_around(each, self._view.is_skipped(each))
+            self._check_around(each)
         first: dict[str, str] = {}
         for signal in made.signals:
             first |= _first_value(signal)
         if (first or made.cells or made.stop) and not self._is_shared:
-            if not self._view.begins():
+            mission = self._mission()
+            if mission is None:
                 raise UnknownMission("the main tree is unknown; name it with a line `Root <tree>`")
             if made.stop is not None:
-                mission = self._view.mission()
-                assert mission is not None, "there is a mission that begins"
-                _can_stand_around(mission, self._view.is_skipped(mission))
+                self._check_around(mission)
         return made, first
+
+    def _check_around(self, node: ResolvedNode) -> None:
+        """Check that a wrapper around a node does not change the behavior of the tree.
+
+        Raises:
+            NotEnforced: it would.
+        """
+        if self._store.ask(_is_skipped, self._viewpoint, node):
+            raise NotEnforced(
+                f"a node below {node.shown} may skip it, and with a guard around it the tree would behave differently"
+            )
+        _can_stand_around(node)
 
 
 def where_else(node: ResolvedNode, *, is_xml: bool) -> str:
@@ -136,16 +145,13 @@ def where_else(node: ResolvedNode, *, is_xml: bool) -> str:
     return f"{node.shown} is in an included file, which other missions may include; --bundle enforces it"
 
 
-def _can_stand_around(node: ResolvedNode, is_skipped_inside: bool) -> None:
-    """Check that a wrapper around a node does not change the behavior of the tree.
+def _is_skipped(store: Store[Workspace], viewpoint: str, node: ResolvedNode) -> bool:
+    """Whether something inside a node can make the engine skip it."""
+    return Budgets(store, viewpoint).composed(node).skip is not None
 
-    Raises:
-        NotEnforced: it would.
-    """
-    if is_skipped_inside:
-        raise NotEnforced(
-            f"a node below {node.shown} may skip it, and with a guard around it the tree would behave differently"
-        )
+
+def _can_stand_around(node: ResolvedNode) -> None:
+    """The same, as far as the node itself is concerned."""
     names = [pair.key.text for pair in node.node.attributes]
     if may_be_skipped(names) and (said := next((name for name in names if name in _POSTCONDITIONS), None)):
         raise NotEnforced(

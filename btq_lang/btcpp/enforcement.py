@@ -28,10 +28,8 @@ from btq_lang.btcpp.marks import GUARDS_NOTE
 from btq_lang.btcpp.wrappers import wrapped
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Place
-from btq_lang.requirements.budgets import Budgets
-from btq_lang.requirements.model import Applied, Claim, Requirement, Span
+from btq_lang.requirements.model import Applied, Claim, Requirement
 from btq_lang.requirements.resolve import Requirements, requirements
-from btq_lang.requirements.spans import node_of
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
@@ -77,25 +75,6 @@ class Enforcement(Record):
     loose: tuple[tuple[Requirement, Claim], ...] = ()
 
 
-class _Plan(Record):
-    """What is to be put around the nodes of some files.
-
-    Attributes:
-        wrappers: by `id(node)` of the syntax.
-        enforced: the keys of enforced clauses (clause, node, arguments), for the files that include these.
-        cells: the entries that a mission initializes, each with its value.
-        first: those of signals, each with its value before the first sample.
-        stops: the entries that halt it.
-    """
-
-    clauses: tuple[tuple[ClauseEnforcement, ...], ...]
-    wrappers: Mapping[int, tuple[Wrapper, ...]]
-    enforced: Mapping[object, ClauseEnforcement]
-    cells: Mapping[str, str]
-    first: Mapping[str, str]
-    stops: tuple[str, ...]
-
-
 def enforced(workspace: Workspace, path: str, export: Export, bundled: bool = False) -> Enforcement:
     """Add to a file's export, which may have all that the file includes, in place what its requirements need."""
     if not _has_requirements(workspace, path):
@@ -103,7 +82,7 @@ def enforced(workspace: Workspace, path: str, export: Export, bundled: bool = Fa
     found = requirements(workspace, path)
     files = _written(workspace, path, bundled)
     plan, others = _plans(workspace, found, path, files)
-    wrappers = dict(plan.wrappers)
+    wrappers: dict[int, Sequence[Wrapper]] = {**plan.wrappers}
     if found.mission is not None and _begins(workspace, found, path, files) and (start := _start([plan, *others])):
         key = id(found.mission.node)
         wrappers[key] = (*start, *wrappers.get(key, ()))
@@ -159,34 +138,26 @@ def _plans(
 ) -> tuple[_Plan, tuple[_Plan, ...]]:
     """The plans for a file, and for the files that it includes and that are built too."""
     others = tuple(
-        _plan(workspace, requirements(workspace, each), each, frozenset((each,)), ())
+        _Plan(workspace, requirements(workspace, each), each, frozenset((each,)), ()).whole()
         for each in workspace.closure(path)
         if each not in files and is_mission(workspace, each)
     )
-    return _plan(workspace, found, path, files, others), others
+    return _Plan(workspace, found, path, files, others).whole(), others
 
 
-def _plan(
-    workspace: Workspace, found: Requirements, path: str, files: frozenset[str], others: Sequence[_Plan]
-) -> _Plan:
-    """The plan for some of the files that a file sees."""
-    planner = _Planner(workspace, found, path, files, others)
-    clauses = tuple(
-        tuple([planner.enforce(applied, claim) for claim in applied.requirement.claims]) for applied in found.applied
-    )
-    wrappers = {key: tuple(each) for key, each in planner.wrappers.items()}
-    return _Plan(clauses, wrappers, planner.enforced, planner.cells, planner.first, tuple(planner.stops))
+class _Plan:
+    """What is to be put around the nodes of some of the files that a file sees, given the plans of the others.
 
+    Attributes:
+        wrappers: by `id(node)` of the syntax.
+        enforced: the keys of enforced clauses (clause, node, arguments), for the files that include these.
+        cells: the entries that a mission initializes, each with its value.
+        first: those of signals, each with its value before the first sample.
+        stops: the entries that halt it.
+    """
 
-class _Planner:
     def __init__(
-        self,
-        workspace: Workspace,
-        found: Requirements,
-        path: str,
-        files: frozenset[str],
-        others: Sequence[_Plan],
-        budgets: Budgets | None = None,
+        self, workspace: Workspace, found: Requirements, path: str, files: frozenset[str], others: Sequence[_Plan]
     ) -> None:
         self.wrappers: Final[dict[int, list[Wrapper]]] = {}
         self.enforced: Final[dict[object, ClauseEnforcement]] = {}
@@ -200,9 +171,17 @@ class _Planner:
         self._others: Final = others
         self._keys: Final = Keys()
         is_shared = path in workspace.included_files
-        self._budgets: Final = budgets or Budgets(found.store, found.viewpoint)
-        view = _MissionView(found, self._budgets, _begins(workspace, found, path, files))
-        self._judge: Final = Judge(view, files=files, is_shared=is_shared)
+        mission = found.mission if _begins(workspace, found, path, files) else None
+        self._judge: Final = Judge(found.store, found.viewpoint, lambda: mission, files=files, is_shared=is_shared)
+        self.clauses: tuple[tuple[ClauseEnforcement, ...], ...] = ()
+
+    def whole(self) -> _Plan:
+        """The plan with all clauses in it."""
+        self.clauses = tuple(
+            tuple([self.enforce(applied, claim) for claim in applied.requirement.claims])
+            for applied in self._found.applied
+        )
+        return self
 
     def enforce(self, applied: Applied, claim: Claim) -> ClauseEnforcement:
         """How a clause is enforced; records the wrappers it needs."""
@@ -240,10 +219,10 @@ class _Planner:
         return known
 
     @cached_property
-    def _bundled(self) -> _Planner:
-        """The same planner for a bundle: if a bundle could not enforce a clause either, its file is not the reason."""
+    def _bundled(self) -> _Plan:
+        """The plan for a bundle: if a bundle could not enforce a clause either, its file is not the reason."""
         files = _written(self._workspace, self._path, True)
-        return _Planner(self._workspace, self._found, self._path, files, (), self._budgets)
+        return _Plan(self._workspace, self._found, self._path, files, ())
 
     def _guard(self, requirement: Requirement, claim: Claim, node: ResolvedNode) -> str:
         """Record what a clause needs, and return the note on it.
@@ -266,30 +245,6 @@ class _Planner:
         if aging := [signal.name for signal in made.signals if signal.fresh is not None]:
             notes.append(f"guards read the latest value of {_listed(aging)}, whatever its age")
         return "; ".join(notes)
-
-
-class _MissionView:
-    """The view of nodes that a `Judge` needs."""
-
-    def __init__(self, found: Requirements, budgets: Budgets, begins: bool) -> None:
-        self._found: Final = found
-        self._budgets: Final = budgets
-        self._begins: Final = begins
-
-    def waits(self, node: ResolvedNode) -> bool:
-        return self._budgets.composed(node).waits
-
-    def is_skipped(self, node: ResolvedNode) -> bool:
-        return self._budgets.composed(node).skip is not None
-
-    def of_span(self, span: Span) -> ResolvedNode | None:
-        return node_of(span, self._budgets)
-
-    def begins(self) -> bool:
-        return self._begins
-
-    def mission(self) -> ResolvedNode | None:
-        return self._found.mission
 
 
 def _listed(names: Sequence[str]) -> str:

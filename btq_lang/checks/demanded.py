@@ -16,9 +16,7 @@ from btq_lang.requirements.durations import Term
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, Span, Table, Value
 from btq_lang.requirements.nodes import mission
 from btq_lang.workspace.item_index import Facts
-from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
-from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.btcpp.enforceability import Judge
@@ -71,36 +69,7 @@ def judge_of(view: View) -> Judge:
     """The judge of enforceability, as if all files were written into one."""
     from btq_lang.btcpp.enforceability import Judge  # few missions have a claim that is to be enforced
 
-    return Judge(_MissionView(view), files=None, is_shared=view.is_included)
-
-
-class _MissionView:
-    """The view of nodes that a judge needs."""
-
-    def __init__(self, view: View) -> None:
-        self._view: Final = view
-        self._budgets: Final = Budgets(view.store, view.viewpoint)
-
-    def waits(self, node: ResolvedNode) -> bool:
-        return self._budgets.composed(node).waits
-
-    def is_skipped(self, node: ResolvedNode) -> bool:
-        return self._view.ask(_is_skipped, node)
-
-    def of_span(self, span: Span) -> ResolvedNode | None:
-        from btq_lang.requirements.spans import node_of
-
-        return node_of(span, self._budgets)
-
-    def begins(self) -> bool:
-        return self.mission() is not None
-
-    def mission(self) -> ResolvedNode | None:
-        return self._view.ask(mission)
-
-
-def _is_skipped(store: Store[Workspace], viewpoint: str, node: ResolvedNode) -> bool:
-    return Budgets(store, viewpoint).composed(node).skip is not None
+    return Judge(view.store, view.viewpoint, lambda: view.ask(mission), files=None, is_shared=view.is_included)
 
 
 def _claims(
