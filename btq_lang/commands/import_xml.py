@@ -1,8 +1,13 @@
-"""`btq import`: BehaviorTree.CPP XML as .btq files."""
+"""`btq import`: BehaviorTree.CPP XML as .btq files.
+
+One invariant: whatever paths the side file of a bundle names, only files that btq reads are written, and only below the
+folder of the import, links followed.
+"""
 
 from __future__ import annotations
 
 import os
+import posixpath
 import sys
 from argparse import Namespace
 from collections.abc import Iterable, Iterator, Mapping
@@ -17,6 +22,7 @@ from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import LineIndex, counted
 from btq_lang.workspace.config import include_candidates
+from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, absolute, decoded, find_project, read, shown, write_whole
 
 _STDIN = "-"
@@ -122,8 +128,6 @@ def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProb
             job, f"{shown(side)} belongs to another build; put the one of this build there to keep them"
         )
     if mission.is_whole:
-        from btq_lang.commands.unpacking import place_of_mission, unpacked
-
         root, target = os.path.dirname(target), place_of_mission(target, mission.file, mission.others)
         others = unpacked(mission.others, root, target, (job.path, side), force, problems)
         if others is None:
@@ -254,3 +258,71 @@ def _missing(job: _Job) -> Iterator[str]:
         folder = os.path.dirname(absolute(os.path.join(os.path.dirname(job.target), item.path.text)))
         into = f" -o {quote(shown(folder))}" if folder != os.path.dirname(xml) else ""
         yield f"btq import {quote(shown(xml))}{into}"
+
+
+def place_of_mission(target: str, file: str, others: Iterable[tuple[str, str]]) -> str:
+    """The path of a mission that leaves room for its includes: deeper, if it includes `../shared/a.btq`.
+
+    Args:
+        target: its path without includes.
+        file: its old path, relative to its side file: folders keep their names.
+        others: the paths, seen from the mission, and the texts.
+    """
+    up = max((name.split("/").count("..") for name, _ in others), default=0)
+    folders = file.split("/")[:-1]
+    names = folders[len(folders) - up :] if 0 < up <= len(folders) else []
+    if any(name in ("", ".", "..") or any(char in name for char in _FOREIGN) for name in names):
+        return target
+    return absolute(os.path.join(os.path.dirname(target), *names, os.path.basename(target)))
+
+
+def unpacked(
+    others: Iterable[tuple[str, str]],
+    root: str,
+    target: str,
+    taken: Iterable[str],
+    force: bool,
+    problems: list[LoadProblem],
+) -> tuple[tuple[str, str], ...] | None:
+    """The paths of the files that a mission includes, with their texts; None: one of them cannot be written.
+
+    Args:
+        others: the paths, seen from the mission, and the texts.
+        root: the folder that must contain all of them.
+        target: the path of the mission.
+        taken: files that must not be overwritten.
+        force: existing files may be overwritten; equal ones are not touched.
+        problems: errors are appended.
+    """
+    folder = os.path.dirname(target)
+    found: dict[str, str] = {}
+    known = len(problems)
+    for name, text in others:
+        path = _below(root, folder, name)
+        if path is None:
+            problems.append(
+                LoadProblem(
+                    target, f"its bundle contains `{name}`, which is not a .btq or XML file below the output folder"
+                )
+            )
+        elif path in (target, *taken):
+            problems.append(LoadProblem(target, f"its bundle contains `{name}`, which the import would overwrite"))
+        elif not os.path.lexists(path):
+            found[path] = text
+        elif not os.path.isfile(path) or read(path) != (text, None):
+            found[path] = text
+            if not force:
+                problems.append(LoadProblem(path, "already exists; --force overwrites it"))
+    return None if len(problems) > known else tuple(found.items())
+
+
+def _below(root: str, folder: str, name: str) -> str | None:
+    if not name.endswith((*SUFFIXES, ".xml")) or os.path.isabs(name) or any(char in name for char in _FOREIGN):
+        return None
+    path = absolute(os.path.join(folder, name))
+    if posixpath.normpath(name) != name or not path.startswith(f"{root.rstrip('/')}/"):
+        return None
+    return path if os.path.realpath(path).startswith(os.path.join(os.path.realpath(root), "")) else None
+
+
+_FOREIGN = "\\:\0"  # on some systems, characters that turn a name into another path

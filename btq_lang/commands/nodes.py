@@ -95,7 +95,7 @@ def _is_ours(path: str) -> bool:
 
 def _written(found: CppNodes, form: str, sources: str) -> str:
     if form == "html":
-        from btq_lang.commands.node_page import as_html
+        from btq_lang.commands.node_writers import as_html
 
         return as_html(found, sources)
     from btq_lang.commands.node_writers import as_btq, as_xml

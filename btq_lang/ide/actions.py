@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.opening import with_source
@@ -10,34 +10,15 @@ from btq_lang.checks import check
 from btq_lang.checks.silencing import at_line_end, before_element, line_to_silence
 from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.ide.meaning import entry_at
-from btq_lang.ide.refactor import refactorings
+from btq_lang.ide.refactor import Action, refactorings
 from btq_lang.ide.short_form import short_form
 from btq_lang.ide.unused import UNUSED, needless_includes, removal, without
-from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Edit, Span
 from btq_lang.workspace.fixes import fixed
 from btq_lang.workspace.workspace import Workspace
 
 QUICK_FIX, REFACTOR, FIX_ALL, ORGANIZE = "quickfix", "refactor", "source.fixAll.btq", "source.organizeImports.btq"
-
-
-class Action(Record):
-    """A code action.
-
-    Attributes:
-        kind: of LSP: quickfix, refactor.extract, refactor.inline, refactor.rewrite, source.fixAll.btq,
-            source.organizeImports.btq.
-        edits: by file.
-        diagnostic: that it fixes.
-        preferred: whether it is the one obvious fix, which an editor may apply without offering a choice.
-    """
-
-    title: str
-    kind: str
-    edits: Mapping[str, tuple[Edit, ...]]
-    diagnostic: Diagnostic | None = None
-    preferred: bool = False
 
 
 def code_actions(
@@ -69,8 +50,7 @@ def code_actions(
         actions += _silencing(workspace, path, here)
     if not is_foreign and (not only or any(one == "" or one.split(".")[0] == REFACTOR for one in only)):
         for made in (*refactorings(workspace, path, span.start), *short_form(workspace, path, span.start, diagnostics)):
-            if wanted(made.kind):
-                actions.append(Action(made.title, made.kind, made.edits))
+            actions += [made] if wanted(made.kind) else []
     if wanted(FIX_ALL):
         actions += _fix_all(workspace, path, diagnostics)
     if not is_foreign and wanted(ORGANIZE) and (needless := needless_includes(workspace, path)):

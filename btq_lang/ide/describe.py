@@ -12,7 +12,6 @@ from btq_lang.catalog.units import BASES, Unit, convert, dimension_name, parse_u
 from btq_lang.checks.includes import include_line
 from btq_lang.checks.lookups import head
 from btq_lang.diagnostics.rules import RULES, page
-from btq_lang.ide.cpp_places import cpp_link
 from btq_lang.ide.meaning import (
     ROOT_BLACKBOARD,
     Found,
@@ -25,7 +24,7 @@ from btq_lang.ide.meaning import (
 )
 from btq_lang.ide.meaning import own_quality as declared_quality
 from btq_lang.ide.outline import clauses_detail
-from btq_lang.ide.ports import NodePort, ports_of_kind, ports_of_tree
+from btq_lang.ide.ports import NodePort, cpp_link, ports_of_kind, ports_of_tree
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import Apply, Context, Model, QualityDecl, Requirement, Signal, Tree, Word, walk
 from btq_lang.util.text import Edit, Span, counted

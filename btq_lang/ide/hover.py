@@ -8,11 +8,10 @@ from btq_lang.btcpp.side_elements import said_in_xml
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import phrase_at
 from btq_lang.ide import describe
-from btq_lang.ide.cpp_places import cpp_link
 from btq_lang.ide.meaning import Found, Subject, at, definition, everywhere, quality_match, subject
 from btq_lang.ide.navigation import writes
 from btq_lang.ide.place import item_tokens, place_at
-from btq_lang.ide.ports import port_of, ports_of_kind, ports_of_tree
+from btq_lang.ide.ports import cpp_link, port_of, ports_of_kind, ports_of_tree
 from btq_lang.syntax.tokens import NAME
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span

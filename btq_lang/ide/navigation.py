@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.ide.block import node_at
-from btq_lang.ide.cpp_places import cpp_place
 from btq_lang.ide.meaning import Found, Subject, at, definition, entry_at, everywhere, own_quality, quality_of, subject
-from btq_lang.ide.ports import port_of
+from btq_lang.ide.ports import cpp_place, port_of
 from btq_lang.syntax.tree import Model, Node, Tree, is_name, written
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span

@@ -11,6 +11,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
 from btq_lang.checks.lookups import taken_names
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.ide.block import STEP, Standing, blanks_before, block_of, deeper, moved, node_at, shifts
 from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.ports import port_of
@@ -40,15 +41,25 @@ from btq_lang.workspace.references import Mention, What
 from btq_lang.workspace.workspace import Workspace
 
 
-class Refactoring(Record):
-    """A change that keeps the meaning.  kind: of LSP."""
+class Action(Record):
+    """A code action.
+
+    Attributes:
+        kind: of LSP: quickfix, refactor.extract, refactor.inline, refactor.rewrite, source.fixAll.btq,
+            source.organizeImports.btq.
+        edits: by file.
+        diagnostic: that it fixes.
+        preferred: whether it is the one obvious fix, which an editor may apply without offering a choice.
+    """
 
     title: str
     kind: str
     edits: Mapping[str, tuple[Edit, ...]]
+    diagnostic: Diagnostic | None = None
+    preferred: bool = False
 
 
-def refactorings(workspace: Workspace, path: str, offset: int) -> Iterator[Refactoring]:
+def refactorings(workspace: Workspace, path: str, offset: int) -> Iterator[Action]:
     """The refactorings of the node, or the requirement, at a place."""
     file = workspace.files[path]
     entry = entry_at(workspace, path, offset)
@@ -68,7 +79,7 @@ def refactorings(workspace: Workspace, path: str, offset: int) -> Iterator[Refac
 # ---- extract a subtree ----
 
 
-def _extract(workspace: Workspace, path: str, standing: Standing) -> Iterator[Refactoring]:
+def _extract(workspace: Workspace, path: str, standing: Standing) -> Iterator[Action]:
     node, entry = standing.node, standing.entry
     if standing.parent is None or (node.category is not None and node.category.raw == "SubTree"):
         return
@@ -87,7 +98,7 @@ def _extract(workspace: Workspace, path: str, standing: Standing) -> Iterator[Re
     call = f"SubTree {written(name)}{f' ({arguments})' if arguments else ''}"
     end = _item_end(file, entry)
     made = (Edit(block.span, call), Edit(Span(end, end), "\n\n" + "\n".join(lines)))
-    yield Refactoring(f"Extract into the tree `{name}`", "refactor.extract", {path: made})
+    yield Action(f"Extract into the tree `{name}`", "refactor.extract", {path: made})
 
 
 def _keys_in(workspace: Workspace, path: str, entry: Entry, top: Node) -> dict[str, str] | None:
@@ -172,7 +183,7 @@ def _item_end(file: File, entry: Entry) -> int:
 # ---- inline a subtree ----
 
 
-def _inline(workspace: Workspace, path: str, standing: Standing) -> Iterator[Refactoring]:
+def _inline(workspace: Workspace, path: str, standing: Standing) -> Iterator[Action]:
     node, entry = standing.node, standing.entry
     if node.category is None or node.category.raw != "SubTree" or node.id is None or node.clauses or node.name:
         return
@@ -218,22 +229,22 @@ def _inline(workspace: Workspace, path: str, standing: Standing) -> Iterator[Ref
     changed = type(block)(Span(block.span.start, block.span.end + grown), block.blanks)
     inlined = moved(after, changed, block_of(workspace.files[path], entry, node).blanks)
     made = (Edit(node.span.shifted(entry.start), inlined),)
-    yield Refactoring(f"Inline the tree `{found.symbol.name}`", "refactor.inline", {path: made})
+    yield Action(f"Inline the tree `{found.symbol.name}`", "refactor.inline", {path: made})
 
 
 # ---- wrap and unwrap a node ----
 
 
-def _wrap(workspace: Workspace, path: str, standing: Standing) -> Iterator[Refactoring]:
+def _wrap(workspace: Workspace, path: str, standing: Standing) -> Iterator[Action]:
     file = workspace.files[path]
     block = block_of(file, standing.entry, standing.node)
     for head, what in _WRAPPERS:
         first, *others = shifts(file, block, block.blanks + STEP)
         opened = Edit(first.span, f"{block.blanks}{head}\n{first.text}")
-        yield Refactoring(f"Wrap in {what}", "refactor.rewrite", {path: (opened, *others)})
+        yield Action(f"Wrap in {what}", "refactor.rewrite", {path: (opened, *others)})
 
 
-def _unwrap(workspace: Workspace, path: str, standing: Standing) -> Iterator[Refactoring]:
+def _unwrap(workspace: Workspace, path: str, standing: Standing) -> Iterator[Action]:
     node = standing.node
     if len(node.children) != 1 or not isinstance(node.children[0], Node) or node.clauses:
         return
@@ -246,7 +257,7 @@ def _unwrap(workspace: Workspace, path: str, standing: Standing) -> Iterator[Ref
     first, *others = shifts(file, child, own.blanks)
     removed = Edit(Span(own.span.start - len(own.blanks), first.span.end), own.blanks)
     title = f"Unwrap: remove `{node.head.text}`"
-    yield Refactoring(title, "refactor.rewrite", {path: (removed, *others)})
+    yield Action(title, "refactor.rewrite", {path: (removed, *others)})
 
 
 _WRAPPERS = (
@@ -262,7 +273,7 @@ _WRAPPERS = (
 # ---- lift a requirement to the file's level ----
 
 
-def _lift(workspace: Workspace, path: str, entry: Entry, offset: int) -> Iterator[Refactoring]:
+def _lift(workspace: Workspace, path: str, entry: Entry, offset: int) -> Iterator[Action]:
     """A requirement that is defined in place becomes an item of its own, and its place refers to it."""
     tree = entry.item
     if not isinstance(tree, Tree):
@@ -290,7 +301,7 @@ def _lift(workspace: Workspace, path: str, entry: Entry, offset: int) -> Iterato
                 if len(quality.requirements) > 1 or opened < 0 or closed < 0 or between.strip():
                     continue
                 refer = Edit(Span(opened, closed + 1), f"satisfies {name}")
-            yield Refactoring(
+            yield Action(
                 f"Move `{requirement.name.text}` to the top level of the file", "refactor.extract", {path: (put, refer)}
             )
 

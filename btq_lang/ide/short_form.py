@@ -10,7 +10,7 @@ from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.ide.block import node_at
 from btq_lang.ide.meaning import entry_at
-from btq_lang.ide.refactor import Refactoring
+from btq_lang.ide.refactor import Action
 from btq_lang.syntax.tokens import CLOSE, NODE_CLAUSES, OPEN
 from btq_lang.syntax.tree import Entry, Node, Pair, Satisfices, Tree, is_name, quote
 from btq_lang.util.text import Edit, Span, apply_edits
@@ -22,7 +22,7 @@ _Rewrites: TypeAlias = Mapping[int, tuple[Edit, ...]]
 
 def short_form(
     workspace: Workspace, path: str, offset: int, found: Sequence[Diagnostic] | None = None
-) -> Iterator[Refactoring]:
+) -> Iterator[Action]:
     """The refactorings of the node at a place, and of the whole file, to the short form, unless they have it
     already."""
     file = workspace.files[path]
@@ -32,11 +32,11 @@ def short_form(
     rewrites = _placeholders(workspace, path, found)
     standing = node_at(file, entry, offset)
     if standing is not None and (edits := tuple(_of_node(file, entry, standing.node, rewrites))):
-        yield Refactoring("Write the node in the short form", "refactor.rewrite", {path: edits})
+        yield Action("Write the node in the short form", "refactor.rewrite", {path: edits})
     text = _whole_file(file, rewrites)
     if text != file.text:
         whole = (Edit(Span(0, len(file.text)), text),)
-        yield Refactoring("Write the file in the short form", "refactor.rewrite", {path: whole})
+        yield Action("Write the file in the short form", "refactor.rewrite", {path: whole})
 
 
 def _placeholders(workspace: Workspace, path: str, found: Sequence[Diagnostic] | None) -> _Rewrites:

@@ -19,7 +19,6 @@ from btq_lang.lsp import (
     colours,
     commands,
     documents,
-    explaining,
     hints,
     lifecycle,
     logs,
@@ -30,5 +29,5 @@ from btq_lang.lsp.editor import Server
 
 def register(server: Server) -> None:
     """Register all handlers with pygls."""
-    for group in (lifecycle, documents, navigation, explaining, colours, acting, hints, commands, logs):
+    for group in (lifecycle, documents, navigation, colours, acting, hints, commands, logs):
         group.register(server)

@@ -22,10 +22,10 @@ from btq_lang.lsp.protocol import Json, Plain
 from btq_lang.util.text import Edit, Encoding, LineIndex, Position, Span
 
 if TYPE_CHECKING:  # all these import the checks; the server must start fast
-    from btq_lang.ide.actions import Action
     from btq_lang.ide.completion import Completion
     from btq_lang.ide.hover import Hover, Signature
     from btq_lang.ide.outline import Match, Outline
+    from btq_lang.ide.refactor import Action
     from btq_lang.ide.structure import Fold
     from btq_lang.workspace.findings import Findings
     from btq_lang.workspace.loader import LoadProblem

@@ -20,7 +20,7 @@ from btq_lang.checks import check
 from btq_lang.commands.opening import open_workspace
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.ide.actions import Action, code_actions
+from btq_lang.ide.actions import code_actions
 from btq_lang.ide.calls import called, callers, prepare_calls
 from btq_lang.ide.colours import colours, difference, encoded_within, groups, stretch_of
 from btq_lang.ide.completion import Completion, complete
@@ -41,6 +41,7 @@ from btq_lang.ide.on_type import linked_ranges, on_type
 from btq_lang.ide.outline import Outline, document_symbols, workspace_symbols
 from btq_lang.ide.proposals import Proposal
 from btq_lang.ide.readiness import getting_ready
+from btq_lang.ide.refactor import Action
 from btq_lang.ide.rename import Refusal, prepare_rename, rename
 from btq_lang.ide.structure import document_links, folding_ranges, selection_range
 from btq_lang.lexer import tokens as tokens_of
