@@ -34,9 +34,6 @@ class Attribute:
         """The value as the engine reads it."""
         return unescape(self.raw) if "&" in self.raw else self.raw
 
-    def __repr__(self) -> str:
-        return f'{self.name}="{self.raw}"'
-
 
 class Element:
     """An element.
@@ -101,9 +98,6 @@ class Element:
             self._places = {match[1]: (match.start(1), match.start(3)) for match in found}
         return self._places.get(attribute.name, _NOWHERE)
 
-    def __repr__(self) -> str:
-        return f"<{self.tag} {self.attributes} {len(self.children)} children>"
-
 
 class Comment:
     """`<!--text-->`.
@@ -119,9 +113,6 @@ class Comment:
         self.beside: Final = beside
         self.start: Final = start
 
-    def __repr__(self) -> str:
-        return f"<!--{self.text}-->"
-
 
 class Text:
     """Character data that is not blank: the text of a port or a description, unescaped."""
@@ -132,9 +123,6 @@ class Text:
         self.text: Final = text
         self.start: Final = start
 
-    def __repr__(self) -> str:
-        return repr(self.text)
-
 
 class Raw:
     """One element as the user spelt it, from its `<` to its `>`; only made, never read."""
@@ -143,9 +131,6 @@ class Raw:
 
     def __init__(self, text: str) -> None:
         self.text: Final = text
-
-    def __repr__(self) -> str:
-        return self.text
 
 
 Content: TypeAlias = "Element | Comment | Text | Raw"

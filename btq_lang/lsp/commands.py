@@ -106,9 +106,7 @@ def register(server: Server) -> None:
     @server.command(USES)
     def uses(places: list[types.Location]) -> None:
         """Show locations in an editor without a list for them: go to a single one, or show a message that names all."""
-        capabilities = server.client_capabilities.window
-        can_show = capabilities is not None and capabilities.show_document is not None
-        if len(places) == 1 and can_show:
+        if len(places) == 1 and server.supports("window.show_document"):
             (place,) = places
             server.window_show_document(types.ShowDocumentParams(place.uri, take_focus=True, selection=place.range))
             return

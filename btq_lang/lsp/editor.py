@@ -19,6 +19,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 from lsprotocol import types
+from pygls.capabilities import get_capability
 from pygls.exceptions import JsonRpcException
 from pygls.io_ import StdoutWriter, run_async
 from pygls.lsp.server import LanguageServer
@@ -211,39 +212,22 @@ class Server(LanguageServer):
 
     # ---- capabilities ----
 
+    def supports(self, capability: str) -> bool:
+        """Whether the editor has declared a capability, such as `window.work_done_progress`."""
+        return bool(get_capability(self.client_capabilities, capability))
+
     @property
     def pulls(self) -> bool:
         """Whether the editor pulls diagnostics."""
-        document = self.client_capabilities.text_document
-        return document is not None and document.diagnostic is not None
-
-    @property
-    def takes_snippets(self) -> bool:
-        document = self.client_capabilities.text_document
-        completion = document.completion if document else None
-        item = completion.completion_item if completion else None
-        return bool(item and item.snippet_support)
-
-    @property
-    def takes_links(self) -> bool:
-        document = self.client_capabilities.text_document
-        return bool(document and document.definition and document.definition.link_support)
-
-    @property
-    def asks_for_tokens(self) -> bool:
-        document = self.client_capabilities.text_document
-        return document is not None and document.semantic_tokens is not None
+        return self.supports("text_document.diagnostic")
 
     def versions_for_edits(self) -> dict[str, int] | None:
         """The versions of open files, if the editor supports them in edits."""
-        workspace = self.client_capabilities.workspace
-        edit = workspace.workspace_edit if workspace else None
-        return self.versions if edit and edit.document_changes else None
+        return self.versions if self.supports("workspace.workspace_edit.document_changes") else None
 
     def can_refresh(self, what: str) -> bool:
         """Whether the editor supports a refresh request."""
-        capabilities = getattr(self.client_capabilities.workspace, what, None)
-        return bool(capabilities and capabilities.refresh_support)
+        return self.supports(f"workspace.{what}.refresh_support")
 
     def knows_command(self, command: str) -> bool:
         """Whether the editor has declared a command of its own under `experimental`."""
@@ -381,7 +365,8 @@ class Server(LanguageServer):
         for path in [path for path in self.session.open if path not in self._ready]:
             place = self.at(types.TextDocumentIdentifier(self.convert.uri(path)))
             if place is not None:
-                tokens = features.colours.making(*place, self.convert.encoding) if self.asks_for_tokens else ()
+                has_tokens = self.supports("text_document.semantic_tokens")
+                tokens = features.colours.making(*place, self.convert.encoding) if has_tokens else ()
                 for _ in chain(self.protocol.getting_ready(), tokens, features.readiness.getting_ready(*place)):
                     await asyncio.sleep(PAUSE if self.answering else 0)
             self._ready.add(path)

@@ -131,7 +131,7 @@ def register(server: Server) -> None:
             features.completion.complete,
             asked=context.trigger_kind == types.CompletionTriggerKind.Invoked,
             trigger=context.trigger_character or "",
-            snippets=server.takes_snippets,
+            snippets=server.supports("text_document.completion.completion_item.snippet_support"),
         )
         place = server.at(params.text_document, reads=True)
         if place is None:

@@ -28,12 +28,11 @@ def register(server: Server) -> None:
         # Not in `initialize`: the editor waits for its result, and modules that read files take long to import.
         folders = [*server.workspace.folders] or [root for root in (server.workspace.root_uri,) if root]
         _work_in(session, tuple(map(convert.path, folders)))
-        capabilities = server.client_capabilities.workspace
         gc.freeze()  # imported objects stay alive
         gc.set_threshold(100_000, 50, 10)  # most objects of an edit stay alive: collect less often
         try:
             await _register_watchers(server)
-            if capabilities is not None and capabilities.configuration:
+            if server.supports("workspace.configuration"):
                 await _ask_settings(server)
             await _first_check(server)
         finally:
@@ -42,8 +41,7 @@ def register(server: Server) -> None:
 
     @server.feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
     async def did_change_configuration(params: types.DidChangeConfigurationParams) -> None:
-        capabilities = server.client_capabilities.workspace
-        if capabilities is not None and capabilities.configuration:
+        if server.supports("workspace.configuration"):
             await _ask_settings(server)
         else:
             settings = params.settings
@@ -75,9 +73,7 @@ def _work_in(session: Session, folders: tuple[str, ...]) -> None:
 
 async def _register_watchers(server: Server) -> None:
     """Register file watchers with the editor, if it supports that."""
-    workspace = server.client_capabilities.workspace
-    watching = workspace.did_change_watched_files if workspace else None
-    if watching is None or not watching.dynamic_registration:
+    if not server.supports("workspace.did_change_watched_files.dynamic_registration"):
         return
     from btq_lang.workspace.file import CPP_SUFFIXES, SIDE_SUFFIX, YAML_SUFFIXES  # as in `_endings`
 

@@ -38,7 +38,7 @@ def register(server: Server) -> None:
         if answer is None:
             return []
         _, path, (workspace, targets) = answer
-        if not server.takes_links:
+        if not server.supports("text_document.definition.link_support"):
             return [convert.location(workspace, target.path, target.name) for target in targets]
         return [
             types.LocationLink(

@@ -32,8 +32,7 @@ async def progress(
     Args:
         begun, ended: the first and the last message.
     """
-    window = server.client_capabilities.window
-    if window is None or not window.work_done_progress:
+    if not server.supports("window.work_done_progress"):
         yield lambda *_: None
         return
     server.count += 1
