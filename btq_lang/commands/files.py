@@ -5,7 +5,7 @@ from __future__ import annotations
 import os.path
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.opening import file_of
@@ -107,8 +107,6 @@ class Files:
         self._of_stdin: LoadProblem | None = None
         self.folders: tuple[str, ...] = (absolute("."),)
         self._known: dict[str, File] = {}
-        self._xml: XmlBelow | None = None
-        self._cpp: CppFiles | None = None
         self._sources: dict[str, Read] = {}  # the C++ of the last request, by the path of the project file
 
     def groups(
@@ -284,23 +282,19 @@ class Files:
         pooled = frozenset(files.keys() - workspace.files.keys())
         return replace(group, workspace=Workspace(files, project), pooled=pooled)
 
-    @property
+    @cached_property
     def xml(self) -> XmlBelow:
         """What is known of XML below folders."""
-        if self._xml is None:
-            from btq_lang.commands.xml_below import XmlBelow  # many projects have no XML
+        from btq_lang.commands.xml_below import XmlBelow  # many projects have no XML
 
-            self._xml = XmlBelow()
-        return self._xml
+        return XmlBelow()
 
-    @property
+    @cached_property
     def cpp(self) -> CppFiles:
         """What is known of C++ sources."""
-        if self._cpp is None:
-            from btq_lang.commands.cpp_files import CppFiles  # few projects name any
+        from btq_lang.commands.cpp_files import CppFiles  # few projects name any
 
-            self._cpp = CppFiles()
-        return self._cpp
+        return CppFiles()
 
     def _missions(self, folder: str, found: tuple[str, ...]) -> tuple[str, ...]:
         """Those of a folder's files that are missions."""

@@ -10,13 +10,12 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.cpp.grammar import arguments, callee, contents, enclosing, field, place_of, text_of, walk
-from btq_lang.cpp.model import CppNode, CppNodes, Place
+from btq_lang.cpp.model import CppNode, CppNodes
 from btq_lang.cpp.ports import Body, PortsReader, Provided
 from btq_lang.cpp.source import Call, Source
 from btq_lang.cpp.sources import Bound, Sources, library_ports
 from btq_lang.cpp.uses import Uses
 from btq_lang.cpp.values import string
-from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -78,12 +77,12 @@ class _Reader:
         """`registerSimpleAction("Name", function, ports)`"""
         if (name := self._name(call, body, given[0])) is None:
             return None
-        provided: Provided | None = Provided((), True)
-        if len(given) > 2 and (provided := self._ports.of_argument(given[2], body)) is None:
-            message = f"it cannot be seen which ports `{name}` has: `{text_of(given[2])}`"
-            self.sources.report(message, place_of(call.path, call.node))
         place = place_of(call.path, call.node)
-        return _node(name, _SIMPLE[call.name], "", place, place, provided)
+        provided = self._ports.of_argument(given[2], body) if len(given) > 2 else Provided((), True)
+        if provided is None:
+            self.sources.report(f"it cannot be seen which ports `{name}` has: `{text_of(given[2])}`", place)
+            provided = Provided((), False)
+        return CppNode(name, _SIMPLE[call.name], "", place, place, provided.ports, provided.complete)
 
     def _manifest(self, call: Call, body: Body, manifest: Node) -> CppNode | None:
         """`registerBuilder(CreateManifest<T>("Name", ports), builder)`"""
@@ -95,8 +94,8 @@ class _Reader:
         self._report(call, f"it cannot be seen which node this registers: `{text_of(manifest)}`")
         return None
 
-    def _class(self, call: Call, body: Body, type_: str, named: Node, ports: Node | None) -> CppNode | None:
-        """A class under a name; ports: the argument that may be its ports."""
+    def _class(self, call: Call, body: Body, type_: str, named: Node, given: Node | None) -> CppNode | None:
+        """A class under a name; given: the argument that may be its ports."""
         if (name := self._name(call, body, named)) is None:
             return None
         place = place_of(call.path, call.node)
@@ -110,14 +109,26 @@ class _Reader:
             bases = bases or "a base class"
             self._report(call, f"the category of `{name}` cannot be seen: {bases} is not in the sources")
             return None
-        provided = self._ports.of_argument(ports, body) if ports is not None and _may_be_ports(ports, body) else None
-        if provided is None:
-            provided = self._ports.of_class(bound, place)
+        of_call = self._ports.of_argument(given, body) if given is not None and _may_be_ports(given, body) else None
+        provided = of_call or self._ports.of_class(bound, place)
+        ports, complete = provided.ports, provided.complete
         if bound.class_ is None:
-            return _node(name, category, bound.name, place, place, provided)
-        class_place = place_of(bound.class_.path, field(bound.class_.node, "name") or bound.class_.node)
-        node = _node(name, category, bound.class_.name, place, class_place, provided, Uses(self.sources, bound))
-        return replace(node, at_once=ends_within_tick(self.sources, bound))
+            return CppNode(name, category, bound.name, place, place, ports, complete)
+        uses = Uses(self.sources, bound)
+        inputs = [each for each in ports if each.direction != "output" and each.default is None]
+        return CppNode(
+            name,
+            category,
+            bound.class_.name,
+            place,
+            place_of(bound.class_.path, field(bound.class_.node, "name") or bound.class_.node),
+            ports,
+            complete,
+            uses.unread(ports),
+            uses.undeclared(ports) if complete else (),
+            tuple((each.name, uses.without(each)) for each in inputs),
+            ends_within_tick(self.sources, bound),
+        )
 
     def _name(self, call: Call, body: Body, node: Node) -> str | None:
         name = string(self.sources, node, body.frame)
@@ -127,32 +138,6 @@ class _Reader:
 
     def _report(self, call: Call, message: str) -> None:
         self.sources.report(message, place_of(call.path, call.node), hides_node=True)
-
-
-def _node(
-    name: str,
-    category: Category,
-    class_name: str,
-    place: Place,
-    class_place: Place,
-    provided: Provided | None,
-    uses: Uses | None = None,
-) -> CppNode:
-    ports, complete = (provided.ports, provided.complete) if provided is not None else ((), False)
-    if uses is None:
-        return CppNode(name, category, class_name, place, class_place, ports, complete)
-    return CppNode(
-        name,
-        category,
-        class_name,
-        place,
-        class_place,
-        ports,
-        complete,
-        uses.unread(ports),
-        uses.undeclared(ports) if complete else (),
-        tuple((each.name, uses.without(each)) for each in ports if each.direction != "output" and each.default is None),
-    )
 
 
 def _may_be_ports(node: Node, body: Body) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.ide.block import node_at
 from btq_lang.ide.meaning import Found, Subject, at, definition, entry_at, everywhere, own_quality, quality_of, subject
@@ -78,22 +80,21 @@ def find_references(
     workspace: Workspace, path: str, offset: int, include_definition: bool = True
 ) -> tuple[tuple[str, Span], ...]:
     """Every reference, in every file, to what the word at a place means."""
-    found = at(workspace, path, offset)
-    if found is None or found.entry is None or found.mention.what in _WITHOUT_REFERENCES:
-        return ()
-    wanted = subject(workspace, found)
-    places = everywhere(workspace, wanted)
+    places = _references(workspace, path, offset, None)
     return tuple((one.path, one.span) for one in places if include_definition or not is_definition(workspace, one))
 
 
 def highlights(workspace: Workspace, path: str, offset: int) -> tuple[Highlight, ...]:
     """The references in this file to what the word at a place means."""
+    places = _references(workspace, path, offset, (path,))
+    return tuple(Highlight(one.span, one.mention.defines or writes(workspace, one)) for one in places)
+
+
+def _references(workspace: Workspace, path: str, offset: int, paths: tuple[str, ...] | None) -> Iterable[Found]:
     found = at(workspace, path, offset)
     if found is None or found.entry is None or found.mention.what in _WITHOUT_REFERENCES:
         return ()
-    wanted = subject(workspace, found)
-    places = everywhere(workspace, wanted, (path,))
-    return tuple(Highlight(one.span, one.mention.defines or writes(workspace, one)) for one in places)
+    return everywhere(workspace, subject(workspace, found), paths)
 
 
 def is_definition(workspace: Workspace, found: Found) -> bool:
