@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterator, Mapping
+from functools import cache, partial
 from typing import Final, TypeAlias
 
 from btq_lang.btcpp.document import Document, Element
@@ -255,14 +256,7 @@ class _Places:
 
     def __init__(self, workspace: Workspace, folder: str) -> None:
         self._workspace = workspace
-        self._folder = folder or "."
-        self._names: dict[str, str] = {}
-
-    def name(self, path: str) -> str:
-        known = self._names.get(path)
-        if known is None:
-            known = self._names[path] = posixpath.relpath(path, self._folder)
-        return known
+        self.name = cache(partial(posixpath.relpath, start=folder or "."))
 
     def of(self, place: Place) -> dict[str, Json]:
         if place.path is None:

@@ -6,6 +6,7 @@ One invariant: only `repair` and `problem` change it; they keep one remark for a
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache, partial
 from typing import Final
 
 from btq_lang.btcpp.constants import types_below
@@ -51,8 +52,9 @@ class Source:
         self.comments: Final[Mapping[int, Comments]] = comments(self.file.parsed)
         self.repairs: Final[dict[Remark, None]] = {}
         self.problems: Final[dict[Remark, None]] = {}
-        self._tree_ids: dict[str, str] = {}
-        self._types: dict[tuple[str, str], tuple[str, ...]] = {}
+        self.tree_id: Final = cache(self._tree_id)
+        # The types as which a port of a tree is read.
+        self.types_below: Final = cache(partial(types_below, self.scope, self.target))
         self._changed_comments: list[SourceComment] = []
 
     def repair(self, entry: Entry, part: Placed, message: str) -> None:
@@ -63,13 +65,10 @@ class Source:
         """Record what cannot be written."""
         self.problems[Remark(self.path, Span(part.start, part.end).shifted(entry.start), message)] = None
 
-    def tree_id(self, name: str) -> str:
+    def _tree_id(self, name: str) -> str:
         """The ID under which a tree is written, in every file and wherever it is named."""
-        known = self._tree_ids.get(name)
-        if known is None:
-            refused = not self.verbatim and model_name_problem(name, self.target) is not None
-            known = self._tree_ids[name] = legal_name(name) if refused and not self._stays(name) else name
-        return known
+        refused = not self.verbatim and model_name_problem(name, self.target) is not None
+        return legal_name(name) if refused and not self._stays(name) else name
 
     def _stays(self, tree: str) -> bool:
         """Whether a tree is in XML that is not written, so that its name cannot change."""
@@ -84,13 +83,6 @@ class Source:
     def around(self, entry: Entry, part: Placed) -> Comments:
         """The comments of an element."""
         return self.comments.get(entry.start + part.start, NO_COMMENTS)
-
-    def types_below(self, tree: str, port: str) -> tuple[str, ...]:
-        """The types as which a port of a tree is read, as `constants` finds them."""
-        known = self._types.get((tree, port))
-        if known is None:
-            known = self._types[tree, port] = types_below(self.scope, self.target, tree, port)
-        return known
 
     def respelt(self, entry: Entry, part: Placed, said: str, written: str) -> None:
         """Record that a constant of a subtree's port is spelt as another type."""
