@@ -6,12 +6,11 @@ One invariant: only `wrappers` makes elements of this data.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 from btq_lang.util.record import Record
 
-if TYPE_CHECKING:
-    WrapperTag: TypeAlias = Literal["Sequence", "ReactiveSequence", "Timeout"]
+WrapperTag: TypeAlias = Literal["Sequence", "ReactiveSequence", "Timeout"]
 
 # The kinds that enforce a clause: a log shows by them what stopped a node.
 LIMITING: Final = "Timeout"  # halts the node after a time

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import reduce
 from math import inf
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.catalog.units import Unit, from_si
 from btq_lang.requirements.model import (
@@ -37,9 +37,8 @@ from btq_lang.requirements.model import (
     Value,
 )
 
-if TYPE_CHECKING:
-    # The variable that holds the value of a table, read when the node starts, in this unit (None: SI).
-    Stored: TypeAlias = Callable[[Table, "Unit | None"], str]
+# The variable that holds the value of a table, read when the node starts, in this unit (None: SI).
+Stored: TypeAlias = Callable[[Table, "Unit | None"], str]
 
 
 class NoScript(Exception):

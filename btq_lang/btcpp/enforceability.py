@@ -7,7 +7,7 @@ so it depends on neither elements nor files; what is put around nodes is for `en
 from __future__ import annotations
 
 from collections.abc import Callable, Container
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.btcpp.around import may_be_skipped
 from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
@@ -16,11 +16,9 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, Span, Target
 from btq_lang.requirements.spans import node_of
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.queries import Store
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 class Elsewhere(NotEnforced):

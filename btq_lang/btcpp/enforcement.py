@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 from btq_lang.btcpp.around import START, FirstValues, Leaf, Wrapper
 from btq_lang.btcpp.conditions import all_of
@@ -34,8 +34,7 @@ from btq_lang.util.record import Record, replace
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
-if TYPE_CHECKING:
-    Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
+Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
 
 
 class ClauseEnforcement(Record):

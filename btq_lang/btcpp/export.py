@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.document import Attribute, Content, Document, Element, escape
@@ -22,11 +22,8 @@ from btq_lang.syntax.tree import Models as ModelsItem
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import Record
 from btq_lang.workspace.comments import NO_COMMENTS
-from btq_lang.workspace.file import SUFFIXES
+from btq_lang.workspace.file import SUFFIXES, Definition
 from btq_lang.workspace.workspace import Workspace
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.file import Definition
 
 IncludedAs: TypeAlias = Callable[[str], str]
 

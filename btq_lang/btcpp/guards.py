@@ -7,9 +7,9 @@ work, or the engine does by itself what it demands.  It knows neither elements n
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from btq_lang.btcpp.around import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, Leaf, Wrapper
+from btq_lang.btcpp.around import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, Leaf, Wrapper, WrapperTag
 from btq_lang.btcpp.conditions import (
     NoScript,
     all_of,
@@ -39,9 +39,6 @@ from btq_lang.requirements.model import (
 )
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.resolved import ResolvedNode
-
-if TYPE_CHECKING:
-    from btq_lang.btcpp.around import WrapperTag
 
 
 class NotEnforced(Exception):

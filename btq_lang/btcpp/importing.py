@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element, Text
 from btq_lang.btcpp.generated import may_be_generated, without_generated
@@ -27,17 +27,16 @@ from btq_lang.util.record import Record
 from btq_lang.util.source_map import Places
 from btq_lang.util.text import Span
 
-if TYPE_CHECKING:
-    IncludedAs: TypeAlias = Callable[[str], str]
-    # A word of a line and what it was made of: the value of an attribute, a span of the XML, or (None, if it is the
-    # first) the element's tag.
-    Piece: TypeAlias = tuple[str, Attribute | tuple[int, int] | None]
-    # A line: its number and the column of its first word, its element, the words, the pairs in brackets with what they
-    # were made of, and the text between them.
-    Mark: TypeAlias = tuple[int, int, Element | None, Sequence[Piece], Sequence[str], Sequence[Attribute] | None, str]
-    # How a node is written: the line without its indentation (empty: it is composed each time), the words, the
-    # attributes in brackets and their spelling.
-    NodeLine: TypeAlias = tuple[str, Sequence[Piece], Sequence[Attribute], Sequence[str]]
+IncludedAs: TypeAlias = Callable[[str], str]
+# A word of a line and what it was made of: the value of an attribute, a span of the XML, or (None, if it is the
+# first) the element's tag.
+Piece: TypeAlias = tuple[str, Attribute | tuple[int, int] | None]
+# A line: its number and the column of its first word, its element, the words, the pairs in brackets with what they
+# were made of, and the text between them.
+Mark: TypeAlias = tuple[int, int, Element | None, Sequence[Piece], Sequence[str], Sequence[Attribute] | None, str]
+# How a node is written: the line without its indentation (empty: it is composed each time), the words, the
+# attributes in brackets and their spelling.
+NodeLine: TypeAlias = tuple[str, Sequence[Piece], Sequence[Attribute], Sequence[str]]
 
 
 class Imported(Record):

@@ -7,7 +7,6 @@ Known are the engine's nodes, the models of all files, and the nodes that no mod
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.models import undeclared
 from btq_lang.catalog.kinds import CHILDREN, NodeKind, PortKind
@@ -17,9 +16,7 @@ from btq_lang.catalog.names import is_port_name, is_xml_name
 from btq_lang.catalog.nodes import BUILTINS, available, port_type
 from btq_lang.syntax.tree import Model, Port
 from btq_lang.util.record import Record
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 class PortInterface(Record):

@@ -14,7 +14,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from itertools import chain
-from typing import TYPE_CHECKING, Final, NoReturn, TypeAlias
+from typing import Final, NoReturn, TypeAlias
 
 from btq_lang.btcpp.document import (
     ATTRIBUTE,
@@ -36,10 +36,8 @@ from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Span
 
-if TYPE_CHECKING:
-    # Its name, its attributes (None: an end tag), whether it is an empty element, its length, whether text may follow
-    # it.
-    Tag: TypeAlias = tuple[str, tuple[Attribute, ...] | None, bool, int, bool]
+# Its name, its attributes (None: an end tag), whether it is an empty element, its length, whether text may follow it.
+Tag: TypeAlias = tuple[str, tuple[Attribute, ...] | None, bool, int, bool]
 
 MAX_DEPTH: Final = 498  # open elements; the engine refuses the next one
 

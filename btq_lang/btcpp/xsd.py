@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from itertools import repeat
-from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element, Text, escape, write
 from btq_lang.btcpp.interfaces import Interface, PortInterface, interfaces, merged_ports, tree_names
@@ -18,9 +17,7 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.kinds import CATEGORIES, CHILDREN
 from btq_lang.catalog.literals import values_of
 from btq_lang.catalog.names import is_xml_name
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 def xsd(workspaces: Sequence[Workspace], version: str, unknown: Container[str]) -> str:

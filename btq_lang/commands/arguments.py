@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from argparse import ArgumentParser, ArgumentTypeError, RawDescriptionHelpFormatter
-from typing import TYPE_CHECKING, Any, Final, NoReturn
+from argparse import ArgumentParser, ArgumentTypeError, RawDescriptionHelpFormatter, _SubParsersAction
+from typing import Any, Final, NoReturn
 
 from btq_lang.commands.options import CheckOptions, add_server_options
 from btq_lang.commands.verdict_formats import FORMATS as VERDICT_FORMATS
@@ -16,9 +16,6 @@ from btq_lang.render import FORMATS
 from btq_lang.trace import FORMATS as TRACE_FORMATS
 from btq_lang.util.spelling import near
 from btq_lang.util.version import __version__
-
-if TYPE_CHECKING:
-    from argparse import _SubParsersAction
 
 SEVERITIES = ("error", "warning", "info", "hint")
 

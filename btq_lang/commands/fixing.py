@@ -5,21 +5,18 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.btcpp.opening import with_source
 from btq_lang.checks import check_each
 from btq_lang.commands.files import Group, write_stdout
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.render.colour import painter
 from btq_lang.util.record import replace
+from btq_lang.workspace.file import File
 from btq_lang.workspace.fixes import fixed
 from btq_lang.workspace.loader import LoadProblem, shown, write_whole
 from btq_lang.workspace.workspace import Workspace
-
-if TYPE_CHECKING:
-    from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.workspace.file import File
-
 
 _ROUNDS: Final = 10  # of fixing: a fix may enable another
 

@@ -8,25 +8,22 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import islice
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.opening import with_source
 from btq_lang.checks import check
 from btq_lang.checks.silencing import above_line, at_line_end, before_element, before_tag, line_to_silence
-from btq_lang.util.text import apply_edits
+from btq_lang.commands.files import Group
+from btq_lang.commands.options import CheckOptions
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.render import Finding
+from btq_lang.util.text import Edit, apply_edits
+from btq_lang.workspace.file import File
 from btq_lang.workspace.loader import LoadProblem, write_whole
+from btq_lang.workspace.workspace import Workspace
 
-if TYPE_CHECKING:
-    from btq_lang.commands.files import Group
-    from btq_lang.commands.options import CheckOptions
-    from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.render import Finding
-    from btq_lang.util.text import Edit
-    from btq_lang.workspace.file import File
-    from btq_lang.workspace.workspace import Workspace
-
-    Added: TypeAlias = tuple[Edit, list[Diagnostic]]  # a comment, and what it silences
+Added: TypeAlias = tuple[Edit, list[Diagnostic]]  # a comment, and what it silences
 
 
 def add_ignores(

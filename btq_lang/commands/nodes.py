@@ -6,9 +6,10 @@ import os
 import sys
 from argparse import Namespace
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.btcpp import reader
+from btq_lang.btcpp.document import Element
 from btq_lang.catalog.cpp_classes import ENGINE
 from btq_lang.commands.cpp_files import MISSING
 from btq_lang.commands.options import Refused
@@ -23,10 +24,7 @@ from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import CPP_SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, absolute, collect, head, read, shown
 
-if TYPE_CHECKING:
-    Exported: TypeAlias = tuple[str, tuple[Diagnostic, ...]]  # the text, and what its nodes leave unseen
-    from btq_lang.btcpp.document import Element
-
+Exported: TypeAlias = tuple[str, tuple[Diagnostic, ...]]  # the text, and what its nodes leave unseen
 
 FORMATS = ("btq", "xml", "html")
 

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from itertools import chain
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.commands.files import STDIN
+from btq_lang.commands.options import CheckOptions
 from btq_lang.commands.output import is_coloured, mission_problem, terminal_width, write_output
 from btq_lang.render import Report, render, with_paths
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import absolute, shown
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from btq_lang.commands.options import CheckOptions
 
 FOR_PEOPLE: Final = ("full", "concise")
 

@@ -11,19 +11,15 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.recognition import defined_in
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.commands.git import GitTrouble, revisions
+from btq_lang.commands.files import Group
+from btq_lang.commands.git import GitTrouble, Revisions, revisions
 from btq_lang.util.record import replace
 from btq_lang.workspace.config import include_candidates
 from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
-
-if TYPE_CHECKING:
-    from btq_lang.commands.files import Group
-    from btq_lang.commands.git import Revisions
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 def affected(groups: Iterable[Group], revision: str) -> tuple[Group, ...]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cache
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog.nav2 import FILES, PACKAGED
 from btq_lang.checks.lookups import distribution
+from btq_lang.commands.files import Group
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 from btq_lang.render import Finding
 from btq_lang.util.record import replace
@@ -16,11 +17,6 @@ from btq_lang.util.text import counted
 from btq_lang.workspace.file import File
 from btq_lang.workspace.loader import read
 from btq_lang.workspace.workspace import Workspace
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from btq_lang.commands.files import Group
 
 
 def moving(groups: Iterable[Group], target: str) -> tuple[Group, ...]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.ide.appearance import (
     DEFINED,
@@ -33,9 +33,8 @@ from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Encoding, Span, width_of
 from btq_lang.workspace.references import Listener, Mention, Owner, What, report
 
-if TYPE_CHECKING:
-    Token: TypeAlias = tuple[int, int, str]  # start, end and appearance
-    World: TypeAlias = tuple[str, tuple[str, ...], tuple[str, ...]]
+Token: TypeAlias = tuple[int, int, str]  # start, end and appearance
+World: TypeAlias = tuple[str, tuple[str, ...], tuple[str, ...]]
 
 
 class Known:

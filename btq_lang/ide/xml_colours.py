@@ -7,22 +7,17 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.ide.appearance import PLAIN, TEXT, USED, WRITTEN
 from btq_lang.ide.colours import Colours, part_of
-from btq_lang.ide.stretches import encode
+from btq_lang.ide.stretches import Token, encode
 from btq_lang.syntax.script import tokens as script
 from btq_lang.syntax.tokens import NUMBER, SYMBOL
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.text import Encoding, Span
 from btq_lang.workspace.file import File
-from btq_lang.workspace.references import What
+from btq_lang.workspace.references import Mention, What
 from btq_lang.workspace.workspace import Workspace
-
-if TYPE_CHECKING:
-    from btq_lang.ide.stretches import Token
-    from btq_lang.workspace.references import Mention
 
 
 def colours_in_xml(workspace: Workspace, path: str, encoding: Encoding) -> Colours:

@@ -6,10 +6,7 @@ One invariant: reporting raises nothing.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from types import FrameType
+from types import FrameType
 
 WHERE = "report it in btq's issue tracker"
 

@@ -6,7 +6,6 @@ One invariant: without a distribution nothing is said that depends on it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.recognition import listed_trees
 from btq_lang.catalog.name_kinds import Kind
@@ -21,9 +20,7 @@ from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 class Loaded(Record):

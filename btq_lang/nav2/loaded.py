@@ -11,7 +11,7 @@ import os.path
 import re
 from collections.abc import Callable, Iterator
 from functools import cache, partial
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.btcpp.recognition import listed_trees
 from btq_lang.catalog.name_kinds import Kind
@@ -26,11 +26,10 @@ from btq_lang.util.text import Span
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import absolute, collect, matching, package_folder, read
+from btq_lang.workspace.workspace import Workspace
 
-if TYPE_CHECKING:
-    ReadFile: TypeAlias = Callable[[str], str | None]
-    FindPackage: TypeAlias = Callable[[str], str | None]
-    from btq_lang.workspace.workspace import Workspace
+ReadFile: TypeAlias = Callable[[str], str | None]
+FindPackage: TypeAlias = Callable[[str], str | None]
 
 
 class Located(Record):

@@ -8,12 +8,10 @@ and this one only when a file is read.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Final
+from types import ModuleType
+from typing import Any, Final
 
 from btq_lang.util.text import Span
-
-if TYPE_CHECKING:
-    from types import ModuleType
 
 
 class Value:
