@@ -96,7 +96,7 @@ def import_xml(
             message = f"the document element is <{root.tag}>, not <root>"
             problem = Diagnostic("xml-root", root.tag_span, message, notes=(note,))
             return Imported("", (), (*done.problems, problem), Places())
-        writer = _Writer(text, for_people, included_as or _as_it_is)
+        writer = _Writer(text, for_people, included_as or (lambda path: path))
         described = without_generated(done.document, writer.changes) if may_be_generated(text) else 0
         if not keep_v3 and is_version_3(root):
             translated(root, writer.changes)
@@ -112,10 +112,6 @@ def _defined(root: Element) -> Iterator[str]:
         for each in (element,) if element.tag == "BehaviorTree" else element.elements:
             if (ID := each.get("ID")) is not None:
                 yield ID
-
-
-def _as_it_is(path: str) -> str:
-    return path
 
 
 class _Writer:
@@ -152,7 +148,8 @@ class _Writer:
         """ "Root" [ Name ] [ Attributes ], and its items below it: in a block only if something follows the root"""
         attributes = root.attributes
         head: list[Piece] = [("Root", None)]
-        if len(attributes) == 2 and _is(attributes[0], "BTCPP_format", "4") and _is_main_tree(attributes[1]):
+        is_of_4 = len(attributes) == 2 and (attributes[0].name, attributes[0].raw) == ("BTCPP_format", "4")
+        if is_of_4 and _is_main_tree(attributes[1]):
             head.append((name(attributes[1].raw), attributes[1]))
             self.line(0, root, head)
         elif attributes and _is_main_tree(attributes[0]):
@@ -515,10 +512,6 @@ def _fits(text: str, column: int, columns: int) -> bool:
         return column + len(text) <= columns
     first, *others = text.split("\n")
     return column + len(first) <= columns and all(len(line) <= columns for line in others)
-
-
-def _is(attribute: Attribute, key: str, raw: str) -> bool:
-    return attribute.name == key and attribute.raw == raw
 
 
 def _is_main_tree(attribute: Attribute) -> bool:

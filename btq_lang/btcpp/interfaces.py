@@ -94,7 +94,8 @@ def _models(workspace: Workspace, path: str) -> Iterator[Interface]:
         for symbol in summary.symbols:
             model = symbol.target
             if symbol.kind is Kind.MODEL and isinstance(model, Model) and model.category.raw != "SubTree":
-                ports = {port.name: port for port in map(_port_of_model, model.ports) if _is_attribute(port.name)}
+                known = map(_port_of_model, model.ports)
+                ports = {each.name: each for each in known if is_port_name(each.name) and is_xml_name(each.name)}
                 doc = model.text.text if model.text is not None else ""
                 category = model.category.raw
                 # A model without ports is often unfinished; the checks warn of ports then, and do not refuse them.
@@ -126,7 +127,3 @@ def merged_ports(nodes: Iterable[Interface]) -> dict[str, PortInterface]:
             values = port.values if port.values == before.values else ()
             found[name] = PortInterface(name, values, doc=before.doc if before.doc == port.doc else "")
     return found
-
-
-def _is_attribute(name: str) -> bool:
-    return is_port_name(name) and is_xml_name(name)

@@ -26,7 +26,7 @@ def spelt(word: Word) -> str:
         return inside
     if len(raw) == 1 or raw[-1] != raw[0] or (len(inside) - len(inside.rstrip("\\"))) % 2:
         return escape(word.text)  # it has no closing quote
-    return _IN_STRING.sub(_spelt_in_string, inside)
+    return _IN_STRING.sub(lambda match: _SPELT[match[0]], inside)
 
 
 def in_unit(word: Word, unit: str | None) -> str | None:
@@ -48,10 +48,6 @@ def as_comment(text: str) -> str:
         text = text.replace("--", "- -").replace("--", "- -")
         text = f"{text} " if text.endswith("-") else text
     return text
-
-
-def _spelt_in_string(match: re.Match[str]) -> str:
-    return _SPELT[match[0]]
 
 
 # Characters that XML 1.0 allows in no spelling.

@@ -131,7 +131,7 @@ class _Translator:
         for attribute in element.attributes:
             key, said = attribute.name, attribute.value
             if key == "__shared_blackboard":
-                if _is_true(said):
+                if said.strip().lower() in ("true", "1"):
                     self.report('__shared_blackboard is now _autoremap="true"', attribute)
                     found.append(self.changed(attribute, "_autoremap", "true"))
                 else:
@@ -182,10 +182,6 @@ def _is_new(element: Element) -> bool:
     if element.tag in _NEW_NODES:
         return True
     return any(attribute.name in OF_VERSION_4 for attribute in element.attributes)
-
-
-def _is_true(said: str) -> bool:
-    return said.strip().lower() in ("true", "1")
 
 
 # The tags of elements that may have to be translated because of their tag or their ID.

@@ -18,7 +18,6 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Span
 from btq_lang.workspace.config import SUPPORTED, is_engine
-from btq_lang.workspace.file import File
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -119,10 +118,7 @@ def errors(
     replaced: Collection[str] = tuple(map(xml_name, made)) if replaces else ()
     reported = {*built, *included}
     for path in (*built, *(each for each in included if each not in replaced)):
-        for each in _as_written(workspace.files[path]) if verbatim else check(workspace, path):
+        own = workspace.files[path].origin or workspace.files[path].parsed
+        for each in own.diagnostics if verbatim else check(workspace, path):
             if each.effective_severity is Severity.ERROR and not is_reported_beside(each, reported):
                 yield path, each
-
-
-def _as_written(file: File) -> tuple[Diagnostic, ...]:
-    return file.parsed.diagnostics if file.origin is None else file.origin.diagnostics

@@ -98,9 +98,9 @@ class CppFiles:
         Raises:
             GrammarMissing: tree-sitter is not installed.
         """
-        before = self._store.state
-        changed = [path for path, text in texts.items() if before.get(path) != text]
-        self._store.advance({**before, **texts}, changed)
+        state = self._store.state
+        changed = [path for path, text in texts.items() if state.get(path) != text]
+        self._store.advance({**state, **texts}, changed)
         nodes = self._store.ask(_nodes, *texts)
         wrong = findings(nodes, texts)
         of_path: dict[str, dict[str, CppNode]] = {path: {} for path in texts}
@@ -109,7 +109,8 @@ class CppFiles:
         for path, text in texts.items():
             found = tuple(_shown_from(root, each) for each in wrong.get(path, ()))
             known = self._files.get(path)
-            if known is None or known.origin is None or not _is_as_before(known.origin, text, of_path[path], found):
+            before = known.origin if known is not None else None
+            if before is None or (before.text, before.nodes, before.diagnostics) != (text, of_path[path], found):
                 self._files[path] = cpp_file(path, text, of_path[path], found, known)
         return nodes, {path: self._files[path] for path in texts}
 
@@ -193,10 +194,6 @@ def _pieces(models: str, path: str, text: str, nodes: Mapping[str, CppNode]) -> 
 
 def _span(start: int, part: Placed) -> Span:
     return Span(part.start, part.end).shifted(start)
-
-
-def _is_as_before(known: Origin, text: str, nodes: Mapping[str, CppNode], diagnostics: tuple[Diagnostic, ...]) -> bool:
-    return (known.text, known.nodes, known.diagnostics) == (text, nodes, diagnostics)
 
 
 def _shown_from(root: str, diagnostic: Diagnostic) -> Diagnostic:

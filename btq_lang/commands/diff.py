@@ -223,16 +223,11 @@ def _revised(commit: Commit | None, path: str | None, with_includes: bool) -> Si
             return side if with_includes else _by_itself(side, os.path.isfile)
         group = _groups([path])[0]
         return Side(shown(path), group.workspace, group.workspace.closure(path) if with_includes else (path,), shown)
-    name = _named(commit.name)
-    built = as_built(path, commit, name)
+    built = as_built(path, commit, commit.shown)
     if built is not None:
-        side = _side(name(path), built)
+        side = _side(commit.shown(path), built)
         return side if with_includes else _by_itself(side, commit.is_file)
     workspace = commit.workspace(path)
     if workspace is None:
         return NOWHERE
-    return Side(name(path), workspace, workspace.closure(path) if with_includes else (path,), name)
-
-
-def _named(revision: str) -> Callable[[str], str]:
-    return lambda path: f"{revision}:{shown(path)}"
+    return Side(commit.shown(path), workspace, workspace.closure(path) if with_includes else (path,), commit.shown)

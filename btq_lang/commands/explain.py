@@ -7,7 +7,7 @@ from argparse import Namespace
 from collections.abc import Iterator
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES, AttributeKind
-from btq_lang.catalog.language import PHRASES, SIGNS, Phrase, phrases_of
+from btq_lang.catalog.language import PHRASES, SIGNS, phrases_of
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import Quality, find, parts, qualities, siblings
@@ -55,7 +55,8 @@ def _pages(name: str) -> Iterator[str]:
     match = find(tuple(name.split(".")))
     for quality in (match.quality,) if match.quality else match.candidates:
         yield "\n".join(_quality(quality, name, match.explanation))
-    yield from map(_phrase, phrases_of(name))
+    for phrase in phrases_of(name):
+        yield f"# {phrase.words} ({phrase.part})\n\n    {phrase.form}\n\n{phrase.sentence}"
     if name in VERDICTS:
         yield _verdict(VERDICTS[name])
     if name in ("verdict", "verdicts"):
@@ -105,10 +106,6 @@ def _quality(quality: Quality, name: str, explanation: str) -> Iterator[str]:
     beside = siblings(quality)
     if beside and quality.parent:
         yield f"siblings: {', '.join(sibling.id.rpartition('.')[2] for sibling in beside)}"
-
-
-def _phrase(phrase: Phrase) -> str:
-    return f"# {phrase.words} ({phrase.part})\n\n    {phrase.form}\n\n{phrase.sentence}"
 
 
 def _attribute(kind: AttributeKind) -> str:

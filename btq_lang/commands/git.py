@@ -20,7 +20,7 @@ from btq_lang.commands.options import Refused
 from btq_lang.util.globs import glob_matcher
 from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import SIDE_SUFFIX, SUFFIXES, File
-from btq_lang.workspace.loader import absolute, find_project, read
+from btq_lang.workspace.loader import absolute, find_project, read, shown
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -44,6 +44,10 @@ class Commit:
         self.name: Final = name
         self._root: Final = root
         self._of_factories: dict[str, tuple[Workspace, ...]] = {}  # results of `_factories`, by the project's root
+
+    def shown(self, path: str) -> str:
+        """How messages name a file of the commit."""
+        return f"{self.name}:{shown(path)}"
 
     @cached_property
     def paths(self) -> tuple[str, ...]:

@@ -248,15 +248,13 @@ class Body:
                 continue
             ports = self.evaluated(node)
             if ports is None:
-                if node.type not in ("call_expression", "initializer_list") or not self._may_be_port(node):
+                may_be_port = any(each.type in ("string_literal", "identifier") for each in walk(node))
+                if node.type not in ("call_expression", "initializer_list") or not may_be_port:
                     return None
                 self.incomplete(node)
                 continue
             found = _united(found, ports)
         return found
-
-    def _may_be_port(self, node: Node) -> bool:
-        return any(each.type in ("string_literal", "identifier") for each in walk(node))
 
     def _called(self, node: Node) -> Ports | None:
         scope, name, types = callee(node)

@@ -76,14 +76,11 @@ def default(sources: Sources, node: Node, frame: Frame) -> str | None:
 def type_of(sources: Sources, written: str, frame: Frame) -> str:
     """The type of a port: what an alias or a template's parameter means, else as it is written."""
     type_ = substituted(written, frame.meanings)
-    for scope in (frame.scope, *(each.scope for each in _ancestry(sources, frame))):
+    ancestry = sources.ancestry(frame.bound) if frame.bound is not None else ()
+    for scope in (frame.scope, *(each.scope for each in ancestry)):
         if (meant := sources.alias(type_, scope, frame.path)) is not None:
             return meant
     return type_
-
-
-def _ancestry(sources: Sources, frame: Frame) -> list[Bound]:
-    return list(sources.ancestry(frame.bound)) if frame.bound is not None else []
 
 
 _STRINGS: Final = ("string", "string_view", "StringView")

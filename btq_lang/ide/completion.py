@@ -243,7 +243,7 @@ def _in_code(workspace: Workspace, path: str, place: Place, offset: int) -> Iter
         yield from _in_item(workspace, path, place, first)
     elif place.block == "ports":
         yield from offer.port_words(place)
-    elif place.block == "clauses" or _attached_requirement(place):
+    elif place.block == "clauses" or any(each.kind == NAME and each.text == "QualityReq" for each in place.group):
         yield from _in_requirement(workspace, path, place)
     elif place.block == "tree" and first in ("input", "output", "inout"):
         yield from offer.port_words(place)
@@ -378,10 +378,6 @@ def _lacks_unit(workspace: Workspace, path: str, place: Place) -> bool:
     if not place.group or place.group[-1].kind != NUMBER or is_count([word.text for word in place.group]):
         return False
     return measured_at(workspace, path, place).unit != "1"
-
-
-def _attached_requirement(place: Place) -> bool:
-    return any(word.kind == NAME and word.text == "QualityReq" for word in place.group)
 
 
 def _in_node(workspace: Workspace, path: str, place: Place, first: str) -> Iterator[Proposal]:

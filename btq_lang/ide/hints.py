@@ -107,9 +107,9 @@ def code_lenses(
         nodes: tuple[tuple[str, Span], ...] = ()
         if _names_its_subject(place):
             missions = missions_of(workspace, path)
-            nodes = tuple(
-                dict.fromkeys(at for one in missions[:_MOST_MISSIONS] for at in _subjects(workspace, one, place))
-            )
+            of_missions = [workspace.store.ask(_by_subject, each) for each in missions[:_MOST_MISSIONS]]
+            defined = place.symbol.name, place.path
+            nodes = tuple(dict.fromkeys(at for each in of_missions for at in each.get(defined, ())))
             more = " or more" if len(missions) > _MOST_MISSIONS else ""
             holds = [f"holds for {counted(len(nodes), 'node')}{more}"] if nodes else []
             titles = [*(titles if uses or not nodes else ()), *holds]
@@ -159,13 +159,9 @@ def _names_its_subject(found: Definition) -> bool:
     )
 
 
-def _subjects(workspace: Workspace, mission: str, found: Definition) -> tuple[tuple[str, Span], ...]:
-    """The nodes that the claims of a requirement name."""
-    return workspace.store.ask(_by_subject, mission).get((found.symbol.name, found.path), ())
-
-
 def _by_subject(store: Store[Workspace], mission: str) -> dict[tuple[str, str], tuple[tuple[str, Span], ...]]:
-    """The same for all requirements of a mission, which are resolved together."""
+    """The nodes that the claims of requirements name, by name and file, for all of a mission: they are resolved
+    together."""
     workspace = everything(store, mission)
     found: dict[tuple[str, str], dict[tuple[str, Span], None]] = {}
     for applied in requirements(workspace, mission).applied:

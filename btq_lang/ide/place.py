@@ -159,7 +159,7 @@ def place_at(workspace: Workspace, path: str, offset: int) -> Place:
     callee = ""
     if depth:
         before = words[: len(words) - _length(words)]
-        if depth > 1 or node is None or any(_is_clause_word(word) for word in before):
+        if depth > 1 or node is None or any(word.kind == NAME and word.text in NODE_CLAUSES for word in before):
             callee = word_text(before[-2]) if len(before) > 1 else ""
             node = None
     prefix = file.text[span.start : offset]
@@ -243,10 +243,6 @@ def _length(words: tuple[Token, ...]) -> int:
         if depth < 0:
             return count
     return len(words)
-
-
-def _is_clause_word(word: Token) -> bool:
-    return word.kind == NAME and word.text in NODE_CLAUSES
 
 
 def _parents(text: str, tokens: Sequence[Token], start: int, blanks: str) -> list[tuple[Token, ...]]:

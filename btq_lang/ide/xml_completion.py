@@ -160,7 +160,8 @@ def _in_value(
         typed, found = of_nodes.in_script(workspace, path, entry, before) if entry is not None else (0, ())
         return Span(offset - typed, offset), found
     found = tuple(_values(workspace, path, entry, tag, node))
-    spelt = (replace(one, insert=escape(_unquoted(one.insert)), snippet=None) for one in found)
+    plain = (unquote(one.insert) if one.insert[:1] in ('"', "'") else one.insert for one in found)
+    spelt = (replace(one, insert=escape(text), snippet=None) for one, text in zip(found, plain, strict=True))
     return tag.word, _reachable(workspace, spelt)
 
 
@@ -186,10 +187,6 @@ def _values(workspace: Workspace, path: str, entry: Entry | None, tag: TypedTag,
     elif "BehaviorTree" in tag.parents and tag.key not in ("ID", "name"):
         known = (port for port in _ports(workspace, path, node) if port.name == tag.key)
         yield from of_nodes.port_values(workspace, path, entry, next(known, None))
-
-
-def _unquoted(text: str) -> str:
-    return unquote(text) if text[:1] in ('"', "'") else text
 
 
 _TAG = re.compile(r"[A-Za-z_][\w.-]*").fullmatch
