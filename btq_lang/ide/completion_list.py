@@ -15,8 +15,7 @@ from btq_lang.util.record import replace
 
 
 def listed(proposals: Sequence[Proposal], typed: str, asked: bool) -> tuple[Proposal, ...]:
-    """The entries of the list, best first.  If nobody `asked` for it, it opens by itself, but never at a
-    complete word."""
+    """The entries of the list, best first.  A list that the user does not request never opens at a complete word."""
     begun = _begun(proposals)
     is_word = any(one.label == typed and one.kind != "snippet" for one in proposals)
     if is_word and not asked and typed.lower() not in begun:
