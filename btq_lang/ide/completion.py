@@ -23,7 +23,6 @@ from btq_lang.ide.completion_list import listed
 from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.measures import Measured, measured_at
 from btq_lang.ide.place import Place, item_tokens, open_brace, place_at, word_text
-from btq_lang.ide.ports import ports_of_kind, ports_of_tree
 from btq_lang.ide.proposals import Proposal
 from btq_lang.ide.snippets import snippets_for
 from btq_lang.ide.xml_completion import complete_in_xml
@@ -183,11 +182,11 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
     begun = re.search(rf"(?:^|[^\w.])\d+(?:\.\d+)?(?:[eE][+-]?\d+)?([ \t]*)({_BEGUN_UNIT}|)$", line)
     if begun is not None:
         place = _before_unit(place_at(workspace, path, offset - len(begun[2])))  # `/` in a unit is not a division
-    if begun is None or place.inside != "code" or not place.words or place.block in ("items", "none", "ports"):
-        if begun is None or place.inside != "code" or not place.words:
-            return None
-        if place.words[0].text not in ("QualityReq", "signal", "context", "apply"):
-            return None
+    if begun is None or place.inside != "code" or not place.words:
+        return None
+    is_of_item = place.words[0].text in ("QualityReq", "signal", "context", "apply")
+    if place.block in ("items", "none", "ports") and not is_of_item:
+        return None
     in_brackets = place.depth > 0 and place.node is not None
     if in_brackets and not (place.last == "=" or (place.group and place.group[-1].kind in (NUMBER, QUANTITY))):
         return None
@@ -395,8 +394,7 @@ def _in_node(workspace: Workspace, path: str, place: Place, first: str) -> Itera
     if node is None:
         yield from offer.parameters(workspace, path, place.callee) if place.last != "=" else ()
         return
-    ports = ports_of_tree(workspace, path, node.name) if node.is_subtree else ()
-    ports = ports or ports_of_kind(workspace, path, node.name, node.quoted)
+    ports = of_nodes.ports_of_line(workspace, path, node)
     key = place.key
     if key is None:
         yield from of_nodes.ports(ports, place.given, node)

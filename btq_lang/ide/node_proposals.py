@@ -69,6 +69,12 @@ def unknown_nodes(workspace: Workspace, path: str) -> Iterator[Proposal]:
             yield Proposal(name, "node", "used here, not declared", written(name))
 
 
+def ports_of_line(workspace: Workspace, path: str, node: LineNode) -> tuple[NodePort, ...]:
+    """The ports of the node of a line; of a SubTree those of its tree, if it declares any."""
+    of_tree = ports_of_tree(workspace, path, node.name) if node.is_subtree else ()
+    return of_tree or ports_of_kind(workspace, path, node.name, node.quoted)
+
+
 def ports(known: tuple[NodePort, ...], given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
     """The ports that have no value yet, those that need one first."""
     for port in sorted((one for one in known if one.name not in given), key=lambda one: not one.required):

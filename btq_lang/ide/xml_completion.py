@@ -19,7 +19,7 @@ from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.ide import node_proposals as of_nodes
 from btq_lang.ide import proposals as offer
 from btq_lang.ide.place import LineNode, open_brace
-from btq_lang.ide.ports import NodePort, ports_of_kind, ports_of_tree
+from btq_lang.ide.ports import NodePort, ports_of_kind
 from btq_lang.ide.proposals import Proposal
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Entry, unquote
@@ -121,7 +121,7 @@ def _attributes(workspace: Workspace, path: str, tag: TypedTag) -> Iterator[Prop
     if "BehaviorTree" not in tag.parents:
         return
     node = _node(tag)
-    ports = _ports(workspace, path, node)
+    ports = of_nodes.ports_of_line(workspace, path, node)
     by_name = {port.name: port for port in ports}
     for one in (*of_nodes.ports(ports, given, node), *of_nodes.attributes(given, node)):
         port = by_name.get(one.label)
@@ -133,12 +133,6 @@ def _node(tag: TypedTag) -> LineNode:
     if tag.name not in CATEGORIES:
         return LineNode(tag.name, True, None)
     return LineNode(dict(tag.attributes).get("ID", "")[1:-1], True, tag.name)
-
-
-def _ports(workspace: Workspace, path: str, node: LineNode) -> tuple[NodePort, ...]:
-    return (ports_of_tree(workspace, path, node.name) if node.is_subtree else ()) or ports_of_kind(
-        workspace, path, node.name, node.quoted
-    )
 
 
 # ---- values ----
@@ -185,7 +179,7 @@ def _values(workspace: Workspace, path: str, entry: Entry | None, tag: TypedTag,
     elif tag.key in RESERVED_ATTRIBUTES:
         yield from of_nodes.attribute_values(tag.key)
     elif "BehaviorTree" in tag.parents and tag.key not in ("ID", "name"):
-        known = (port for port in _ports(workspace, path, node) if port.name == tag.key)
+        known = (port for port in of_nodes.ports_of_line(workspace, path, node) if port.name == tag.key)
         yield from of_nodes.port_values(workspace, path, entry, next(known, None))
 
 
