@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import PACKAGES
 from btq_lang.commands.factory_files import cpp_in_folder
@@ -21,7 +22,7 @@ from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import models_in
 from btq_lang.util.record import Record, replace
-from btq_lang.util.source_map import Piece, Places
+from btq_lang.util.source_map import Places
 from btq_lang.util.text import LineIndex, Placed, Span, counted
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.factories import Factory
@@ -29,6 +30,9 @@ from btq_lang.workspace.file import CPP_SUFFIXES, File, Origin
 from btq_lang.workspace.loader import Found, LoadProblem, excluder, matching, read
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.util.source_map import Piece
 
 _OF_FIELD = re.compile(r".*::_\w+_type").fullmatch
 MISSING = "C++ is read with tree-sitter; install it with pip install 'btq-lang[cpp]'"

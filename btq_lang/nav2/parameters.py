@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from functools import lru_cache
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.nav2 import DISTRIBUTIONS
 from btq_lang.catalog.nav2.libraries import LIBRARIES
@@ -19,13 +19,15 @@ from btq_lang.catalog.nav2.navigator import (
     PARAMETERS,
     RENAMED,
     SENDERS,
-    OutsideEntry,
     outside_entries,
 )
 from btq_lang.nav2.yaml_reader import Value, read_yaml
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
+
+if TYPE_CHECKING:
+    from btq_lang.catalog.nav2.navigator import OutsideEntry
 
 
 class Text(Record):
