@@ -75,10 +75,7 @@ def parse_unit(text: str) -> Unit | None:
 def nearest_units(text: str, wanted: str | None = None) -> tuple[str, ...]:
     """The units that an unknown unit may mean, best first: `kw` is `kW`, `30sek` and `sek` are `s`.
 
-    `parse_unit` reads each of them; a leading number is ignored.
-
-    Args:
-        wanted: a unit of their dimension; None: any dimension.
+    `parse_unit` reads each of them; a leading number is ignored.  `wanted`: a unit of their dimension; None: any.
     """
     written = text
     number = len(text) - len(text.lstrip("0123456789.+- "))

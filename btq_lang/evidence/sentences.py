@@ -26,10 +26,7 @@ def result(clause: ClauseVerdict) -> str:
 def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
     """What to look at for a violated clause: the node, what happened, why, in which run and when.
 
-    With odds, it sums up all violations.
-
-    Args:
-        medians: how long nodes take, in seconds by path.
+    With odds, it sums up all violations.  `medians`: how long nodes take, in seconds by path.
     """
     if clause.interval is None:
         return explained(clause, worst_violation(clause), medians)

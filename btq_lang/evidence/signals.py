@@ -25,11 +25,7 @@ class Unknown(Record):
 
 
 class Signals:
-    """The samples of a session: those given for a signal, else the log's own.
-
-    Attributes:
-        logged: samples of the session's own entries, by entry.
-    """
+    """The samples of a session: those given for a signal, else the log's own, by entry."""
 
     def __init__(self, given: Mapping[str, Series], logged: Mapping[str, Series]) -> None:
         self._given: Final = given

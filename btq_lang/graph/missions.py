@@ -48,10 +48,7 @@ def draw_tree(
 
 
 def figures(workspace: Workspace, path: str, with_qualities: bool = False) -> tuple[Figure, ...]:
-    """A figure for each tree of a file, in the order of its text.
-
-    Args:
-        with_qualities: attach qualities and requirements to their nodes.
+    """A figure for each tree of a file, in the order of its text; with or without qualities and requirements.
 
     Raises:
         KeyError: there is no such file.

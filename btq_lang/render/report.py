@@ -19,8 +19,7 @@ class Finding(Record):
 class Trouble(Record):
     """A file that could not be read or written, or only in part, so that findings may be missing.
 
-    Attributes:
-        line: counted from 1, as `column` is; None for the whole file.
+    Line and column count from 1; None: the whole file.
     """
 
     path: str

@@ -24,10 +24,9 @@ SUFFIXES: Final = (".btlog", ".db3", ".btdb", ".mcap")  # of the files read belo
 
 
 def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[Session | NamedLog]:
-    """The sessions of a log, each of which must be read before the next is requested.
+    """The sessions of a log, a file or the folder of a ROS 2 bag; each must be read before the next is requested.
 
     Args:
-        path: of a file, or of the folder of a ROS 2 bag.
         sources: where samples of signals come from; those that are topics are read from bags.
 
     Raises:

@@ -32,12 +32,7 @@ TEXT: Final = "std_msgs/msg/String"
 
 
 class Bag:
-    """An open bag.
-
-    Attributes:
-        connections: each topic with its type.
-        remarks: notes about the file, complete when the messages have been read.
-    """
+    """An open bag: its topics with their types, and notes about the file, complete when the messages have been read."""
 
     def __init__(self, storages: list[Any], remarks: list[str]) -> None:
         self.connections: Final[list[Connection]] = [each for storage in storages for each in storage.connections]

@@ -74,10 +74,7 @@ def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[objec
 
 
 def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Series]:
-    """The samples of signals that come from files.
-
-    Args:
-        folder: the base of their relative paths.
+    """The samples of signals that come from files, which are below a folder unless their paths are absolute.
 
     Raises:
         NoSamples: a file does not match its source.

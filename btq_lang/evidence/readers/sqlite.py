@@ -53,10 +53,7 @@ def is_bag(path: str) -> bool:
 
 @contextmanager
 def opened(path: str, remarks: list[str]) -> Iterator[sqlite3.Connection]:
-    """Open a database for reading; a truncated one, for what is left of it.
-
-    Args:
-        remarks: notes about the file are appended.
+    """Open a database for reading; a truncated one, for what is left of it, with a remark.
 
     Raises:
         NotALog: it is not a database, or is damaged where it is read.

@@ -22,11 +22,7 @@ if TYPE_CHECKING:
 
 
 def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[NamedLog]:
-    """The logs in a bag, one for each topic that behavior trees are logged on.
-
-    Args:
-        path: of a folder or a file.
-        sources: of signals, those that are topics.
+    """The logs in a bag, one for each topic that behavior trees are logged on, with samples from the topics of sources.
 
     Raises:
         NotALog: it is not a bag, or nothing of it can be used.

@@ -22,10 +22,7 @@ def limit_chunks() -> None:
 
 
 def unpacked(data: bytes, size: int | None = None) -> bytes:
-    """Decompress data that zstd compressed.
-
-    Args:
-        size: as the bag declares it; None: it does not.
+    """Decompress data that zstd compressed, to the size that the bag declares, if it does.
 
     Raises:
         TooLarge: it is larger.

@@ -59,11 +59,7 @@ Event: TypeAlias = Began | Came | Sampled | Lost | Notice
 
 
 class Following:
-    """What a publisher said so far.
-
-    Attributes:
-        pause: how long to wait before the next step, in seconds.
-    """
+    """What a publisher said so far; `pause`: how long to wait before the next step, in seconds."""
 
     def __init__(
         self, ask: Callable[..., Reply], clock: Callable[[], int], entries: Collection[str], address: str
