@@ -35,21 +35,11 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
     if path not in workspace.files:
         raise KeyError(path)
     store = workspace.store
-    problems: list[Problem] = []
-    signals: dict[str, Signal] = {}
-    for name in inputs.names(store, path, Kind.SIGNAL):
-        of_signal, found = store.ask(signal, path, name)
-        assert of_signal is not None, "its name is in scope"
-        signals[name] = of_signal
-        problems += found
+    signals = {name: store.ask(signal, path, name) for name in inputs.names(store, path, Kind.SIGNAL)}
     contexts = {name: store.ask(context, path, name) for name in inputs.names(store, path, Kind.CONTEXT)}
-    problems += [problem for _, found in contexts.values() for problem in found]
-    of_name: dict[str, Requirement] = {}
-    for name in inputs.names(store, path, Kind.REQUIREMENT):
-        of_requirement, found = store.ask(requirement, path, name)
-        assert of_requirement is not None, "as above"
-        of_name[name] = of_requirement
-        problems += found
+    defined = {name: store.ask(requirement, path, name) for name in inputs.names(store, path, Kind.REQUIREMENT)}
+    of_names = (*signals.values(), *contexts.values(), *defined.values())
+    problems = [problem for _, found in of_names for problem in found]
     uses: dict[str, list[Use]] = {}
     mentioned: set[str] = set()
     for item in inputs.attaching(store, path):
@@ -60,7 +50,7 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
             uses.setdefault(use.requirement, []).append(use)
     applied: list[Applied] = []
     traces: list[Trace] = []
-    for name in of_name:
+    for name in defined:
         held: Attached = attached_by(store, path, name, uses.get(name, ()))
         applied += (*store.ask(claimed, path, name), *held.applied)
         traces += held.traces
@@ -68,9 +58,9 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
     return Requirements(
         store,
         path,
-        signals,
+        {name: found for name, (found, _) in signals.items() if found is not None},
         {name: condition for name, (condition, _) in contexts.items()},
-        of_name,
+        {name: found for name, (found, _) in defined.items() if found is not None},
         tuple(applied),
         tuple(traces),
         frozenset(mentioned),

@@ -5,7 +5,8 @@ One invariant: the result is the same for all files of a mission.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from typing import Final
 
 from btq_lang.catalog.kinds import CATEGORIES
@@ -40,15 +41,15 @@ class CustomNode:
         uses: how many there are.
     """
 
-    __slots__ = ("_values", "children", "stated_category", "uses")
-
-    def __init__(self, uses: Iterable[tuple[Node, str | None]] = ()) -> None:
-        self.stated_category: str | None = None
-        self.children = 0
-        self.uses = 0
-        self._values: Final[dict[str, dict[str, Word]]] = {}  # by port and text
-        for use, category in uses:
-            self.add(use, category)
+    def __init__(self, uses: Sequence[tuple[Node, str | None]]) -> None:
+        """uses: each with the category that it names, if it does."""
+        self.stated_category = next((category for _, category in uses if category), None)
+        self.children = max([len(node.children) for node, _ in uses], default=0)
+        self.uses = len(uses)
+        self._values: dict[str, dict[str, Word]] = {}  # by port and text
+        for pair in chain.from_iterable(node.attributes for node, _ in uses):
+            if pair.value is not None and is_port_name(pair.key.text):
+                self._values.setdefault(pair.key.text, {})[pair.value.text] = pair.value
 
     @property
     def category(self) -> str:
@@ -60,16 +61,6 @@ class CustomNode:
         """Its ports, in the order of their first use."""
         return tuple([_likely_port(name, tuple(values.values())) for name, values in self._values.items()])
 
-    def add(self, use: Node, category: str | None) -> None:
-        """Add what a use tells, with its category, if the use names it."""
-        self.uses += 1
-        self.stated_category = self.stated_category or category
-        self.children = max(self.children, len(use.children))
-        for pair in use.attributes:
-            key = pair.key.text
-            if pair.value is not None and is_port_name(key):
-                self._values.setdefault(key, {})[pair.value.text] = pair.value
-
 
 def custom_nodes(workspace: Workspace, path: str) -> Mapping[str, CustomNode]:
     """The custom nodes in all files that are linked by includes with a file, by ID."""
@@ -78,13 +69,13 @@ def custom_nodes(workspace: Workspace, path: str) -> Mapping[str, CustomNode]:
 
 def _custom_nodes(store: Store[Workspace], mission: str) -> dict[str, CustomNode]:
     workspace = inputs.everything(store, mission)
-    found: dict[str, CustomNode] = {}
+    found: dict[str, list[tuple[Node, str | None]]] = {}
     for path in sorted(workspace.linked(mission)):
         for node in _nodes(workspace.files[path]):
             name, category = _named(node)
             if name and name not in BUILTINS:
-                found.setdefault(name, CustomNode()).add(node, category)
-    return found
+                found.setdefault(name, []).append((node, category))
+    return {name: CustomNode(uses) for name, uses in found.items()}
 
 
 def custom_node(workspace: Workspace, path: str, name: str) -> CustomNode:
@@ -97,7 +88,7 @@ def custom_node(workspace: Workspace, path: str, name: str) -> CustomNode:
         for use in facts.summary.uses
         if use.node is not None and use.kind is Kind.MODEL and use.name == name
     ]
-    return CustomNode((node, _named(node)[1]) for node in uses)
+    return CustomNode([(node, _named(node)[1]) for node in uses])
 
 
 def custom_nodes_of(file: File) -> frozenset[str]:
