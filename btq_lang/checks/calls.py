@@ -10,6 +10,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import TREE_OF_GOAL
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
+from btq_lang.util.reach import reached
 from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.symbols import Use
 from btq_lang.workspace.workspace import Workspace
@@ -67,7 +68,7 @@ def _missed(store: Store[Workspace], viewpoint: str) -> Set[str]:
     known = view.ask(calls)
     if not known.names & set(mains):
         return frozenset()  # which is reported
-    return known.names - frozenset().union(*map(known.reached_from, mains))
+    return known.names - known.reached_from(*mains)
 
 
 @hub
@@ -78,8 +79,8 @@ def _uncreated(store: Store[Workspace], viewpoint: str) -> Set[str]:
     if not mains or not view.is_complete or not view.is_read:
         return frozenset()
     known = view.ask(calls)
-    reached = frozenset().union(*map(known.reached_from, mains))
-    return known.names - reached if known.names >= reached else frozenset()
+    created = known.reached_from(*mains)
+    return known.names - created if known.names >= created else frozenset()
 
 
 class Calls:
@@ -118,19 +119,9 @@ class Calls:
         found = {name: (*callers, *meant.pop(name, ())) for name, callers in self._callers.items()}
         return found | {name: tuple(callers) for name, callers in meant.items()}
 
-    def reached_from(self, name: str) -> frozenset[str]:
-        """A tree and all that it runs, directly or not, including those that it probably means to run."""
-        if name not in self._reached:
-            seen: set[str] = set()
-            waiting = [name]
-            while waiting:
-                tree = waiting.pop()
-                if tree not in seen:
-                    seen.add(tree)
-                    waiting += self.called_by(tree)
-                    waiting += self._meant.get(tree, ())
-            self._reached[name] = frozenset(seen)
-        return self._reached[name]
+    def reached_from(self, *names: str) -> frozenset[str]:
+        """Trees and all that they run, directly or not, including those that they probably mean to run."""
+        return frozenset(reached(names, lambda name: (*self.called_by(name), *self._meant.get(name, ()))))
 
     @cached_property
     def circles(self) -> dict[str, tuple[str, ...]]:
@@ -151,10 +142,6 @@ class Calls:
                     before[called] = tree
                     waiting.append(called)
         raise AssertionError("each tree of a knot reaches itself")
-
-    @cached_property
-    def _reached(self) -> dict[str, frozenset[str]]:
-        return {}
 
     @cached_property
     def _callers(self) -> dict[str, list[str]]:

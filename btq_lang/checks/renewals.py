@@ -17,6 +17,7 @@ from btq_lang.checks.writers import all_entries, isolated, key_of
 from btq_lang.diagnostics.model import Related
 from btq_lang.requirements import nodes
 from btq_lang.requirements.model import Claim, Requirement, Signal, signals_in
+from btq_lang.util.reach import reached
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
@@ -130,8 +131,8 @@ def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[Resolve
         return ()
     writing = [each for each in entries if key in each.written]
     writers = [node for each in writing for node, name in each.writes if name.removeprefix("@") == key]
-    reached = view.ask(_reached)
-    if not all(writer.tree in reached for writer in writers):
+    running = view.ask(_reached)
+    if not all(writer.tree in running for writer in writers):
         return ()  # perhaps another mission that runs beside this one
     sure = [write for each in writing for write in each.sure]
     if not any(name.removeprefix("@") == key for _, name in sure) or isolated(view, sure, key) is not None:
@@ -153,30 +154,25 @@ def _keys_of_defaults(store: Store[Workspace], viewpoint: str) -> frozenset[str]
 
 def _carrying(store: Store[Workspace], viewpoint: str, key: str) -> frozenset[str]:
     """The trees that write an entry, themselves or through those that they run."""
-    waiting = [writer.tree for writer in store.ask(_writers, viewpoint, key)]
-    carrying = {*waiting}
-    while waiting:
-        for caller in _callers(store, viewpoint, waiting.pop()):
-            if caller.tree not in carrying:
-                carrying.add(caller.tree)
-                waiting.append(caller.tree)
-    return frozenset([tree for tree in carrying if tree is not None])
+    writing = [writer.tree for writer in store.ask(_writers, viewpoint, key)]
+    return frozenset([tree for tree in _with_callers(store, viewpoint, *writing) if tree is not None])
 
 
 def _is_renewed_above(store: Store[Workspace], viewpoint: str, tree: str | None, key: str) -> bool:
     """Whether an entry may be written while a tree runs, by nodes above it or beside it; or nothing runs the tree."""
     if tree not in store.ask(_reached, viewpoint):
         return True
-    waiting, seen = [tree], {tree}
-    while waiting:
-        for caller in _callers(store, viewpoint, waiting.pop()):
+    for name in _with_callers(store, viewpoint, tree):
+        for caller in _callers(store, viewpoint, name):
             writing, carrying = store.ask(_renewing, viewpoint, caller.path, caller.facts, key)
             if id(caller) in writing or _is_renewed_beside(writing, carrying, caller):
                 return True
-            if caller.tree not in seen:
-                seen.add(caller.tree)
-                waiting.append(caller.tree)
     return False
+
+
+def _with_callers(store: Store[Workspace], viewpoint: str, *trees: str | None) -> Iterator[str | None]:
+    """Trees and all that run them, directly or not."""
+    return reached(trees, lambda tree: [caller.tree for caller in _callers(store, viewpoint, tree)])
 
 
 def _callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[ResolvedNode, ...]:
@@ -186,12 +182,5 @@ def _callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple
 def _reached(store: Store[Workspace], viewpoint: str) -> frozenset[str | None]:
     """The mission's tree, and those that it runs."""
     main = store.ask(nodes.mission, viewpoint)
-    waiting: list[str | None] = [main.tree] if main is not None else []
-    reached = {*waiting}
-    while waiting:
-        name = waiting.pop()
-        called = store.ask(trees_called, viewpoint, name) if name is not None else ()
-        others = [each for each in called if each not in reached]
-        reached.update(others)
-        waiting += others
-    return frozenset(reached)
+    trees = [main.tree] if main is not None else []
+    return frozenset(reached(trees, lambda name: store.ask(trees_called, viewpoint, name) if name is not None else ()))

@@ -12,9 +12,11 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.kinds import PortKind
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks import lookups
+from btq_lang.checks.pointers import remaps_all
 from btq_lang.checks.view import View, declared_ports
 from btq_lang.requirements import nodes
 from btq_lang.syntax.tree import Pair, Port, Verbatim, port_named
+from btq_lang.util.reach import reached
 from btq_lang.util.record import Record
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
@@ -108,16 +110,12 @@ def isolated(view: View, writes: Sequence[tuple[ResolvedNode, str]], key: str) -
     calls: dict[str | None, list[tuple[str, ResolvedNode]]] = {}
     for tree in view.ask(nodes.nodes).trees:
         calls.setdefault(tree.name, []).extend(tree.calls)
-    # The names of the root's entry, by tree.
-    names = {(main.tree, key)}
-    waiting = [main.tree]
-    while waiting:
-        at = waiting.pop()
-        for called, node in calls.get(at, ()):
-            for name in _passed_on(node, {name for of, name in names if of == at}):
-                if (called, name) not in names:
-                    names.add((called, name))
-                    waiting.append(called)
+
+    def passed(place: tuple[str | None, str]) -> Iterator[tuple[str, str]]:
+        for called, node in calls.get(place[0], ()):
+            yield from ((called, name) for name in _passed_on(node, place[1]))
+
+    names = {*reached([(main.tree, key)], passed)}  # of the root's entry, each with its tree
     writers = [node for node, written in writes if written.removeprefix("@") == key]
     if any(written == f"@{key}" or (node.tree, written) in names for node, written in writes):
         return None
@@ -161,11 +159,9 @@ def _writes(view: View, node: ResolvedNode, port: str) -> bool | None:
     return declared.direction.raw != "input" if declared is not None else None
 
 
-def _passed_on(node: ResolvedNode, names: set[str]) -> Iterator[str]:
-    """The names under which a tree that runs another one passes its entries to that."""
+def _passed_on(node: ResolvedNode, name: str) -> Iterator[str]:
+    """The names under which a tree that runs another one passes an entry to that."""
     given = {pair.key.text: pair.value.text for pair in node.node.attributes if pair.value is not None}
-    for port, text in given.items():
-        if is_pointer(text) and key_of(text, port) in names:
-            yield port
-    if given.get("_autoremap", "false").lower() not in ("false", "0"):
-        yield from (name for name in names if name not in given and not name.startswith("_"))
+    yield from (port for port, text in given.items() if is_pointer(text) and key_of(text, port) == name)
+    if remaps_all(node) and name not in given and name[:1] != "_":
+        yield name

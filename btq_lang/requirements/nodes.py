@@ -11,6 +11,7 @@ from functools import cached_property
 
 from btq_lang.requirements.model import Target
 from btq_lang.syntax.tree import Node, Tree
+from btq_lang.util.reach import reached
 from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree, tree_named, tree_nodes
@@ -284,16 +285,11 @@ class Nodes:
         return matched, missed
 
     def _below(self, top: ResolvedNode) -> set[int]:
-        found: set[int] = set()
-        waiting = [top]
-        while waiting:
-            node = waiting.pop()
+        def following(node: ResolvedNode) -> list[ResolvedNode]:
             root = self.run_by(node)
-            for child in node.children if root is None else (*node.children, root):
-                if id(child) not in found:
-                    found.add(id(child))
-                    waiting.append(child)
-        return found
+            return node.children if root is None else [*node.children, root]
+
+        return {id(node) for node in reached(following(top), following)}
 
 
 def _runs(node: ResolvedNode, tree: str) -> bool:

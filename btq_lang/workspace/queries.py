@@ -26,7 +26,10 @@ on one that is (Tarjan's strongly connected components).  Deep chains do not ove
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable
+from operator import attrgetter
 from typing import Any, Final, Generic, TypeVar
+
+from btq_lang.util.reach import reached
 
 State = TypeVar("State")
 T = TypeVar("T")
@@ -187,13 +190,8 @@ class Store(Generic[State]):
         is_in_use = self._pinned and not self._is_edited
         if not always and (is_in_use or len(self._answers) <= max(2 * self._size, _FEW)):
             return
-        waiting = [self._answers[key] for key in self._pinned if key in self._answers]
-        used = set(waiting)
-        while waiting:
-            for each in waiting.pop().dependencies:
-                if each not in used:
-                    used.add(each)
-                    waiting.append(each)
+        pinned = [self._answers[key] for key in self._pinned if key in self._answers]
+        used = set(reached(pinned, attrgetter("dependencies")))
         kept_answers = {key: answer for key, answer in self._answers.items() if answer in used}
         for answer in self._answers.values():
             if answer in used:
