@@ -266,9 +266,7 @@ class Parser(ItemParser):
             return "" if other == "include" or self.raw in ("def", "class") else other
         if not meant or not (following in (NAME, STRING) or (meant in _ALONE and following in (NEWLINE, OPEN))):
             return ""
-        fix = replace_fix(f"Replace `{self.raw}` with `{meant}`", self.here(), meant)
-        message = f"unknown word `{self.raw}`; did you mean `{meant}`?"
-        self.complain("syntax-error", self.here(), message, (), (fix,))
+        self.misspelt(self.here(), self.raw, meant)
         return read_as(self.raw)
 
     def begins_item(self) -> bool:

@@ -43,7 +43,7 @@ class Demanded:
     def __init__(self, view: View, path: str, facts: Facts) -> None:
         self.view: Final = view
         self.tree: Final = view.ask(tree_nodes, path, facts)
-        self.budgets: Final = Budgets(view.store, view.viewpoint)
+        self.budgets: Final = Budgets(view.store, view.path)
         applied = view.ask(applied_in, path, facts).applied
         self.claims: Final = tuple(_claims(view, applied, self.budgets))
         self.hard: Final = tuple(_hard_claims(view, applied, self.budgets))
@@ -69,7 +69,7 @@ def judge_of(view: View) -> Judge:
     """The judge of enforceability, as if all files were written into one."""
     from btq_lang.btcpp.enforceability import Judge  # few missions have a claim that is to be enforced
 
-    return Judge(view.store, view.viewpoint, lambda: view.ask(mission), files=None, is_shared=view.is_included)
+    return Judge(view.store, view.path, lambda: view.ask(mission), files=None, is_shared=view.is_included)
 
 
 def _claims(

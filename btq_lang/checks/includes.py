@@ -121,5 +121,5 @@ def include_line(head: tuple[int, str], path: str, other: str) -> tuple[int, str
 
 def _meant(view: View, path: str) -> tuple[str, ...]:
     name = posixpath.basename(path)
-    same_name = [other for other in view.other_files if posixpath.basename(other) == name]
+    same_name = [other for other in view.look_up(lookups.other_files) if posixpath.basename(other) == name]
     return tuple(same_name[:3]) or view.near(path, None)

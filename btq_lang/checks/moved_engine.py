@@ -59,7 +59,7 @@ def is_between(since: str, until: str, after: str, origin: str, target: str) -> 
 def new_in_target(view: View, checks: tuple[Check, ...], found: list[Diagnostic]) -> Iterator[Diagnostic]:
     """What the target refuses, or reads otherwise, and the version that the tree is for does not."""
     workspace = view.workspace.moved
-    moved = View(workspace.store, view.viewpoint, view.facts)
+    moved = View(workspace.store, view.path, view.facts)
     known = {(each.rule, each.span) for each in found if is_severe(each)}
     of_engine = [each for check in checks for each in check(moved)]
     for each in of_engine:
@@ -69,7 +69,7 @@ def new_in_target(view: View, checks: tuple[Check, ...], found: list[Diagnostic]
     if target is None or target not in FILES or view.look_up(lookups.distribution) is None:
         return
     known.update((each.rule, each.span) for each in of_engine)
-    moved = View(view.workspace.moved_nodes.store, view.viewpoint, view.facts)
+    moved = View(view.workspace.moved_nodes.store, view.path, view.facts)
     for each in entry_with_two_types(moved):  # all else that changes is in a table
         if (each.rule, each.span) not in known:
             yield of_target(each, target.capitalize())
@@ -109,18 +109,9 @@ def _first_tree(view: View) -> Iterator[Diagnostic]:
         yield Diagnostic("target-differs", name.span, what)
 
 
-def _runs_on(view: View, seen: ResolvedNode) -> bool:
-    """Whether a child may take several ticks."""
-    return any(result(view, child).ever & RUNNING for child in seen.node.nodes)
-
-
-def _completes_at_once(view: View, seen: ResolvedNode) -> bool:
-    return bool(seen.node.nodes) and not _runs_on(view, seen)
-
-
-def _restarts(view: View, seen: ResolvedNode) -> bool:
-    """Whether a child that may take several ticks is before another one."""
-    return sum(bool(result(view, child).ever & RUNNING) for child in seen.node.nodes) > 1
+def _running(view: View, seen: ResolvedNode) -> int:
+    """How many children may take several ticks."""
+    return sum(bool(result(view, child).ever & RUNNING) for child in seen.node.nodes)
 
 
 def _skipped_in_the_end(view: View, seen: ResolvedNode) -> bool:
@@ -138,9 +129,9 @@ def _queue_of_script(view: View, seen: ResolvedNode) -> bool:
 
 
 _WHEN: Final[Mapping[str, Callable[[View, ResolvedNode], bool]]] = {
-    "runs on": _runs_on,
-    "completes at once": _completes_at_once,
-    "restarts": _restarts,
+    "runs on": lambda view, seen: _running(view, seen) > 0,
+    "completes at once": lambda view, seen: bool(seen.node.nodes) and not _running(view, seen),
+    "restarts": lambda view, seen: _running(view, seen) > 1,  # one of them is before another one
     "skipped in the end": _skipped_in_the_end,
     "queue of a script": _queue_of_script,
 }

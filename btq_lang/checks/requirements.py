@@ -24,7 +24,7 @@ def unknown_requirement(view: View) -> Iterator[Diagnostic]:
             continue
         if not view.is_complete:
             return
-        elsewhere = view.elsewhere(Kind.REQUIREMENT, use.name)
+        elsewhere = view.look_up(lookups.elsewhere, Kind.REQUIREMENT, use.name)
         quality = view.quality(use.name)
         if not elsewhere and (quality is None or quality.kind != "unknown"):
             is_exact = quality is None or quality.kind == "exact"

@@ -29,7 +29,7 @@ def of_signals(view: View, guards: Sequence[Guard]) -> Iterator[Found]:
     Args:
         guards: all claims for which the engine reads signals.
     """
-    names = inputs.names(view.store, view.viewpoint, Kind.SIGNAL)
+    names = inputs.names(view.store, view.path, Kind.SIGNAL)
     signals = [found for name in names if (found := view.ask(reader.signal, name)[0]) is not None]
     here = [each for each in signals if each.place.path == view.path and each.key is not None]
     yield from _may_be_unset(view, guards)

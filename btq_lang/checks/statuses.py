@@ -194,8 +194,7 @@ def _again(child: int, repeats: int, count: int | None, starting: bool) -> int:
 
 def _otherwise(kind: NodeKind, node: Node) -> int:
     """The result without its child."""
-    port = kind.port_for("otherwise")
-    value = node.attribute(port.name) if port is not None else None
+    port, value = kind.port_for("otherwise"), _written(kind, node, "otherwise")
     text = value.text if value is not None else port.default if port is not None else None
     return _STATUSES.get(text or "", ANYTHING)
 

@@ -43,11 +43,11 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
     for use in view.uses(Kind.TREE):
         if use.name == "" or view.defines(Kind.TREE, use.name) or view.is_pooled(Kind.TREE, use.name):
             continue
-        if not view.is_complete or view.has_torn_tree:
+        if not view.is_complete or view.look_up(lookups.has_torn_tree):
             return
         if view.is_xml and view.look_up(lookups.is_tree_of_mission, use.name):
             continue  # the engine reads all files before it creates a tree, and other projects' XML gets no include
-        elsewhere = view.elsewhere(Kind.TREE, use.name)
+        elsewhere = view.look_up(lookups.elsewhere, Kind.TREE, use.name)
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
         likely = view.near(use.name, Kind.TREE)
         fixes += tuple(replace_fix(f"Replace `{use.name}` with `{name}`", use.span, written(name)) for name in likely)
@@ -201,7 +201,7 @@ def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
 
 def _missing_main_trees(view: View, factory: Factory) -> Iterator[Diagnostic]:
     """The main trees that the files of a factory lack, reported at the first tree that it registers."""
-    is_sure = view.look_up(lookups.is_first_registered) and view.is_complete and not view.has_torn_tree
+    is_sure = view.look_up(lookups.is_first_registered) and view.is_complete and not view.look_up(lookups.has_torn_tree)
     for main in factory.main if is_sure else ():
         if not view.defines(Kind.TREE, main):
             likely = did_you_mean(view.near(main, Kind.TREE))

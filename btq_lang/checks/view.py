@@ -49,26 +49,26 @@ class View:
 
     Attributes:
         store: that caches results.
-        viewpoint: the file in whose scope names are looked up.
+        path: the file, in whose scope names are looked up.
         facts: of the item that is checked.
         seen: the sorted nodes of a tree; empty for any other item.
     """
 
-    __slots__ = ("facts", "seen", "store", "viewpoint")
+    __slots__ = ("facts", "path", "seen", "store")
 
     def __init__(self, store: Store[Workspace], viewpoint: str, facts: Facts | None = None) -> None:
         self.store = store
-        self.viewpoint = viewpoint
+        self.path = viewpoint
         self.facts: Facts = facts  # type: ignore[assignment]  # unset only where no caller reads it
         self.seen = self.seen_in(viewpoint, facts) if facts is not None else NO_NODES
 
     def ask(self, query: Callable[..., T], *key: Any) -> T:
         """The result of a query from this viewpoint."""
-        return self.store.ask(query, self.viewpoint, *key)
+        return self.store.ask(query, self.path, *key)
 
     def look_up(self, read: Callable[..., T], *key: Any) -> T:
         """The value of an input from this viewpoint."""
-        return read(self.store, self.viewpoint, *key)
+        return read(self.store, self.path, *key)
 
     # ---- the item ----
 
@@ -87,12 +87,12 @@ class View:
     @property
     def entry(self) -> Entry:
         """The item and its syntax diagnostics; it begins at 0."""
-        return inputs.entry(self.store, self.viewpoint, self.facts)
+        return inputs.entry(self.store, self.path, self.facts)
 
     @property
     def text(self) -> str:
         """The text of the item, up to the next one."""
-        return inputs.text(self.store, self.viewpoint, self.facts)
+        return inputs.text(self.store, self.path, self.facts)
 
     @property
     def nodes(self) -> tuple[ResolvedNode, ...]:
@@ -197,10 +197,6 @@ class View:
         """Whether a name that is not in scope does not exist."""
         return self.look_up(inputs.is_complete)
 
-    def elsewhere(self, kind: Kind, name: str) -> tuple[str, ...]:
-        """The files that define a name, whether they are in scope or not."""
-        return self.look_up(lookups.elsewhere, kind, name)
-
     def clashes(self, *kinds: Kind) -> list[tuple[Declaration, Declaration]]:
         """The names that the file of this include and one included before it both define, each with the definition that
         counts and the other one."""
@@ -229,11 +225,6 @@ class View:
         return model.ports if model is not None else ()
 
     # ---- the file and the project ----
-
-    @property
-    def path(self) -> str:
-        """The file."""
-        return self.viewpoint
 
     @property
     def project(self) -> Project:
@@ -300,11 +291,6 @@ class View:
         """Whether the whole file could be read: else what seems missing may be on a line that could not."""
         return self.look_up(lookups.is_read)
 
-    @property
-    def has_torn_tree(self) -> bool:
-        """Whether the name of one of the file's trees may be on a line that could not be read."""
-        return self.look_up(lookups.has_torn_tree)
-
     def is_used(self, kind: Kind, name: str) -> bool:
         """Whether something in the file refers to a name."""
         return self.ask(_is_used, kind, name)
@@ -312,11 +298,6 @@ class View:
     def is_meant_as_requirement(self, name: str) -> bool:
         """Whether a name in the place of a quality or a node seems to be a requirement's; each is reported."""
         return self.is_used(Kind.QUALITY, name) or self.ask(_is_misspelt_use, name)
-
-    @property
-    def other_files(self) -> tuple[str, ...]:
-        """The project's other files, as an include in this one names them."""
-        return self.look_up(lookups.other_files)
 
     def spelt(self, symbol: str) -> str:
         """A built-in node as the language of the file writes it: `R->`, in XML `<ReactiveSequence>`."""
@@ -419,7 +400,7 @@ def _own_qualities(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
 def _near_names(store: Store[Workspace], viewpoint: str, kind: Kind | None, word: str) -> tuple[str, ...]:
     view = View(store, viewpoint)
     if kind is None:
-        return near(word, view.other_files)
+        return near(word, view.look_up(lookups.other_files))
     if view.look_up(lookups.is_crowded, kind):
         return ()
     names = view.names(kind)

@@ -148,10 +148,12 @@ class ClaimParser(ConditionParser):
             )
         elif self.kind == NAME and (likely := near(self.raw, VERB_WORDS, limit=1)):
             self.misspelt(self.here(), self.raw, likely[0])
+            self.recover()
         elif not isinstance(subject, Path):
             self.expected(_A_VERB)
         elif len(subject.names) == 1 and (likely := near(subject.names[0].raw, VERB_WORDS | HEADS, limit=1)):
             self.misspelt(subject.span.shifted(self.base), subject.names[0].raw, likely[0])
+            self.recover()
         else:
             name = "/".join(word.raw for word in subject.names)
             note = (
@@ -182,12 +184,6 @@ class ClaimParser(ConditionParser):
         self.complain("syntax-error", Span(start, end), message, (note,), (fix,))
         self.go_to(index)
         return True
-
-    def misspelt(self, span: Span, word: str, likely: str) -> None:
-        """Report a word that begins no clause, and skip the rest."""
-        fix = replace_fix(f"Replace `{word}` with `{likely}`", span, likely)
-        self.complain("syntax-error", span, f"unknown word `{word}`; did you mean `{likely}`?", (), (fix,))
-        self.recover()
 
     def takes_before(self, first: Word) -> tuple[Fix, ...]:
         """The fix for `at most 30 s`, which lacks its verb."""

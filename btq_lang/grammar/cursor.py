@@ -356,6 +356,11 @@ class Cursor:
         meant = near(self.raw, words, limit=1) if self.kind == NAME else ()
         return tuple(replace_fix(f"Replace `{self.raw}` with `{word}`", self.here(), word) for word in meant)
 
+    def misspelt(self, span: Span, word: str, likely: str) -> None:
+        """Report a misspelt word."""
+        fix = replace_fix(f"Replace `{word}` with `{likely}`", span, likely)
+        self.complain("syntax-error", span, f"unknown word `{word}`; did you mean `{likely}`?", (), (fix,))
+
     def complain(
         self, rule: str, span: Span, message: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()
     ) -> None:
