@@ -144,14 +144,24 @@ class Names:
         return cls(found)
 
     def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Names | None:
-        """The names after an edit that replaced some items by others that define the same ones, each defined once; None
-        after any other edit."""
+        """The names after an edit that replaced some items; None if they must be recomputed: a name has several
+        definitions, or the position of the new ones is unclear, for instance because they are in several places."""
         before = [(symbol.kind, symbol.name) for each in gone for symbol in each.summary.symbols]
         now = [((one.kind, one.name), [(each.item, one)]) for each in come for one in each.summary.symbols]
-        if before != [name for name, _ in now] or any(len(self.found[name]) > 1 for name in before):
+        added = dict(now)
+        if any(len(self.found[name]) > 1 for name in before) or len(added) < len(now):
             return None
-        after = Names({**self.found, **dict(now)})
-        after.__dict__.update({known: names for known, names in self.__dict__.items() if known != "found"})
+        if before == [*added]:
+            after = Names({**self.found, **added})
+            after.__dict__.update({known: names for known, names in self.__dict__.items() if known != "found"})
+            return after
+        known, names = [*self.found.items()], [*self.found]
+        at = names.index(before[0]) if before else 0
+        if not before or names[at : at + len(before)] != before or added.keys() - before & self.found.keys():
+            return None
+        after = Names(dict([*known[:at], *now, *known[at + len(before) :]]))
+        if "by_kind" in self.__dict__:
+            after.by_kind = self.by_kind | after._by_kind({kind for kind, _ in (*before, *added)})
         return after
 
     @cached_property
@@ -160,7 +170,10 @@ class Names:
 
     @cached_property
     def by_kind(self) -> dict[Kind, tuple[str, ...]]:
-        return {kind: tuple([name for of, name in self.found if of is kind]) for kind in Kind}
+        return self._by_kind(Kind)
+
+    def _by_kind(self, kinds: Iterable[Kind]) -> dict[Kind, tuple[str, ...]]:
+        return {kind: tuple([name for of, name in self.found if of is kind]) for kind in kinds}
 
     @cached_property
     def repeated(self) -> frozenset[Name]:
