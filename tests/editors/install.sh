@@ -96,7 +96,9 @@ driver() {
     cd "$root"
     local python=.venv/bin/python
     [ -x "$python" ] || python3 -m venv .venv
-    "$python" -c 'import playwright' 2>/dev/null || "$python" -m pip install -q 'playwright>=1.49,<2'
+    # In CI with what the tests need: while apt and npm work, and by one pip, for two would write the same packages.
+    "$python" -c 'import playwright' 2>/dev/null ||
+        "$python" -m pip install -q 'playwright>=1.49,<2' ${BTQ_CI:+'.[test]'}
 }
 
 neovim() { # suite: its packages are unpacked, and run with the C library that comes with them
