@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from itertools import product
 from pathlib import Path
 
 import missions
@@ -57,13 +58,18 @@ def same(one: Parsed, other: Parsed) -> bool:
     return (one.text, one.entries, one.starts) == (other.text, other.entries, other.starts)
 
 
-@pytest.mark.parametrize("seed", of_the_day(range(4), 4))
-@pytest.mark.parametrize(
-    "text",
-    [EVERY_FORM, IN_ROOT, missions.mission(60, 3, "classic"), missions.mission(60, 3, "short"), "", "Root\n"],
-    ids=["every form", "in a Root", "classic", "short", "empty", "Root alone"],
-)
-def test_after_any_edits_it_is_the_parse_of_the_text(text: str, seed: int) -> None:
+TEXTS = {
+    "every form": EVERY_FORM,
+    "in a Root": IN_ROOT,
+    "classic": missions.mission(60, 3, "classic"),
+    "short": missions.mission(60, 3, "short"),
+}
+SHORTEST = {"empty": "", "Root alone": "Root\n"}
+
+
+@pytest.mark.parametrize(("seed", "name"), of_the_day(product(range(4), TEXTS | SHORTEST), 8))
+def test_after_any_edits_it_is_the_parse_of_the_text(seed: int, name: str) -> None:
+    text = (TEXTS | SHORTEST)[name]
     chance = random.Random(f"{seed}{text[:40]}")
     parsed = parse(text)
     for step in range(150):
@@ -76,14 +82,10 @@ def test_after_any_edits_it_is_the_parse_of_the_text(text: str, seed: int) -> No
         assert same(parsed, parse(after)), (step, after)
 
 
-@pytest.mark.parametrize("seed", of_the_day(range(4), 4))
-@pytest.mark.parametrize(
-    "text",
-    [EVERY_FORM, IN_ROOT, missions.mission(60, 3, "classic"), missions.mission(60, 3, "short")],
-    ids=["every form", "in a Root", "classic", "short"],
-)
-def test_after_edits_of_damaged_brackets_it_is_the_parse_of_the_text(text: str, seed: int) -> None:
+@pytest.mark.parametrize(("seed", "name"), of_the_day(product(range(4), TEXTS), 8))
+def test_after_edits_of_damaged_brackets_it_is_the_parse_of_the_text(seed: int, name: str) -> None:
     """What ends brackets early is remembered on the lines that follow: a parse may not begin again among these."""
+    text = TEXTS[name]
     chance = random.Random(f"{seed}{text[:40]}")
     damaged = text
     for _ in range(chance.randint(1, 6)):
@@ -113,7 +115,7 @@ LINES = (
 )
 
 
-@pytest.mark.parametrize("seed", of_the_day(range(100), 2))
+@pytest.mark.parametrize("seed", of_the_day(range(100), 4))
 def test_after_edits_of_wrong_lines_behind_open_brackets_it_is_the_parse_of_the_text(seed: int) -> None:
     chance = random.Random(seed)
     lines = chance.choices(LINES, k=chance.randint(3, 12))

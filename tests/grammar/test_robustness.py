@@ -166,7 +166,7 @@ def without_one_line(text: str) -> Iterator[str]:
 @pytest.mark.parametrize("damage", [prefixes, without_one_token])
 @pytest.mark.parametrize("text", list(pieces()))
 def test_every_damage_to_an_item(text: str, damage: Callable[[str], Iterator[str]]) -> None:
-    for damaged in of_the_day(damage(text), 4):
+    for damaged in of_the_day(damage(text), 8):
         parsed = parse(damaged)
         assert_diagnostics(parsed)
         assert_entries(parsed)
@@ -175,9 +175,9 @@ def test_every_damage_to_an_item(text: str, damage: Callable[[str], Iterator[str
 @pytest.mark.parametrize("name", TEXTS)
 def test_every_example_without_one_line_and_up_to_the_end_of_any(name: str) -> None:
     text = TEXTS[name]
-    for damaged in of_the_day(without_one_line(text), 4):
+    for damaged in of_the_day(without_one_line(text), 8):
         assert_diagnostics(parse(damaged))
-    for end in of_the_day(LINE_END.finditer(text), 4):
+    for end in of_the_day(LINE_END.finditer(text), 8):
         assert_diagnostics(parse(text[: end.start()]))
 
 
@@ -276,13 +276,13 @@ HEADS = (
 @pytest.mark.parametrize("unit", HOSTILE)
 def test_a_hostile_line_without_end(unit: str) -> None:
     """They end at all: what is quadratic takes minutes.  And they do not drown anybody in diagnostics."""
-    parsed = parse(unit * (200_000 // len(unit)))
+    parsed = parse(unit * (100_000 // len(unit)))
     assert len(parsed.diagnostics) <= (20 if unit == "30sek " else 1)
 
 
 @pytest.mark.parametrize("unit", HOSTILE)
 def test_hostile_lines_behind_something_else(unit: str) -> None:
-    for head in of_the_day(HEADS, 2):
+    for head in of_the_day(HEADS, 4):
         parsed = parse(head + unit * (10_000 // len(unit)))
         assert_tokens(parsed)
         assert len(parsed.diagnostics) <= (21 if unit == "30sek " else 2)
@@ -294,7 +294,7 @@ def test_hostile_lines_behind_something_else(unit: str) -> None:
 def test_hostile_lines_one_below_another(line: str) -> None:
     """As items, all of them in one tree, or in one pair of brackets: no line looks at all the lines before it."""
     for head in ("", "BehaviorTree t\n", "BehaviorTree t\n  X (\n"):
-        for end in of_the_day(("\n", "\r", "\n  ", "\n\t"), 2):
+        for end in of_the_day(("\n", "\r", "\n  ", "\n\t"), 4):
             assert_tokens(parse(head + (line + end) * (4_000 // len(line + end))))
     parsed = parse(f"BehaviorTree t\n  X (\n    {line}\n" * 2_000)
     assert len(parsed.entries) > 500

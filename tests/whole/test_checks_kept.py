@@ -6,6 +6,7 @@ import gc
 import random
 from collections import Counter
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 
 import missions
@@ -141,19 +142,18 @@ PIECES = (
 )
 
 
-@pytest.mark.parametrize("seed", of_the_day(range(4), 4))
-@pytest.mark.parametrize(
-    "files",
-    [
-        FILES,
-        {"/p/main.btq": EVERY_FORM},
-        {"/p/main.btq": BOARDS, "/p/skills.btq": SKILLS},
-        {"/p/main.btq": missions.mission(60, 2, "classic")},
-        {"/p/main.btq": missions.mission(60, 2, "short")},
-    ],
-    ids=["includes", "every form", "entries", "classic", "short"],
-)
-def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -> None:
+EDITED = {
+    "includes": FILES,
+    "every form": {"/p/main.btq": EVERY_FORM},
+    "entries": {"/p/main.btq": BOARDS, "/p/skills.btq": SKILLS},
+    "classic": {"/p/main.btq": missions.mission(60, 2, "classic")},
+    "short": {"/p/main.btq": missions.mission(60, 2, "short")},
+}
+
+
+@pytest.mark.parametrize(("seed", "name"), of_the_day(product(range(4), EDITED), 8))
+def test_what_is_kept_is_what_would_be_found(seed: int, name: str) -> None:
+    files = EDITED[name]
     chance = random.Random(seed)
     workspace = Workspace.of(files)
     kept = {path: Kept() for path in files}
@@ -178,17 +178,19 @@ TOP = """<root BTCPP_format="4">
 """
 
 
-@pytest.mark.parametrize("seed", of_the_day(range(4), 4))
-@pytest.mark.parametrize(
-    ("project", "factory"),
-    [
-        (Project(), Factory("f", main=("Main", "Top"), files=("/p/main.btq", "/p/top.xml", "/p/skills.btq"))),
-        (Project(), Factory("f", main=("Gone",), files=("/p/main.btq", "/p/top.xml"), node_files=("/p/skills.btq",))),
-        (Project(pools=("/p",)), None),
-    ],
-    ids=["factory", "files of nodes", "pool"],
-)
-def test_what_is_kept_is_found_beyond_includes(project: Project, factory: Factory | None, seed: int) -> None:
+PROJECTS = {
+    "factory": (Project(), Factory("f", main=("Main", "Top"), files=("/p/main.btq", "/p/top.xml", "/p/skills.btq"))),
+    "files of nodes": (
+        Project(),
+        Factory("f", main=("Gone",), files=("/p/main.btq", "/p/top.xml"), node_files=("/p/skills.btq",)),
+    ),
+    "pool": (Project(pools=("/p",)), None),
+}
+
+
+@pytest.mark.parametrize(("seed", "name"), of_the_day(product(range(4), PROJECTS), 8))
+def test_what_is_kept_is_found_beyond_includes(seed: int, name: str) -> None:
+    project, factory = PROJECTS[name]
     chance = random.Random(seed)
     texts = {"/p/main.btq": BOARDS.replace('include "skills.btq"', ""), "/p/skills.btq": SKILLS, "/p/top.xml": TOP}
     workspace = Workspace({path: file_of(path, text) for path, text in texts.items()}, project, factory)

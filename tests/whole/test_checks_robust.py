@@ -118,7 +118,7 @@ NUMBERS = range(len(ALL))
 def test_every_prefix(number: int) -> None:
     for path, text in ALL[number].items():
         lines = text.splitlines(keepends=True)
-        for count in of_the_day(range(len(lines)), 4):
+        for count in of_the_day(range(len(lines)), 8):
             examine_torn(number, path, "".join(lines[:count]))
 
 
@@ -127,7 +127,7 @@ def test_a_line_missing(number: int) -> None:
     chance = random.Random(number)
     for path, text in ALL[number].items():
         lines = text.splitlines(keepends=True)
-        for index in of_the_day(chance.sample(range(len(lines)), min(TORN, len(lines))), 4):
+        for index in of_the_day(chance.sample(range(len(lines)), min(TORN, len(lines))), 8):
             examine_torn(number, path, "".join(lines[:index] + lines[index + 1 :]))
 
 
@@ -136,7 +136,7 @@ def test_a_token_missing(number: int) -> None:
     chance = random.Random(number)
     for path, text in ALL[number].items():
         words = [token for token in tokens(text) if token.text.strip()]
-        for token in of_the_day(chance.sample(words, min(TORN, len(words))), 4):
+        for token in of_the_day(chance.sample(words, min(TORN, len(words))), 8):
             examine_torn(number, path, text[: token.start] + text[token.end :])
 
 

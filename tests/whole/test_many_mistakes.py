@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import TypeVar
 
 import pytest
+from by_day import of_the_day
 from kept_checks import Kept
 
 from btq_lang.checks import check
@@ -129,7 +130,7 @@ def calls(text: str) -> list[int]:
     return counted.counts
 
 
-@pytest.mark.parametrize("mistake", MISTAKES)
+@pytest.mark.parametrize("mistake", of_the_day(MISTAKES, 3))
 def test_more_mistakes_take_as_much_longer(mistake: str) -> None:
     calls(MISTAKES[mistake](3))  # what is made once for all
     most = MORE.get(mistake, MANY)
