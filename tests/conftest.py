@@ -40,9 +40,10 @@ def shared() -> Path:
 # Files that take longest are begun first, so that at the end no core waits for one of them; those with a VS Code not at
 # once, for it takes a core by itself.
 LONGEST = (
-    *("test_typing", "test_damage", "test_compiled", "test_vscode", "test_vscode_xml", "test_server", "test_neovim"),
-    *("test_damaged_logs", "test_server_xml_requests"),
-    *("test_many_mistakes", "test_checks_kept", "test_documents", "test_requirements_kept", "test_cli"),
+    *("test_vscode", "test_damage", "test_compiled", "test_vscode_typing", "test_server", "test_neovim"),
+    *("test_neovim_typing", "test_damaged_logs", "test_server_xml_requests"),
+    *("test_preview", "test_style", "test_robustness", "test_checks_robust", "test_documents", "test_checks_kept"),
+    *("test_many_mistakes", "test_requirements_kept", "test_cli"),
 )
 
 

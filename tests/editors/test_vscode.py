@@ -6,11 +6,12 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
 
 import pytest
+from by_day import of_the_day
 from chromium import CHROMIUM
 from evidence_logs import MAIN, MAIN_XML, btlog, rows
 from installed import ROOT, STORE, has_failed, there
@@ -633,7 +634,7 @@ def serves(code: Workbench, origin: str) -> None:
     code.focus()
 
 
-def test_the_environment_of_the_python_extension_serves(code: Workbench, tmp_path: Path) -> None:
+def environment_of_the_python_extension(code: Workbench, tmp_path: Path) -> None:
     """The extension is one of ours with the same API; which environment is active is a setting of it."""
     settings = {name: value for name, value in ENVIRONMENT.items() if name != "btq.interpreter"}
     for name in ("one", "other"):
@@ -649,7 +650,7 @@ def test_the_environment_of_the_python_extension_serves(code: Workbench, tmp_pat
     code.settings(**ENVIRONMENT)
 
 
-def test_what_is_on_the_path_serves_where_the_environment_has_none(code: Workbench, tmp_path: Path) -> None:
+def path_where_the_environment_has_none(code: Workbench, tmp_path: Path) -> None:
     settings = {name: value for name, value in ENVIRONMENT.items() if name != "btq.interpreter"}
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / "bare"], check=True)
     for active in ({}, {"python.activeEnvironment": str(tmp_path / "bare" / "bin" / "python")}):
@@ -658,16 +659,29 @@ def test_what_is_on_the_path_serves_where_the_environment_has_none(code: Workben
     code.settings(**ENVIRONMENT)
 
 
-def test_the_command_that_is_set_serves_before_all_others(code: Workbench) -> None:
+def command_that_is_set_before_all_others(code: Workbench, tmp_path: Path) -> None:
     code.settings(**{**ENVIRONMENT, "btq.server.command": [str(code.programs / "btq-lsp"), "--log", "warning"]})
     serves(code, "the setting btq.server.command")
     code.settings(**ENVIRONMENT)
 
 
-def test_the_copy_in_the_package_serves_as_well(code: Workbench) -> None:
+def copy_in_the_package(code: Workbench, tmp_path: Path) -> None:
     code.settings(**{**ENVIRONMENT, "btq.importStrategy": "useBundled"})
     serves(code, "the copy in the extension, Python 3.")
     code.settings(**ENVIRONMENT)
+
+
+ORIGINS = [
+    environment_of_the_python_extension,
+    path_where_the_environment_has_none,
+    command_that_is_set_before_all_others,
+    copy_in_the_package,
+]
+
+
+@pytest.mark.parametrize("origin", of_the_day(ORIGINS, 4))
+def test_the_server_is_of(code: Workbench, origin: Callable[[Workbench, Path], None], tmp_path: Path) -> None:
+    origin(code, tmp_path)
 
 
 def test_without_a_python_it_says_so_and_offers_help(code: Workbench) -> None:
@@ -689,7 +703,7 @@ def test_without_a_python_it_says_so_and_offers_help(code: Workbench) -> None:
     code.settings(**ENVIRONMENT)
 
 
-def test_the_walkthrough_ends_in_a_checked_mission(code: Workbench) -> None:
+def walkthrough(code: Workbench, tmp_path: Path) -> None:
     (code.folder / "robot").mkdir()
     code.command("Welcome: Open Walkthrough...")
     code.choose("A checked mission in five minutes")
@@ -708,7 +722,8 @@ def test_the_walkthrough_ends_in_a_checked_mission(code: Workbench) -> None:
     code.focus_nothing()
 
 
-def test_a_project_outside_the_open_folders_gets_its_window(code: Workbench, tmp_path: Path) -> None:
+def folder_that_is_not_open(code: Workbench, tmp_path: Path) -> None:
+    """It gets a window of its own."""
     (tmp_path / "robot").mkdir()
     with code.empty_window() as window:
         window.command("btq: New Project")
@@ -716,6 +731,11 @@ def test_a_project_outside_the_open_folders_gets_its_window(code: Workbench, tmp
         window.see(".tab.active:has-text('mission.btq')")
         window.see(".explorer-folders-view .monaco-list-row:has-text('skills.btq')")
     assert {path.name for path in (tmp_path / "robot").iterdir()} == {"btq.toml", "mission.btq", "skills.btq"}
+
+
+@pytest.mark.parametrize("begin", of_the_day([walkthrough, folder_that_is_not_open], 2))
+def test_a_project_begins_in(code: Workbench, begin: Callable[[Workbench, Path], None], tmp_path: Path) -> None:
+    begin(code, tmp_path)
 
 
 @pytest.mark.parametrize("theme", ["dark", "light"])
