@@ -25,27 +25,7 @@ from btq_lang.workspace.port_types import is_number
 from btq_lang.workspace.resolved import ResolvedNode
 
 _NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
-
-
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")
-
-
-def number_for_text(view: View) -> Iterator[Diagnostic]:
-    """A number that a SubTree passes to a port, or that is a port's default, where a node below expects a text."""
-    if not TYPED_CONSTANTS.holds(view.target):
-        return
-    for seen in view.seen.subtrees:
-        if seen.id is None:
-            continue
-        for pair in seen.node.attributes:
-            met = _text_below(view, seen.id, pair.key, pair.value)
-            if met is not None and pair.value is not None:
-                yield _number_for_text(pair.value, met, None)
-    for tree, port in _ports_of_trees(view):
-        met = _text_below(view, tree, port.name, port.default)
-        if met is not None and port.default is not None:
-            # Only if a SubTree passes nothing else to the port.
-            yield _number_for_text(port.default, met, Severity.WARNING)
 
 
 class _Target(Record):
@@ -147,6 +127,24 @@ def quantity_on_unitless_port(view: View) -> Iterator[Diagnostic]:
         elif unit.dimension != wanted.dimension:
             message = f"expected {a_dimension(wanted)} for `{target.port}`, found `{value.raw}` ({a_dimension(unit)})"
             yield Diagnostic("quantity-on-unitless-port", value.span, message)
+
+
+def number_for_text(view: View) -> Iterator[Diagnostic]:
+    """A number that a SubTree passes to a port, or that is a port's default, where a node below expects a text."""
+    if not TYPED_CONSTANTS.holds(view.target):
+        return
+    for seen in view.seen.subtrees:
+        if seen.id is None:
+            continue
+        for pair in seen.node.attributes:
+            met = _text_below(view, seen.id, pair.key, pair.value)
+            if met is not None and pair.value is not None:
+                yield _number_for_text(pair.value, met, None)
+    for tree, port in _ports_of_trees(view):
+        met = _text_below(view, tree, port.name, port.default)
+        if met is not None and port.default is not None:
+            # Only if a SubTree passes nothing else to the port.
+            yield _number_for_text(port.default, met, Severity.WARNING)
 
 
 def _converted(target: _Target, value: Word, version: str) -> Iterator[Diagnostic]:

@@ -59,21 +59,6 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
         yield Diagnostic("unknown-tree", use.span, message, fixes=fixes)
 
 
-def as_uncreated(view: View, found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """What was found in an item; errors are only warnings if the engine never comes to them."""
-    name = view.tree_name.text if view.tree_name is not None else ""
-    factory = view.factory
-    if factory is None or not view.ask(calls.is_uncreated, name):
-        yield from found
-        return
-    note = f"no main tree of the factory `{factory.name}` reaches `{name}`; the engine would refuse to create it"
-    for each in found:
-        if each.rule in AT_CREATION and each.effective_severity is Severity.ERROR:
-            yield replace(each, severity=Severity.WARNING, notes=(*each.notes, note))
-        else:
-            yield each
-
-
 def _nowhere(view: View) -> str:
     """Where a tree was looked for, for a message."""
     if view.factory is not None:
@@ -283,6 +268,21 @@ def tree_named_like_node(view: View) -> Iterator[Diagnostic]:
     elif inside := [seen.id for seen in view.seen.strangers if seen.id is not None and seen.id.text == name.text]:
         message = f"a tree cannot have the name `{name.text}`: a node in it has it"
         yield Diagnostic("tree-named-like-node", name.span, message, (Related(Place(inside[0].span), "the node"),))
+
+
+def as_uncreated(view: View, found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """What was found in an item; errors are only warnings if the engine never comes to them."""
+    name = view.tree_name.text if view.tree_name is not None else ""
+    factory = view.factory
+    if factory is None or not view.ask(calls.is_uncreated, name):
+        yield from found
+        return
+    note = f"no main tree of the factory `{factory.name}` reaches `{name}`; the engine would refuse to create it"
+    for each in found:
+        if each.rule in AT_CREATION and each.effective_severity is Severity.ERROR:
+            yield replace(each, severity=Severity.WARNING, notes=(*each.notes, note))
+        else:
+            yield each
 
 
 def _as_node(use: Use) -> tuple[Fix, ...]:
