@@ -100,7 +100,9 @@ def shifted(diagnostic: Diagnostic, by: int) -> Diagnostic:
 
 
 def relocated(diagnostic: Diagnostic, span: Span, move: Callable[[Place], Place]) -> Diagnostic:
-    """The diagnostic at another span, with each of its other places moved."""
+    """The diagnostic at another span, with each of its other places moved; itself if it has none and stays."""
+    if span is diagnostic.span and not diagnostic.related and not diagnostic.fixes:
+        return diagnostic
 
     def moved(fix: Fix) -> Fix:
         return Fix(fix.title, tuple([Change(move(each.place), each.text) for each in fix.changes]), fix.safe)
