@@ -10,7 +10,6 @@ import re
 from typing import Final
 
 from btq_lang.btcpp.document import unescape
-from btq_lang.util.record import Record
 
 
 def may_be_mission(head: str) -> bool:
@@ -43,20 +42,9 @@ def _prolog(xml: str) -> int:
     return found.end() if found is not None else 0
 
 
-class ListedTrees(Record):
-    """The trees of a file.
-
-    Attributes:
-        ids: of all trees that have one, in order.
-        main: the tree that it names as the main one.
-    """
-
-    ids: tuple[str, ...]
-    main: str | None
-
-
-def listed_trees(xml: str) -> ListedTrees | None:
-    """The trees of a file as Nav2 lists them before it registers the file; None if it cannot be parsed."""
+def listed_trees(xml: str) -> tuple[tuple[str, ...], str | None] | None:
+    """The trees of a file as Nav2 lists them before it registers the file: the IDs, in order, and the one that it names
+    as the main tree; None if it cannot be parsed."""
     from lxml import etree  # as the rest of this room, only where there is XML
 
     try:
@@ -64,7 +52,7 @@ def listed_trees(xml: str) -> ListedTrees | None:
     except etree.XMLSyntaxError:
         return None
     found = (each.get("ID") for each in root.findall("BehaviorTree"))
-    return ListedTrees(tuple(each for each in found if each is not None), root.get("main_tree_to_execute"))
+    return tuple(each for each in found if each is not None), root.get("main_tree_to_execute")
 
 
 _PROLOG: Final = re.compile(r"(?:[^<]+|<\?.*?\?>|<!--.*?-->|<!(?!--)[^>]*>)*", re.DOTALL)

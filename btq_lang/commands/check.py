@@ -15,7 +15,7 @@ from btq_lang.commands.output import is_coloured, tell
 from btq_lang.commands.reporting import FOR_PEOPLE, form_of, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.render import Finding, Report, Trouble
-from btq_lang.util.record import Record, replace
+from btq_lang.util.record import replace
 from btq_lang.util.text import counted
 from btq_lang.workspace.config import Project, unknown_rule
 from btq_lang.workspace.factories import Factory, merged
@@ -99,17 +99,8 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         mended = 0 if trouble else mended  # fixes that could not be written do not count
     tell(problems)
     why_empty = None if parameter_files else empty
-    code = _report(groups, parameter_files, options, files, _Outcome(problems, mended, why_empty))
+    code = _report(groups, parameter_files, options, files, problems, mended, why_empty)
     return code, (*_watched(groups), *watched)
-
-
-class _Outcome(Record):
-    """What was found out before the check: what could not be read or written, how many fixes were applied, and why
-    there is nothing to check."""
-
-    problems: tuple[LoadProblem, ...]
-    mended: int
-    empty: str | None
 
 
 def _report(
@@ -117,10 +108,17 @@ def _report(
     parameter_files: tuple[ParameterFile, ...],
     options: CheckOptions,
     files: Files,
-    before: _Outcome,
+    problems: tuple[LoadProblem, ...],
+    mended: int,
+    empty: str | None,
 ) -> int:
-    """Check, leave out what is known, and write the report; returns the exit code."""
-    problems, empty = before.problems, before.empty
+    """Check, leave out what is known, and write the report; returns the exit code.
+
+    Args:
+        problems: what could not be read or written.
+        mended: the number of fixes that were applied.
+        empty: why there is nothing to check.
+    """
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     findings, checked = _findings(groups, texts, options)
     every = groups
@@ -149,7 +147,7 @@ def _report(
         findings = together(findings)
     why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)
     report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), why_empty, known)
-    is_written = write_report(report, options, before.mended)
+    is_written = write_report(report, options, mended)
     if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
         print(f"btq check: {empty}", file=sys.stderr)
     if problems or empty or not is_written:

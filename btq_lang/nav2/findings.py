@@ -100,7 +100,7 @@ def _without_main(found: Loaded, parameters: Parameters) -> Iterator[Diagnostic]
     load, workspace = found.load, found.workspace
     top = workspace.files.get((load.tree.path if load.tree is not None else None) or "")
     listed = listed_trees(top.source) if top is not None else None
-    if top is None or listed is None or listed.main is not None:
+    if top is None or listed is None or listed[1] is not None:
         return
     trees = {
         tree.name.text: Place(file.on_disk(tree.name.span.shifted(file.start_of(tree))), file.path)

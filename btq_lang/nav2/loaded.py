@@ -155,10 +155,10 @@ class Loads:
         for path in dict.fromkeys(paths):
             text = self._read(path) or ""
             listed = listed_trees(text)
-            ids = listed.ids if listed is not None else ()
+            ids, main = listed or ((), None)
             clash = next((each for each in ids if each in owners), None)
             places = [Place(Span(*match.span()), path) for match in _TREE.finditer(text)] or [Place(Span(0, 0), path)]
-            if listed is not None and not listed.main and (len(ids) > 1 or (path == first and not ids)):
+            if listed is not None and not main and (len(ids) > 1 or (path == first and not ids)):
                 refused.append(places[min(1, len(places) - 1)])
             elif not ids:
                 skipped.append(Skipped(places[0], None, None, text.find("<BehaviorTree") >= 0))
