@@ -272,7 +272,7 @@ def test_many_runs_are_shuffled_in_groups(tmp_path: Path) -> None:
 
 def test_a_version_compared_with_itself(tmp_path: Path) -> None:
     """Of 12 random splits of the runs of one version, at most the promised share finds something."""
-    assert sum(finds_something(tmp_path / str(seed), seed) for seed in range(12)) == 0
+    assert [seed for seed in of_the_day(range(12), 4) if finds_something(tmp_path / str(seed), seed)] == []
 
 
 def finds_something(store: Path, seed: int) -> bool:
