@@ -25,7 +25,6 @@ SCHEMA = json.loads(
     (Path(__file__).parents[2] / "btq_lang/evidence/compare/comparison.schema.json").read_text(encoding="utf-8")
 )
 Run = tuple[float, float, bool]  # seconds of Move, seconds of Dock, whether Dock succeeded
-QUICK = ("quick", "Be quick")
 
 TABLE = (
     "main: 60 runs of v1, 50 runs of v2, durations compared by runs\n"
@@ -66,13 +65,21 @@ FEW = (
 )
 
 
-def keep(store: Path, label: str, runs: Sequence[Run], robot: str = "", bound: float = 12) -> None:
-    """Keep runs of a mission of two nodes as one log, judged by a bound in seconds."""
+def keep(
+    store: Path,
+    label: str,
+    runs: Sequence[Run],
+    robot: str = "",
+    bound: float = 12,
+    mission: str = "main",
+    requirement: str = "quick",
+) -> None:
+    """Keep runs of a mission of two nodes as one log, judged by a requirement with a bound in seconds."""
     folder = store / f"{len([*store.glob('*')]):064x}"
     folder.mkdir(parents=True)
     tables: dict[str, list[tuple[object, ...]]] = {name: [] for name in ROWS}
-    of = ("main", robot)
-    clause = (*QUICK, f"Move takes at most {bound:g} s", "Move", "", "activations", "s")
+    of = (mission, robot)
+    clause = (requirement, "Be quick", f"Move takes at most {bound:g} s", "Move", "", "activations", "s")
     tables["clauses"].append((*of, 0, *clause, *[None] * 7, True, 0, ""))
     for number, (move, dock, succeeded) in enumerate(runs, start=1):
         begin = number * 60_000_000
@@ -169,6 +176,36 @@ def test_an_edited_bound_is_no_change_of_the_robot(tmp_path: Path) -> None:
     assert (found["newly"], found["no_longer"]) == ([], [])
     compared = [(each["clause"], each["what"]) for each in found["changes"] if each["requirement"]]
     assert compared == [("Move takes at most 12 s", "median"), ("Move takes at most 12 s", "p95")]
+
+
+def test_what_only_one_side_ran(tmp_path: Path) -> None:
+    runs = [(10.0, 5.0, True)] * 2
+    keep(tmp_path / "kept", "a", runs, requirement="first")
+    keep(tmp_path / "kept", "b", runs)
+    keep(tmp_path / "kept", "b", runs, requirement="third")
+    keep(tmp_path / "kept", "a", runs, mission="other")
+    code, output, errors = run_btq("compare", "kept", "a", "b", cwd=tmp_path)
+    assert (code, errors) == (0, "")
+    assert output == (
+        "main: 2 runs of a, 4 runs of b, durations compared by runs\n"
+        "\n"
+        "6 of 6 comparisons without a change that chance does not explain\n"
+        "not compared: requirement only in a: first\n"
+        "not compared: requirements only in b: quick, third\n"
+        "medians and p95: not testable with 2 and 4 runs\n"
+        "too few to show any change: Dock, Move\n"
+        "\n"
+        "other: 2 runs of a, none of b, not compared\n"
+    )
+    _, output, _ = run_btq("compare", "kept", "a", "b", "--format", "json", cwd=tmp_path)
+    document = json.loads(output)
+    assert list(violations(document, SCHEMA)) == []
+    first, second = document["missions"]
+    assert first["only"] == [["first"], ["quick", "third"]]
+    assert (second["mission"], second["runs"], second["changes"]) == ("other", [2, 0], [])
+    page = tmp_path / "report.html"
+    assert run_btq("report", "kept", "-o", str(page), cwd=tmp_path) == (0, "", "")
+    assert "<p>other: 2 runs of a, none of b, not compared</p>" in page.read_text(encoding="utf-8")
 
 
 def test_json_is_as_its_schema_says(changed: Path) -> None:

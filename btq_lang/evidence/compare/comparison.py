@@ -59,7 +59,7 @@ class Change(Record):
 
 
 class Comparison(Record):
-    """What changed in a mission.
+    """What changed in a mission; nothing is compared of one that only one side ran.
 
     Attributes:
         runs, robots: how many each side has.
@@ -68,6 +68,7 @@ class Comparison(Record):
         group: how many runs are shuffled together; 1 without groups.
         one_sided: how many nodes were active on each side and not on the other, so that nothing compares them.
         newly, no_longer: the requirements that only the second side violates, and only the first.
+        only: the requirements that only the first side has, and only the second.
         edited: the clauses whose bounds differ, so that their verdicts are no changes.
         changes: all that was compared.
     """
@@ -80,6 +81,7 @@ class Comparison(Record):
     one_sided: tuple[int, int]
     newly: tuple[Newly, ...]
     no_longer: tuple[Newly, ...]
+    only: tuple[tuple[str, ...], tuple[str, ...]]
     edited: tuple[Edited, ...]
     changes: tuple[Change, ...]
 
@@ -94,7 +96,7 @@ class Unknown(Exception):
 
 
 def compare(ask: Ask, by: str, sides: tuple[str, str]) -> tuple[Comparison, ...]:
-    """Compare two labels or robots, in every mission that both have run.
+    """Compare two labels or robots, in every mission that both have run; what only one has run comes last.
 
     Raises:
         Unknown: a side has no runs, or no mission in common with the other.
@@ -120,7 +122,15 @@ def compare(ask: Ask, by: str, sides: tuple[str, str]) -> tuple[Comparison, ...]
     found = [mission.changes(number) for mission in missions]
     adjusted = iter(holm([each.p for changes in found for each in changes]))
     judged = [tuple(_judged(each, next(adjusted)) for each in changes) for changes in found]
-    return tuple(mission.result(changes) for mission, changes in zip(missions, judged, strict=True))
+    alone = [_alone(name, [rows.get(side) for side in sides]) for name, rows in runs.items() if len(rows) < len(sides)]
+    return (*(mission.result(changes) for mission, changes in zip(missions, judged, strict=True)), *alone)
+
+
+def _alone(mission: str, rows: Sequence[Mapping[str, Any] | None]) -> Comparison:
+    """A mission that only one side ran."""
+    first, second = ((row["runs"], len(row["robots"])) if row is not None else (0, 0) for row in rows)
+    runs, robots = zip(first, second, strict=True)
+    return Comparison(mission, runs, robots, "runs", 1, (0, 0), (), (), ((), ()), (), ())
 
 
 class _Mission:
@@ -138,6 +148,7 @@ class _Mission:
         self._name: Final = name
         self._edited: Final = edited(*judged)
         self._turned: Final = turned(*judged, self._edited)
+        self._only: Final = tuple(sorted(judged[0].keys() - judged[1])), tuple(sorted(judged[1].keys() - judged[0]))
         self._sides: Final = sides
         self._runs: Final = (runs[sides[0]]["runs"], runs[sides[1]]["runs"])
         robots = set(runs[sides[0]]["robots"]), set(runs[sides[1]]["robots"])
@@ -204,6 +215,7 @@ class _Mission:
             one_sided=self._one_sided,
             newly=tuple(each for each in found if each.after == VIOLATED),
             no_longer=tuple(each for each in found if each.after != VIOLATED),
+            only=self._only,
             edited=self._edited,
             changes=changes,
         )

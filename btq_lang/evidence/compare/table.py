@@ -28,8 +28,8 @@ def _lines(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
     for word, about, change in rows:
         blanks = " " * (middle - cells_of(about))
         yield f"  {word:{left}}  {about}{blanks}  {change}"
-    yield ""
-    yield from remarks(comparison, sides)
+    if notes := [*remarks(comparison, sides)]:
+        yield from ("", *notes)
 
 
 _NEWLY: Final = "newly violated"

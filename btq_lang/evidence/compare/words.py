@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 def heading(comparison: Comparison, sides: tuple[str, str]) -> str:
     """What is compared."""
+    if not all(comparison.runs):
+        ran, other = sides if comparison.runs[0] else sides[::-1]
+        return f"{comparison.mission}: {counted(max(comparison.runs), 'run')} of {ran}, none of {other}, not compared"
     (first, second), (one, other) = comparison.runs, sides
     over = f"groups of {comparison.group:,} {comparison.over}" if comparison.group > 1 else comparison.over
     if comparison.over == "robots":
@@ -51,6 +54,8 @@ def turn(newly: Newly) -> str:
 
 def remarks(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
     """What was compared and not found to have changed, what could not be compared, and what has too few runs."""
+    if not all(comparison.runs):
+        return
     changes = comparison.changes
     same = sum(not each.finding for each in changes)
     yield f"{same} of {counted(len(changes), 'comparison')} without a change that chance does not explain"
@@ -64,6 +69,10 @@ def remarks(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
     alone = zip(comparison.one_sided, sides, strict=True)
     if found := ", ".join(f"{counted(number, 'node')} active only in {side}" for number, side in alone if number):
         yield f"not compared: {found}"
+    for names, side in zip(comparison.only, sides, strict=True):
+        if names:
+            what = "requirements" if len(names) > 1 else "requirement"
+            yield f"not compared: {what} only in {side}: {', '.join(names)}"
     if found := untestable(comparison):
         yield f"medians and p95: {found}"
     certain = {subject(each) for each in changes if each.finding}

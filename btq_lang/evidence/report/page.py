@@ -85,7 +85,7 @@ def _tiles(overview: Overview) -> str:
         tiles = [("newly violated", sum(len(each.newly) for each in found), "")]
         changes = {(each.mission, subject(change), change.finding) for each in found for change in each.changes}
         tiles += [(word, sum(finding == word for *_, finding in changes), "") for word in reversed(WORSE)]
-        if all(whys := [untestable(each) for each in found]):
+        if all(whys := [untestable(each) for each in found if all(each.runs)]):
             tiles[-1] = (f"slower: {whys[0]}", _NOT_TESTED, "")
     last = [mission.parts[-1] for mission in overview.missions]
     requirements = sum(len(part.verdicts.requirements) for part in last)
@@ -104,6 +104,8 @@ def _comparison(comparison: Comparison, sides: tuple[str, str], keys: dict[str, 
     others = [_turned("no longer violated", each, keys) for each in comparison.no_longer]
     others += [_change(each, keys) for each in found if each.finding not in WORSE]
     yield f"<p>{escape(heading(comparison, sides))}</p>"
+    if not all(comparison.runs):
+        return
     if worse:
         yield from _folded("changes", f"What got worse in {comparison.mission}", ("Finding", "Of", "Change"), worse)
     else:
