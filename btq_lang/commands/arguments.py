@@ -357,11 +357,12 @@ def _add_compare(commands: _SubParsersAction[Parser]) -> None:
         "  btq compare evidence v1.3 v1.4 -o report.md   for a pull request\n",
     )
     # Two names alone are `store` and `before`: if `store` were the optional one, `STORE --by robot A B` would fail.
-    parser.usage = "btq compare [-h] [STORE] A B [--by {label,robot}] [--format FORMAT] [-o FILE]"
+    parser.usage = "btq compare [-h] [STORE] A B [--by {label,robot}] [--label LABEL] [--format FORMAT] [-o FILE]"
     parser.add_argument("store", metavar="STORE", help=_STORE)
     parser.add_argument("before", metavar="A", help="the label that is compared with, or the robot")
     parser.add_argument("after", metavar="B", nargs="?", help="the label, or the robot, that may have changed")
     parser.add_argument("--by", choices=("label", "robot"), default="label", help="what A and B are; default: label")
+    parser.add_argument("--label", metavar="LABEL", help="with --by robot: only the runs of this label")
     parser.add_argument("--format", choices=COMPARISON_FORMATS, help="default: as the file of -o ends, else table")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 

@@ -17,6 +17,8 @@ def run(options: Namespace) -> int:
     problem = form_problem(options, FORMATS)
     if sides[0] == sides[1]:
         problem = f"both sides are {sides[0]}"
+    if options.label is not None and options.by != "robot":
+        problem = "--label goes with --by robot"
     if problem or store is None:
         one = f"one {options.by} given; compare two, as in btq compare {sides[0]} A B"
         print(f"btq compare: {problem or (one if os.path.isdir(sides[0]) else NO_STORE)}", file=sys.stderr)
@@ -25,9 +27,10 @@ def run(options: Namespace) -> int:
     from btq_lang.evidence.store.engine import NoEngine, asked
 
     try:
-        found = compare(asked(store), options.by, sides)
+        found = compare(asked(store, options.label), options.by, sides)
     except (NoEngine, Unknown) as error:
-        print(f"btq compare: {error}", file=sys.stderr)
+        of = f" with the label {options.label}" if options.label is not None and isinstance(error, Unknown) else ""
+        print(f"btq compare: {error}{of}", file=sys.stderr)
         return 2
     if code := write_output("compare", options.output, write(found, options.by, sides, form_of(options, FORMATS))):
         return code

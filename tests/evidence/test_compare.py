@@ -298,6 +298,27 @@ def test_failures_are_compared_within_each_robot(tmp_path: Path) -> None:
     assert exact([((before, 160), (after, 160))]) < 0.001
 
 
+def test_robots_that_ran_several_versions(tmp_path: Path) -> None:
+    """Their runs are of several labels unless one is taken, and the report says so."""
+    runs = [(10.0, 5.0, True)] * 2
+    for label, robot in (("v1", "r1"), ("v1", "r2"), ("v2", "r2"), ("v3", "r3"), ("v2", "r2")):
+        keep(tmp_path / "kept", label, runs, robot)
+    line = (
+        "several labels are compared at once: r1 ran v1 (2); r2 ran v1 (2), v2 (4); --label LABEL takes the runs of one"
+    )
+    code, output, errors = run_btq("compare", "kept", "--by", "robot", "r1", "r2", cwd=tmp_path)
+    assert (code, errors, line in output.splitlines()) == (0, "", True)
+    code, output, errors = run_btq("compare", "kept", "--by", "robot", "r1", "r2", "--label", "v1", cwd=tmp_path)
+    assert (code, errors, "several labels" in output) == (0, "", False)
+    assert output.startswith("main: 2 runs of r1, 2 runs of r2, ")
+    _, output, _ = run_btq("compare", "kept", "--by", "robot", "r1", "r2", "--format", "json", cwd=tmp_path)
+    document = json.loads(output)
+    assert list(violations(document, SCHEMA)) == []
+    assert document["missions"][0]["labels"] == [{"v1": 2}, {"v1": 2, "v2": 4}]
+    refused = run_btq("compare", "kept", "--by", "robot", "r1", "r2", "--label", "v2", cwd=tmp_path)
+    assert refused == (2, "", "btq compare: no run has the robot r1; there are r2 with the label v2\n")
+
+
 def test_many_runs_are_shuffled_in_groups(tmp_path: Path) -> None:
     chance = random.Random(3)
     keep(tmp_path / "kept", "a", drawn(chance, 600, 10.0))
@@ -326,6 +347,7 @@ def finds_something(store: Path, seed: int) -> bool:
     [
         (("kept", "v1", "v3"), "no run has the label v3; there are v1, v2"),
         (("kept", "v1"), "one label given; compare two, as in btq compare kept A B"),
+        (("kept", "v1", "v2", "--label", "v1"), "--label goes with --by robot"),
         (("kept", "v1", "v1"), "both sides are v1"),
         (("gone", "v1", "v2"), "gone: no verdicts are kept there; keep some with btq verify LOG --store gone"),
         (("kept", "v1", "v2", "-o", "x.pdf"), "cannot write .pdf; " + CHOICE),

@@ -63,6 +63,7 @@ class Comparison(Record):
 
     Attributes:
         runs, robots: how many each side has.
+        labels: how many runs of each label each side has, if robots are compared that ran several; else empty.
         over: what is shuffled.  Where a side has several robots, `runs of each robot`, as far as they ran both sides;
             `robots` where each side has some of its own.
         group: how many runs are shuffled together; 1 without groups.
@@ -76,6 +77,7 @@ class Comparison(Record):
     mission: str
     runs: tuple[int, int]
     robots: tuple[int, int]
+    labels: tuple[Mapping[str, int], ...]
     over: Over
     group: int
     one_sided: tuple[int, int]
@@ -130,7 +132,7 @@ def _alone(mission: str, rows: Sequence[Mapping[str, Any] | None]) -> Comparison
     """A mission that only one side ran."""
     first, second = ((row["runs"], len(row["robots"])) if row is not None else (0, 0) for row in rows)
     runs, robots = zip(first, second, strict=True)
-    return Comparison(mission, runs, robots, "runs", 1, (0, 0), (), (), ((), ()), (), ())
+    return Comparison(mission, runs, robots, (), "runs", 1, (0, 0), (), (), ((), ()), (), ())
 
 
 class _Mission:
@@ -153,6 +155,9 @@ class _Mission:
         self._runs: Final = (runs[sides[0]]["runs"], runs[sides[1]]["runs"])
         robots = set(runs[sides[0]]["robots"]), set(runs[sides[1]]["robots"])
         self._robots: Final = (len(robots[0]), len(robots[1]))
+        labels = [dict(sorted(runs[side]["labels"].items())) for side in sides]
+        is_mixed = words["by"] == "robot" and len({*labels[0], *labels[1]}) > 1
+        self._labels: Final = tuple(labels) if is_mixed else ()
         self._over: Final = _over(*robots)
         self._size: Final = 1 if self._over == "robots" else -(-min(self._runs) // _MOST_UNITS)
         stratum = "robot" if self._over == "runs of each robot" else "''"
@@ -210,6 +215,7 @@ class _Mission:
             mission=self._name,
             runs=self._runs,
             robots=self._robots,
+            labels=self._labels,
             over=self._over,
             group=self._size,
             one_sided=self._one_sided,

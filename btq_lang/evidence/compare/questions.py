@@ -27,7 +27,8 @@ def clause_of(edited: Sequence[Edited]) -> str:
 
 
 RUNS: Final = """
-    SELECT mission, {by} AS side, COUNT(*) AS runs, list(DISTINCT robot ORDER BY robot) AS robots
+    SELECT mission, {by} AS side, COUNT(*) AS runs, list(DISTINCT robot ORDER BY robot) AS robots,
+        histogram(label) AS labels
     FROM runs WHERE {by} IN ({sides}) GROUP BY ALL ORDER BY mission
 """
 NAMES: Final = "SELECT DISTINCT {by} AS name FROM runs ORDER BY name"

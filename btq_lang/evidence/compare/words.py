@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.units import parse_unit
 from btq_lang.evidence.compare.comparison import Change, Comparison, is_time
@@ -56,6 +56,12 @@ def remarks(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
     """What was compared and not found to have changed, what could not be compared, and what has too few runs."""
     if not all(comparison.runs):
         return
+    if comparison.labels:
+        ran = (
+            f"{side} ran {', '.join(f'{label or _NO_LABEL} ({number:,})' for label, number in labels.items())}"
+            for side, labels in zip(sides, comparison.labels, strict=True)
+        )
+        yield f"several labels are compared at once: {'; '.join(ran)}; --label LABEL takes the runs of one"
     changes = comparison.changes
     same = sum(not each.finding for each in changes)
     yield f"{same} of {counted(len(changes), 'comparison')} without a change that chance does not explain"
@@ -97,3 +103,6 @@ def _chance(p: float) -> str:
 
 def _shown(si: float, change: Change) -> str:
     return duration(si) if is_time(change.unit) else quantity(si, parse_unit(change.unit))
+
+
+_NO_LABEL: Final = "no label"

@@ -47,8 +47,11 @@ def write_parquet(folder: str, common: Mapping[str, str]) -> None:
         cursor.close()
 
 
-def asked(store: str) -> Callable[[str], list[dict[str, Any]]]:
+def asked(store: str, label: str | None = None) -> Callable[[str], list[dict[str, Any]]]:
     """A function that gives DuckDB a question about a store, and returns the rows by the names of their columns.
+
+    Args:
+        label: None: all runs count; else only those of this label.
 
     Raises:
         NoEngine: DuckDB is missing, or the store has no sets or a damaged one; so does the function.
@@ -66,9 +69,10 @@ def asked(store: str) -> Callable[[str], list[dict[str, Any]]]:
 
     if problem := incomplete(connection, store):
         raise NoEngine(problem)
+    wanted = f"label = {quoted(label)}" if label is not None else "true"
     for table in ROWS:
         files = quoted(files_of(store, table))
-        ask(f"CREATE VIEW {table} AS SELECT * FROM read_parquet({files}, union_by_name = true)")
+        ask(f"CREATE VIEW {table} AS SELECT * FROM read_parquet({files}, union_by_name = true) WHERE {wanted}")
     return ask
 
 
