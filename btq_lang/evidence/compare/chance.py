@@ -68,6 +68,11 @@ def shuffles_for(comparisons: int) -> int:
     return max(_SHUFFLES, round(comparisons / LEVEL))
 
 
+def least(comparisons: int) -> float:
+    """The least p-value of a shuffled measure, after Holm, that so many comparisons allow."""
+    return min(1.0, comparisons / (shuffles_for(comparisons) + 1))
+
+
 def exact(strata: Iterable[Failures]) -> float:
     """The p-value, in both directions, of as many failures where the odds of the sides are the same in every stratum.
 

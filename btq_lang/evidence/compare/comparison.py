@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import parse_unit
 from btq_lang.evidence.compare import questions
-from btq_lang.evidence.compare.chance import LEVEL, Shuffles, exact, expected, holm, is_too_few, shuffles_for
+from btq_lang.evidence.compare.chance import LEVEL, Shuffles, exact, expected, holm, is_too_few, least, shuffles_for
 from btq_lang.evidence.compare.requirements import edited, turned, verdicts
 from btq_lang.evidence.store.tables import quoted
 from btq_lang.evidence.verdicts import VIOLATED
@@ -67,6 +67,7 @@ class Comparison(Record):
         over: what is shuffled.  Where a side has several robots, `runs of each robot`, as far as they ran both sides;
             `robots` where each side has some of its own.
         group: how many runs are shuffled together; 1 without groups.
+        least_p: the least p that a change of a median or p95 can have, by the number of shuffles.
         one_sided: how many nodes were active on each side and not on the other, so that nothing compares them.
         newly, no_longer: the requirements that only the second side violates, and only the first.
         only: the requirements that only the first side has, and only the second.
@@ -80,6 +81,7 @@ class Comparison(Record):
     labels: tuple[Mapping[str, int], ...]
     over: Over
     group: int
+    least_p: float
     one_sided: tuple[int, int]
     newly: tuple[Newly, ...]
     no_longer: tuple[Newly, ...]
@@ -125,14 +127,17 @@ def compare(ask: Ask, by: str, sides: tuple[str, str]) -> tuple[Comparison, ...]
     adjusted = iter(holm([each.p for changes in found for each in changes]))
     judged = [tuple(_judged(each, next(adjusted)) for each in changes) for changes in found]
     alone = [_alone(name, [rows.get(side) for side in sides]) for name, rows in runs.items() if len(rows) < len(sides)]
-    return (*(mission.result(changes) for mission, changes in zip(missions, judged, strict=True)), *alone)
+    return (
+        *(mission.result(changes, least(number)) for mission, changes in zip(missions, judged, strict=True)),
+        *alone,
+    )
 
 
 def _alone(mission: str, rows: Sequence[Mapping[str, Any] | None]) -> Comparison:
     """A mission that only one side ran."""
     first, second = ((row["runs"], len(row["robots"])) if row is not None else (0, 0) for row in rows)
     runs, robots = zip(first, second, strict=True)
-    return Comparison(mission, runs, robots, (), "runs", 1, (0, 0), (), (), ((), ()), (), ())
+    return Comparison(mission, runs, robots, (), "runs", 1, 1.0, (0, 0), (), (), ((), ()), (), ())
 
 
 class _Mission:
@@ -204,7 +209,7 @@ class _Mission:
         found += [_failed(key, strata, comparisons) for key, strata in self._failures.items()]
         return found
 
-    def result(self, changes: tuple[Change, ...]) -> Comparison:
+    def result(self, changes: tuple[Change, ...], least_p: float) -> Comparison:
         """The comparison, with p-values after Holm."""
         tested: dict[str, float] = {}
         for change in changes:
@@ -218,6 +223,7 @@ class _Mission:
             labels=self._labels,
             over=self._over,
             group=self._size,
+            least_p=least_p,
             one_sided=self._one_sided,
             newly=tuple(each for each in found if each.after == VIOLATED),
             no_longer=tuple(each for each in found if each.after != VIOLATED),

@@ -64,7 +64,10 @@ def remarks(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
         yield f"several labels are compared at once: {'; '.join(ran)}; --label LABEL takes the runs of one"
     changes = comparison.changes
     same = sum(not each.finding for each in changes)
-    yield f"{same} of {counted(len(changes), 'comparison')} without a change that chance does not explain"
+    least = f" (p of medians and p95 is at least {comparison.least_p:.2g})"
+    is_shuffled = any(each.failed is None for each in changes)
+    of_all = f"{same} of {counted(len(changes), 'comparison')} without a change that chance does not explain"
+    yield of_all + (least if is_shuffled else "")
     for each in comparison.edited:
         whose = f"{each.requirement} at {each.node}" if each.node else each.requirement
         old, new = (
