@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.evidence import write
+from btq_lang.evidence.copies import without_copies
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.judging import Judging, Means, judge
 from btq_lang.evidence.notes import ignored_columns, missing_verdicts, missions_with_errors, other_times
@@ -142,7 +143,7 @@ def verify(
     of_bags, remarks, bags = samples_of_bags(logs, means.sources)
     means = replace(means, of_bags=of_bags, remarks=remarks)
     judging = Judging(means)
-    wanted = [log for log in logs if log not in bags]
+    wanted, copies = without_copies([log for log in logs if log not in bags])
     if jobs > 1 and len(wanted) > 1:
         from btq_lang.evidence.parallel import judge_all
 
@@ -152,7 +153,12 @@ def verify(
     else:
         for number, log in enumerate(wanted):
             judging.add(judge(log, means, partial(_progress, progress, number, judging.runs)))
-    return judging.report()
+    notes = (
+        f"{means.shown(log)} is the same log as {means.shown(first)}, so it is not counted"
+        for log, first in copies.items()
+    )
+    report = judging.report()
+    return replace(report, remarks=(*notes, *report.remarks))
 
 
 def _progress(progress: Callable[[int, int], None], files: int, runs: int, run: int) -> None:

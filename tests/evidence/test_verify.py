@@ -45,6 +45,23 @@ def verdicts(folder: Path, log: str, *more: str) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_a_copy_of_a_log_counts_once(jobs: str, lab: Path) -> None:
+    """A log of the same size counts, unless its bytes are the same."""
+    log = (lab / "lab.btlog").read_bytes()
+    (lab / "again.btlog").write_bytes(log)
+    (lab / "other.btlog").write_bytes(log[:-1] + bytes([log[-1] ^ 1]))
+    logs = ("again.btlog", "lab.btlog", "other.btlog")
+    code, output, errors = btq(lab, "verify", *logs, "--mission", "lab.btq", "--jobs", jobs)
+    assert (code, errors) == (1, "")
+    lines = output.splitlines()
+    assert [line.partition(",")[0] for line in lines[:3]] == [
+        "200 runs in again.btlog",
+        "201 runs in other.btlog",  # its last row, of the root, says something else
+        "  note: lab.btlog is the same log as again.btlog",
+    ]
+
+
 class Truth:
     """What the skills did: by uid, run (from 1), milliseconds and status of each activation; and the runs' outcomes."""
 

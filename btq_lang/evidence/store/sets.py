@@ -19,7 +19,7 @@ import re
 import shutil
 import time
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, Final
 
@@ -115,7 +115,7 @@ def draft(keeping: Keeping, log: str, name: str | None = None) -> Iterator[Draft
         NotKept: the log or the store cannot be read or written.
     """
     try:
-        name = name or _sha256(log)
+        name = name or sha256(log)
     except OSError as error:
         raise NotKept(f"cannot be read: {error.strerror or error}") from error
     try:
@@ -182,19 +182,23 @@ def _take_place(folder: str, target: str) -> None:
         shutil.rmtree(each, ignore_errors=True)
 
 
-def _sha256(log: str) -> str:
+def sha256(log: str) -> str:
     """The SHA-256 of a file, or of all files of a bag, with their names."""
     found = hashlib.sha256()
-    files = [log]
-    if os.path.isdir(log):
-        files = sorted(os.path.join(folder, name) for folder, _, names in os.walk(log) for name in names)
-    for path in files:
+    for path in files_of_log(log):
         if path != log:
             found.update(f"{os.path.relpath(path, log)}\0{os.path.getsize(path)}\0".encode(errors="surrogateescape"))
         with open(path, "rb") as file:
             while block := file.read(_BLOCK):
                 found.update(block)
     return found.hexdigest()
+
+
+def files_of_log(log: str) -> Sequence[str]:
+    """A log's file, or all files of a bag."""
+    if not os.path.isdir(log):
+        return [log]
+    return sorted(os.path.join(folder, name) for folder, _, names in os.walk(log) for name in names)
 
 
 def _changed(folder: str) -> float:
