@@ -6,6 +6,7 @@ the mission, or the same unique path; what is not joined is not judged.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
@@ -129,14 +130,20 @@ def _candidate(files: tuple[Any, ...], path: str, name: str, side: list[tuple[in
 
 
 def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
-    """The mission that a log's tree belongs to, with its nodes joined; None if no mission has half of the nodes."""
+    """The mission that a log's tree belongs to, with its nodes joined.
+
+    None: no mission has half of its nodes, or, with those that are alike, two thirds.
+    """
     nodes = [(node.uid, node.path) for node in tree.nodes.values()]
     for mission in sorted(missions, key=lambda each: each.side != nodes):  # building a mission takes time
         for build in mission.builds():
             if (same := join_build(mission, build, tree)) is not None:
                 return same
     best = _nearest(missions, tree)
-    return best if best is not None and best.number * 2 >= len(nodes) else None
+    if best is None:
+        return None
+    is_same = best.number * 2 >= len(nodes) or _alike(best.build, tree) * 3 >= len(nodes) * 2
+    return best if is_same else None
 
 
 def difference(missions: Sequence[Candidate], tree: LoggedTree) -> str:
@@ -154,7 +161,7 @@ def difference(missions: Sequence[Candidate], tree: LoggedTree) -> str:
 
 def _nearest(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
     found = (_by_path(mission, build, tree) for mission in missions for build in mission.builds())
-    return max(found, key=lambda each: each.number, default=None)
+    return max(found, key=lambda each: (each.number, _alike(each.build, tree)), default=None)
 
 
 def join_build(mission: Candidate, build: Build, tree: LoggedTree) -> Joined | None:
@@ -170,12 +177,25 @@ def join_build(mission: Candidate, build: Build, tree: LoggedTree) -> Joined | N
 
 def _by_path(mission: Candidate, build: Build, tree: LoggedTree) -> Joined:
     """The nodes whose paths are equal and unique on both sides."""
-    logged = _unique([((node.kind, without_number(node.path)), node.uid) for node in tree.nodes.values()])
-    made = _unique(
-        [((kind_of(each.element), without_number(each.path)), _number(each)) for each, _ in build.running.all]
-    )
+    logged, made = _unique(_logged_paths(tree)), _unique(_made_paths(build))
     uids = {number: logged[key] for key, number in made.items() if key in logged}
     return Joined(mission, tree, "built from another version", uids, len(uids), build)
+
+
+def _alike(build: Build, tree: LoggedTree) -> int:
+    """How many nodes have the same paths in both trees, also where several are alike."""
+    logged, made = (Counter(path for path, _ in pairs) for pairs in (_logged_paths(tree), _made_paths(build)))
+    return (logged & made).total()
+
+
+def _logged_paths(tree: LoggedTree) -> list[tuple[tuple[str, str], int]]:
+    """The kind and the path of each node of a log, and its uid."""
+    return [((node.kind, without_number(node.path)), node.uid) for node in tree.nodes.values()]
+
+
+def _made_paths(build: Build) -> list[tuple[tuple[str, str], int]]:
+    """The same of a build, with the numbers there."""
+    return [((kind_of(each.element), without_number(each.path)), _number(each)) for each, _ in build.running.all]
 
 
 def _builds(mission: Candidate) -> Iterator[Build]:

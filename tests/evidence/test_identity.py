@@ -91,6 +91,21 @@ def test_nodes_of_one_path_are_not_told_apart(verify: Verify) -> None:
     assert (first["verdict"], second["verdict"]) == ("unknown", "unknown")
 
 
+def test_a_log_with_one_node_more_is_of_the_mission(verify: Verify) -> None:
+    """Nodes of one path are not told apart, and yet they show which mission it is."""
+    text = "QualityReq rq : safety\n    mission succeeds\nRoot Main\nBehaviorTree Main\n    ->\n"
+    text += "        Action Move\n" * 3 + "Action Move\n"
+    (verify.folder / "main.btq").write_text(text, encoding="utf-8")
+    log_of(
+        verify,
+        text.replace("        Action Move\n", "        Action Move\n        Action Move\n", 1),
+        "0 1R 2S 3S 4S 5S 1S",
+    )
+    assert identity(verify) == ("built from another version", 1, 5)
+    (requirement,) = verify.json("run.btlog", "--mission", "main.btq")["requirements"]
+    assert (requirement["verdict"], requirement["clauses"][0]["counted"]) == ("satisfied", 1)
+
+
 def test_the_first_line_says_that_only_some_nodes_were_found(verify: Verify) -> None:
     (verify.folder / "main.btq").write_text(MISSION.replace("Action Undock", "Action Leave"), encoding="utf-8")
     log_of(verify, MISSION, PLAIN, "--no-enforce")
