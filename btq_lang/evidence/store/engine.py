@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import os
 import re
+import tempfile
+import uuid
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Any, Final
@@ -57,11 +59,20 @@ def asked(store: str, label: str | None = None) -> Callable[[str], list[dict[str
         NoEngine: DuckDB is missing, or the store has no sets or a damaged one; so does the function.
     """
     duckdb = imported()
-    connection = duckdb.connect()
+    # In a folder with a name of its own, which DuckDB makes when it is needed, and removes.
+    spilled = os.path.join(tempfile.gettempdir(), f"btq-{uuid.uuid4().hex}")
+    connection = duckdb.connect(config={"memory_limit": _MOST, "temp_directory": spilled})
+
+    def found_by(question: str) -> Any:
+        try:
+            return connection.execute(question)
+        except duckdb.OutOfMemoryException:  # not all that a question needs can be on the disk
+            connection.execute("RESET memory_limit")
+            return connection.execute(question)
 
     def ask(question: str) -> list[dict[str, Any]]:
         try:
-            found = connection.execute(question)
+            found = found_by(question)
             names = [str(column[0]) for column in found.description]
             return [dict(zip(names, row, strict=True)) for row in found.fetchall()]
         except duckdb.Error as error:
@@ -127,3 +138,4 @@ def _rows(folder: str, table: str) -> str:
 _OPTIONS: Final = "FORMAT parquet, COMPRESSION zstd, PARQUET_VERSION v2, ROW_GROUP_SIZE 20480"
 _BUFFER: Final = 4_000_000  # bytes of text that are read at once
 _MEMORY: Final = "64MB"
+_MOST: Final = "400MB"  # of a question; what exceeds it goes to the disk
