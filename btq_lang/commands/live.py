@@ -85,7 +85,8 @@ def _problem(options: Namespace) -> str | None:
     if problem := name_problem(options):
         return problem
     if options.store is None and (options.label or options.robot):
-        return f"{'--label' if options.label else '--robot'} goes with --store DIR"
+        where = "leave out --no-store" if options.no_store else "give --store DIR, where they are kept"
+        return f"{'--label' if options.label else '--robot'} names the runs in a store; {where}"
     try:
         parts = urlsplit(options.live)
         is_address = parts.scheme == "tcp" and bool(parts.hostname and parts.port) and not parts.path

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
+from glob import escape, glob
 from typing import TYPE_CHECKING
 
 from btq_lang.commands.candidates import candidate, name_of, side_of
@@ -12,6 +13,7 @@ from btq_lang.commands.verify import logs_of
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.readers.side import side_files_beside
 from btq_lang.evidence.signal_sources import signal_sources
+from btq_lang.evidence.store.sets import ABOUT
 from btq_lang.evidence.verifying import judged, logs_below
 from btq_lang.evidence.written_verdicts import NotVerdicts, read_verdicts
 from btq_lang.util.text import counted
@@ -36,6 +38,10 @@ def verdicts_for(given: Sequence[str], groups: Sequence[Group], problems: list[s
         logs = [path for path in logs_of(find_project(".").project) if os.path.exists(path)]
         if not logs:
             return None
+    stores = [path for path in logs if _is_store(path)]
+    instead = "write its verdicts with btq verify --store {} -o verdicts.json, and give that file"
+    problems += [f"{path}: a store; {instead.format(path)}" for path in stores]
+    logs = [path for path in logs if path not in stores]
     found: dict[str, list[RequirementVerdict]] = {}
     for path in documents:
         _read(path, found, problems)
@@ -45,6 +51,11 @@ def verdicts_for(given: Sequence[str], groups: Sequence[Group], problems: list[s
     if problems and not found:
         return None
     return lambda mission: found.get(mission) or found.get(name_of(mission), [])
+
+
+def _is_store(path: str) -> bool:
+    """Whether it is a folder where `btq verify` keeps verdicts."""
+    return bool(glob(os.path.join(escape(path), "*", ABOUT)))
 
 
 def _read(path: str, found: dict[str, list[RequirementVerdict]], problems: list[str]) -> None:
@@ -58,7 +69,7 @@ def _read(path: str, found: dict[str, list[RequirementVerdict]], problems: list[
             for key in (absolute(mission.file), mission.name) if mission.file else (mission.name,):
                 found.setdefault(key, []).extend(mission.requirements)
     except NotVerdicts as error:
-        problems.append(f"{shown(absolute(path))}: {error}")
+        problems.append(f"{shown(absolute(path))}: {error}; write such a file with btq verify LOG -o verdicts.json")
 
 
 def _judged(

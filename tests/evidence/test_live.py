@@ -274,7 +274,8 @@ def test_the_report_goes_where_it_is_asked(live: Live) -> None:
         (["tcp://x:1", "--run", "1"], "--run is for logs"),
         (["tcp://x:1", "--by", "label"], "--by goes with --store DIR and no log"),
         (["tcp://x:1", "--label", ""], "--label is empty; give a name, or leave it out to keep what the store has"),
-        (["tcp://x:1", "--label", "v1"], "--label goes with --store DIR"),
+        (["tcp://x:1", "--label", "v1"], "--label names the runs in a store; give --store DIR, where they are kept"),
+        (["tcp://x:1", "--robot", "r1", "--no-store"], "--robot names the runs in a store; leave out --no-store"),
         (["tcp://x:1", "--label-by", "folder"], "--label-by is for logs, which are in folders; give --label NAME"),
         (["tcp://x:1", "--robot-by", "folder"], "--robot-by is for logs, which are in folders; give --robot NAME"),
         (

@@ -162,10 +162,16 @@ def test_other_texts_are_no_verdicts(text: str, why: str) -> None:
 def test_evidence_that_cannot_be_read(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     without = trace(capsys)
     (folder / "other.json").write_text("{}", encoding="utf-8")
-    assert main(["trace", "main.btq", "--evidence", "other.json", "--evidence", "gone.btlog"]) == 2
+    (folder / "kept" / "0123").mkdir(parents=True)
+    (folder / "kept" / "0123" / "about.json").write_text("{}", encoding="utf-8")
+    given = (word for name in ("other.json", "kept", "gone.btlog") for word in ("--evidence", name))
+    assert main(["trace", "main.btq", *given]) == 2
     printed = capsys.readouterr()
     assert printed.out == without
     assert printed.err.splitlines() == [
-        "btq trace: other.json: expected what btq verify --format json writes",
+        "btq trace: kept: a store; write its verdicts with btq verify --store kept -o verdicts.json,"
+        " and give that file",
+        "btq trace: other.json: expected what btq verify --format json writes;"
+        " write such a file with btq verify LOG -o verdicts.json",
         "btq trace: gone.btlog: cannot be read: No such file or directory",
     ]
