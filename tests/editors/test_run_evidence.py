@@ -57,6 +57,7 @@ def test_a_run_is_stepped_through_with_the_keyboard(browser: Browser, tmp_path: 
 
     sees(5, "30 ms: Sequence failed, 30 ms", "✖ 30 ms", "✔ 25 ms", "✖ 5 ms")
     page.screenshot(path=str(artifacts / "run.png"))
+    assert page.evaluate("document.activeElement.id") == "next"  # in an editor the page has the keys only with a focus
     page.keyboard.press("p")
     sees(4, "30 ms: Pick failed, 5 ms", "…", "✔ 25 ms", "✖ 5 ms")
     assert page.locator(".box.step").get_attribute("data-state") == "failed"

@@ -101,8 +101,8 @@ export class TreeView {
     const run = await this.ask("btq.server.run", { uri }, Number(typed));
     if (document !== this.document || !this.panel) await this.show();
     await this.drawn;
-    await this.panel?.webview.postMessage({ run });
     this.panel?.reveal(undefined, false); // its keys step through the run
+    await this.panel?.webview.postMessage({ run });
   }
 
   /** Write the picture to a file: as it is shown, or of the active editor's mission if that is another. */
