@@ -54,6 +54,9 @@ class Judged(Record):
 class Evidence:
     """The verdicts of a project's logs.
 
+    It keeps the verdicts on the last text of a mission itself.  The query store would take more: its inputs are read
+    from a workspace, and this comes from a process of its own, to a session, at any time between two revisions.
+
     Attributes:
         root: the folder that paths of logs are relative to.
         missions: by the paths of their files.
