@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from pathlib import Path
 
+import duckdb
 import pytest
 from by_day import of_the_day
 from evidence_logs import MAIN, MAIN_XML, START, btlog, rows
@@ -83,3 +84,21 @@ def test_a_file_that_is_missing_or_of_another_table(table: str, store: Path) -> 
     code, output, errors = run_btq("verify", "--store", "kept", cwd=store.parent)
     assert (code, output) == (2, "")
     assert errors.startswith(f"btq verify: {named}: no column ")
+
+
+@pytest.mark.parametrize(
+    ("column", "other", "type_"),
+    [
+        ("mission", "mission::BLOB", "VARCHAR"),
+        ("run", "[run]", "INTEGER"),
+        ("start_us", "make_timestamp(run)", "BIGINT"),
+    ],
+)
+def test_a_column_of_another_type(column: str, other: str, type_: str, store: Path) -> None:
+    path = sorted(store.glob("*/runs.parquet"))[0]
+    changed = f"SELECT * REPLACE ({other} AS {column}) FROM '{path}'"
+    duckdb.sql(f"COPY ({changed}) TO '{path.with_suffix('.new')}' (FORMAT parquet)")
+    path.with_suffix(".new").replace(path)
+    message = f"btq verify: {path.relative_to(store.parent)}: no column {column} of the type {type_}; "
+    message += "remove its folder and read its log again\n"
+    assert run_btq("verify", "--store", "kept", cwd=store.parent) == (2, "", message)

@@ -9,7 +9,7 @@ from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, ROWS, files_of, qu
 
 
 def incomplete(connection: Any, store: str) -> str | None:
-    """A file that a store lacks, or that lacks a column of its table.
+    """A file that a store lacks, or whose columns are not those of its table.
 
     Args:
         connection: to DuckDB.
@@ -26,11 +26,14 @@ def incomplete(connection: Any, store: str) -> str | None:
             if (file := f"{folder}/{table}.parquet") not in found:
                 return f"{file}: missing; {_AGAIN}"
     for table in ROWS:
-        question = f"SELECT file_name, list(name) FROM parquet_schema({quoted(files_of(store, table))}) GROUP BY ALL"
+        wanted = {f"{name} {_STORED[kind]}": (name, kind) for name, kind in _columns(table).items()}
+        question = (
+            f"SELECT file_name, list({_COLUMN}) FROM parquet_schema({quoted(files_of(store, table))}) GROUP BY ALL"
+        )
         try:
-            for file, names in connection.execute(question).fetchall():
-                if lacking := _columns(table).keys() - names:
-                    return f"{file}: no column {min(lacking)}; {_AGAIN}"
+            for file, columns in connection.execute(question).fetchall():
+                if lacking := wanted.keys() - columns:
+                    return _lacking(file, *min(wanted[each] for each in lacking))
         except duckdb.Error:
             return damage(connection, store)
     return None
@@ -48,8 +51,12 @@ def damage(connection: Any, store: str) -> str | None:
         except duckdb.Error as error:
             return f"{file}: {' '.join(str(error).split())}; {_AGAIN}"
         if wrong := _columns(table).items() - types.items():
-            return f"{file}: no column {min(wrong)[0]} of the type {min(wrong)[1]}; {_AGAIN}"
+            return _lacking(file, *min(wrong))
     return None
+
+
+def _lacking(file: str, name: str, kind: str) -> str:
+    return f"{file}: no column {name} of the type {kind}; {_AGAIN}"
 
 
 def _files(connection: Any, store: str) -> list[str]:
@@ -68,4 +75,16 @@ def _columns(table: str) -> dict[str, str]:
     }
 
 
+# A column as Parquet has it: its name, that it repeats, its type, and what that is converted to.  Integers of the
+# width of their type may say so or not.
+_COLUMN: Final = """concat_ws(
+    ' ', name, if(repetition_type = 'REPEATED', 'REPEATED', NULL), type, nullif(converted_type, 'INT_' || type[4:])
+)"""
+_STORED: Final = {
+    "VARCHAR": "BYTE_ARRAY UTF8",
+    "INTEGER": "INT32",
+    "BIGINT": "INT64",
+    "DOUBLE": "DOUBLE",
+    "BOOLEAN": "BOOLEAN",
+}
 _AGAIN: Final = "remove its folder and read its log again"
