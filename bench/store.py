@@ -45,10 +45,11 @@ QUESTIONS = {  # of the tables of a made-up log
         FROM range(1, {RUNS + 1}) AS t(run)
     """,
     "clauses": f"""
-        SELECT {COMMON}, clause_index, {CLAUSE}, '' AS title, NULL::VARCHAR AS measures, 'activations' AS counts,
-            's' AS unit, NULL::DOUBLE AS odds, NULL::VARCHAR AS relation, NULL::VARCHAR AS experiments,
-            NULL::DOUBLE AS confidence, NULL::INTEGER AS last_number, NULL::VARCHAR AS last_of,
-            NULL::DOUBLE AS last_seconds, true AS exercised, 0 AS cut_off, NULL::VARCHAR AS missing
+        SELECT {COMMON}, clause_index::INTEGER AS clause_index, {CLAUSE}, '' AS title, NULL::VARCHAR AS measures,
+            'activations' AS counts, 's' AS unit, NULL::DOUBLE AS odds, NULL::VARCHAR AS relation,
+            NULL::VARCHAR AS experiments, NULL::DOUBLE AS confidence, NULL::INTEGER AS last_number,
+            NULL::VARCHAR AS last_of, NULL::DOUBLE AS last_seconds, true AS exercised, 0 AS cut_off,
+            NULL::VARCHAR AS missing
         FROM range({CLAUSES}) AS t(clause_index)
     """,
     "activations": f"""

@@ -10,7 +10,7 @@ from math import comb
 from pathlib import Path
 
 import pytest
-from by_day import of_the_day
+from by_day import of_the_day, takes_all
 from in_process import run_btq
 from json_schema import violations
 
@@ -329,8 +329,10 @@ def test_many_runs_are_shuffled_in_groups(tmp_path: Path) -> None:
 
 
 def test_a_version_compared_with_itself(tmp_path: Path) -> None:
-    """Of 12 random splits of the runs of one version, at most the promised share finds something."""
-    assert [seed for seed in of_the_day(range(12), 4) if finds_something(tmp_path / str(seed), seed)] == []
+    """Of random splits of the runs of one version, at most the promised share finds something: 70 of 1 000."""
+    seeds = range(1000) if takes_all() else of_the_day(range(12), 4)
+    found = [seed for seed in seeds if finds_something(tmp_path / str(seed), seed)]
+    assert len(found) <= len(seeds) * 70 // 1000
 
 
 def finds_something(store: Path, seed: int) -> bool:

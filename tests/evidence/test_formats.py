@@ -12,7 +12,7 @@ import subprocess
 from xml.etree import ElementTree
 
 import pytest
-from evidence_logs import Verify, btlog, rows
+from evidence_logs import START, Verify, btlog, rows
 from ub_test_reports.junitparser import JUnitParser
 
 from btq_lang.commands.verdict_formats import FORMATS
@@ -286,7 +286,7 @@ def test_strict_wants_every_requirement_exercised(judged: Verify) -> None:
 def test_progress_is_shown_to_people_at_a_terminal(judged: Verify, monkeypatch: pytest.MonkeyPatch) -> None:
     clock = itertools.count(step=1.0)
     monkeypatch.setattr("btq_lang.commands.progress.monotonic", lambda: next(clock))
-    (judged.folder / "again.btlog").write_bytes((judged.folder / "run.btlog").read_bytes())
+    (judged.folder / "again.btlog").write_bytes(btlog(judged.build(MISSION), rows(RUNS), START + 1_000_000))
     printed = judged.text(".", "--mission", "main.btq")
     assert judged.errors == ""  # the test's streams are no terminal
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
