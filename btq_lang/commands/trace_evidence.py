@@ -43,8 +43,9 @@ def verdicts_for(given: Sequence[str], groups: Sequence[Group], problems: list[s
     problems += [f"{path}: a store; {instead.format(path)}" for path in stores]
     logs = [path for path in logs if path not in stores]
     found: dict[str, list[RequirementVerdict]] = {}
+    missions = {key for group in groups for path in group.given for key in (path, name_of(path))}
     for path in documents:
-        _read(path, found, problems)
+        _read(path, missions, found, problems)
     if logs:
         for file, verdicts in _judged(logs, groups, problems):
             found.setdefault(file, []).extend(verdicts)
@@ -58,18 +59,26 @@ def _is_store(path: str) -> bool:
     return bool(glob(os.path.join(escape(path), "*", ABOUT)))
 
 
-def _read(path: str, found: dict[str, list[RequirementVerdict]], problems: list[str]) -> None:
+def _read(path: str, missions: set[str], found: dict[str, list[RequirementVerdict]], problems: list[str]) -> None:
     """Add the verdicts of a file, by the path of the mission and, for a file written elsewhere, by its name."""
     text, problem = read(absolute(path))
     if text is None or problem is not None:
         problems.append(str(problem))
         return
     try:
-        for mission in read_verdicts(text):
-            for key in (absolute(mission.file), mission.name) if mission.file else (mission.name,):
-                found.setdefault(key, []).extend(mission.requirements)
+        of_file = {
+            key: mission.requirements
+            for mission in read_verdicts(text)
+            for key in ((absolute(mission.file), mission.name) if mission.file else (mission.name,))
+        }
     except NotVerdicts as error:
         problems.append(f"{shown(absolute(path))}: {error}; write such a file with btq verify LOG -o verdicts.json")
+        return
+    if missions.isdisjoint(of_file):
+        names = "; ".join(key for key in of_file if not os.path.isabs(key))
+        problems.append(f"{shown(absolute(path))}: no verdicts of these missions, only of {names}")
+    for key, requirements in of_file.items():
+        found.setdefault(key, []).extend(requirements)
 
 
 def _judged(

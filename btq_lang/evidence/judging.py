@@ -137,6 +137,11 @@ def _judged(
                 signals = mission.requirements.signals.values()
                 given = by_signal(signals, means.samples, means.of_files, session.signals, means.of_bags)
                 session.remarks.extend(means.remarks)
+                if joined.alike:
+                    others = ", ".join(map(shown, joined.alike))
+                    session.remarks.append(
+                        f"judged by {shown(mission.path)}; the same nodes are in {others}: choose with --mission"
+                    )
                 runs += evaluations[key].read(session, joined, given, runs + 1, source)
     except NotALog as error:
         problems = (f"{shown(log)}: {error}",)

@@ -106,6 +106,18 @@ def test_a_log_with_one_node_more_is_of_the_mission(verify: Verify) -> None:
     assert (requirement["verdict"], requirement["clauses"][0]["counted"]) == ("satisfied", 1)
 
 
+def test_missions_with_the_same_nodes_are_named(verify: Verify) -> None:
+    """As after a copy of the file whose bounds are others."""
+    for name in ("main.btq", "ed/main.btq"):
+        (verify.folder / name).parent.mkdir(exist_ok=True)
+        (verify.folder / name).write_text(f"{DEMAND.replace('Carry/', '')}{MAIN}", encoding="utf-8")
+    (verify.folder / "run.btlog").write_bytes(btlog(MAIN_XML, rows("0 1R 2S 3S 1S")))
+    (source,) = verify.json("run.btlog")["sources"]
+    assert source["remarks"] == ["judged by ed/main.btq; the same nodes are in main.btq: choose with --mission"]
+    (source,) = verify.json("run.btlog", "--mission", "main.btq")["sources"]
+    assert source["remarks"] == []
+
+
 def test_the_first_line_says_that_only_some_nodes_were_found(verify: Verify) -> None:
     (verify.folder / "main.btq").write_text(MISSION.replace("Action Undock", "Action Leave"), encoding="utf-8")
     log_of(verify, MISSION, PLAIN, "--no-enforce")

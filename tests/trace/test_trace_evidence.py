@@ -71,6 +71,15 @@ def test_verdicts_by_logs(folder: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert as_json(capsys, "--evidence", "run.btlog") == {"quick": [QUICK, PICK], "alike": [ALIKE], "looked_at": []}
 
 
+def test_verdicts_of_no_mission_that_is_traced(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify", "run.btlog", "--store", "kept", "--label", "v1"]) == 1
+    assert main(["verify", "--store", "kept", "--by", "label", "-o", "by_label.json"]) == 1
+    capsys.readouterr()
+    assert main(["trace", "main.btq", "--evidence", "by_label.json"]) == 2
+    message = "btq trace: by_label.json: no verdicts of these missions, only of main, label v1\n"
+    assert capsys.readouterr().err.endswith(message)
+
+
 def test_a_file_of_verdicts_shows_the_same_as_the_logs(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", "run.btlog", "-o", "verdicts.json"]) == 1
     for form in ("table", "csv", "json", "markdown", "html"):

@@ -68,9 +68,9 @@ def shuffles_for(comparisons: int) -> int:
     return max(_SHUFFLES, round(comparisons / LEVEL))
 
 
-def least(comparisons: int) -> float:
-    """The least p-value of a shuffled measure, after Holm, that so many comparisons allow."""
-    return min(1.0, comparisons / (shuffles_for(comparisons) + 1))
+def least(comparisons: int, shuffled: int) -> float:
+    """The least p-value of a shuffled measure, after Holm, that so many comparisons allow, so many of them shuffled."""
+    return min(1.0, shuffled / (shuffles_for(comparisons) + 1))
 
 
 def exact(strata: Iterable[Failures]) -> float:

@@ -127,8 +127,9 @@ def compare(ask: Ask, by: str, sides: tuple[str, str]) -> tuple[Comparison, ...]
     adjusted = iter(holm([each.p for changes in found for each in changes]))
     judged = [tuple(_judged(each, next(adjusted)) for each in changes) for changes in found]
     alone = [_alone(name, [rows.get(side) for side in sides]) for name, rows in runs.items() if len(rows) < len(sides)]
+    least_p = least(number, sum(mission.shuffled for mission in missions))
     return (
-        *(mission.result(changes, least(number)) for mission, changes in zip(missions, judged, strict=True)),
+        *(mission.result(changes, least_p) for mission, changes in zip(missions, judged, strict=True)),
         *alone,
     )
 
@@ -183,7 +184,8 @@ class _Mission:
             self._scores.setdefault(_key(row), {})[row["side"], row["stratum"], row["unit"]] = row
         alone = {row["side"]: row["number"] for row in asked(questions.ONE_SIDED)}
         self._one_sided: Final = (alone.get(sides[0], 0), alone.get(sides[1], 0))
-        self.comparisons: Final = 2 * len(self._measures) + len(self._failures)
+        self.shuffled: Final = 2 * len(self._measures)
+        self.comparisons: Final = self.shuffled + len(self._failures)
 
     def changes(self, comparisons: int) -> list[Change]:
         """All that is compared, with p-values before Holm.
@@ -305,7 +307,8 @@ def _judged(change: Change, p: float) -> Change:
         if change.what == "failures":
             finding = "less reliable" if is_more else "more reliable"
         elif is_time(change.unit):
-            finding = "slower" if is_more else "faster"
+            if abs(change.after - change.before) > _RESOLUTION:
+                finding = "slower" if is_more else "faster"
         else:
             finding = "higher" if is_more else "lower"
     return replace(change, p=p, finding=finding)
@@ -318,4 +321,5 @@ def is_time(symbol: str) -> bool:
 
 
 WORSE: Final = ("slower", "less reliable")
+_RESOLUTION: Final = 1.5e-6  # s: the times of a log differ by it if nothing has changed
 _MOST_UNITS: Final = 256  # of the smaller side: more show hardly more, and each shuffle takes as much longer
