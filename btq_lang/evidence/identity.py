@@ -73,7 +73,7 @@ class Joined(Record):
         uids: the uids of the nodes that were found, by their number in the build.
         number: how many of the log's nodes were found.
         lacking: why the others were not.
-        alike: the paths of other missions with the same nodes.
+        others: the paths of other missions with the same nodes.
     """
 
     mission: Candidate
@@ -83,7 +83,7 @@ class Joined(Record):
     number: int
     build: Build
     lacking: str = "was not found in a log of another version of the mission"
-    alike: tuple[str, ...] = ()
+    others: tuple[str, ...] = ()
 
     def instances(self, target: Target) -> list[tuple[str, int | None]]:
         """The paths of the instances of a written node, each with its uid in the log; None if it is not there."""
@@ -140,7 +140,7 @@ def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
     for mission in sorted(missions, key=lambda each: each.side != nodes):  # building a mission takes time
         for build in mission.builds():
             if (same := join_build(mission, build, tree)) is not None:
-                return same if mission.side == nodes else replace(same, alike=_like(same, missions))
+                return same if mission.side == nodes else replace(same, others=_others(same, missions))
     best = _nearest(missions, tree)
     if best is None:
         return None
@@ -148,16 +148,13 @@ def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
     return best if is_same else None
 
 
-def _like(joined: Joined, missions: Sequence[Candidate]) -> tuple[str, ...]:
-    """The paths of other missions that the log belongs to as well."""
-    alike = (
-        each.path
-        for each in missions
-        if each.path != joined.mission.path
-        for build in each.builds()
-        if build.how == joined.build.how and join_build(each, build, joined.tree) is not None
-    )
-    return tuple(dict.fromkeys(alike))
+def _others(joined: Joined, missions: Sequence[Candidate]) -> tuple[str, ...]:
+    """The paths of other missions that the log belongs to as well, by the same build of theirs."""
+    others = {each.path: each for each in missions if each.path != joined.mission.path}
+    builds = {
+        path: next((b for b in each.builds() if b.how == joined.build.how), None) for path, each in others.items()
+    }
+    return tuple(path for path, build in builds.items() if build and join_build(others[path], build, joined.tree))
 
 
 def difference(missions: Sequence[Candidate], tree: LoggedTree) -> str:

@@ -137,8 +137,8 @@ def _judged(
                 signals = mission.requirements.signals.values()
                 given = by_signal(signals, means.samples, means.of_files, session.signals, means.of_bags)
                 session.remarks.extend(means.remarks)
-                if joined.alike:
-                    others = ", ".join(map(shown, joined.alike))
+                if joined.others:
+                    others = ", ".join(map(shown, joined.others))
                     session.remarks.append(
                         f"judged by {shown(mission.path)}; the same nodes are in {others}: choose with --mission"
                     )
