@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, KeysView, Mapping, Set
-from functools import cached_property
+from collections.abc import Iterable, Mapping, Set
+from graphlib import CycleError, TopologicalSorter
+from itertools import chain
 from typing import TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
@@ -19,17 +20,9 @@ from btq_lang.workspace.workspace import Workspace
 Runs: TypeAlias = "tuple[tuple[str, ...], tuple[str, ...]]"
 
 
-def calls(store: Store[Workspace], viewpoint: str) -> Calls:
-    """Which tree runs which, for all trees in scope; those of the file come first, for a circle is reported at its
-    first tree, and included XML may not know that it is in one."""
-    view = View(store, viewpoint)
-    names = dict.fromkeys((*view.look_up(lookups.own_trees), *view.names(Kind.TREE)))
-    return Calls({name: view.ask(_runs, name) for name in names})
-
-
 def callers(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...]:
     """The other trees that run a tree, or probably mean to."""
-    return store.ask(calls, viewpoint).callers.get(tree, ())
+    return store.ask(_callers, viewpoint).get(tree, ())
 
 
 def is_missed(store: Store[Workspace], viewpoint: str, tree: str) -> bool:
@@ -50,13 +43,36 @@ def circle(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...
 
 def has_gaps(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether a SubTree names an unknown tree, so that it is not known which trees are reached."""
-    return not View(store, viewpoint).is_complete or store.ask(calls, viewpoint).has_gaps
+    view = View(store, viewpoint)
+    known = dict(view.ask(_graph))
+    return not view.is_complete or any(name not in known for called, _ in known.values() for name in called)
+
+
+def _graph(store: Store[Workspace], viewpoint: str) -> tuple[tuple[str, Runs], ...]:
+    """All trees in scope; those of the file come first, for a circle is reported at its first tree, and included XML
+    may not know that it is in one."""
+    view = View(store, viewpoint)
+    names = dict.fromkeys((*view.look_up(lookups.own_trees), *view.names(Kind.TREE)))
+    return tuple([(name, view.ask(_runs, name)) for name in names])
+
+
+def _callers(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ...]]:
+    graph = store.ask(_graph, viewpoint)
+    meant = [(name, names) for name, (_, names) in graph]
+    return _turned((*[(name, called) for name, (called, _) in graph], *meant))
 
 
 @hub
 def _circles(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ...]]:
     """All circles: hardly any mission has one, so that after an edit no tree looks for its own again."""
-    return store.ask(calls, viewpoint).circles
+    found: dict[str, tuple[str, ...]] = {}
+    left = {name: called for name, (called, _) in store.ask(_graph, viewpoint)}
+    while (start := _on_circle(left)) is not None:
+        knot = _reached(start, left) & _reached(start, _turned(left.items()))
+        first = next(name for name in left if name in knot)
+        found[first] = _way_back(first, {name: [each for each in left[name] if each in knot] for name in knot})
+        left = {name: called for name, called in left.items() if name not in knot}
+    return found
 
 
 @hub
@@ -65,10 +81,10 @@ def _missed(store: Store[Workspace], viewpoint: str) -> Set[str]:
     mains = view.look_up(lookups.main_trees)
     if not mains or view.ask(has_gaps) or not view.is_read:
         return frozenset()
-    known = view.ask(calls)
-    if not known.names & set(mains):
+    known = dict(view.ask(_graph))
+    if known.keys().isdisjoint(mains):
         return frozenset()  # which is reported
-    return known.names - known.reached_from(*mains)
+    return known.keys() - _run_from(mains, known)
 
 
 @hub
@@ -78,125 +94,49 @@ def _uncreated(store: Store[Workspace], viewpoint: str) -> Set[str]:
     mains = view.look_up(lookups.main_trees)
     if not mains or not view.is_complete or not view.is_read:
         return frozenset()
-    known = view.ask(calls)
-    created = known.reached_from(*mains)
-    return known.names - created if known.names >= created else frozenset()
+    known = dict(view.ask(_graph))
+    created = _run_from(mains, known)
+    return known.keys() - created if known.keys() >= created else frozenset()
 
 
-class Calls:
-    """The trees of a scope, by name, with the trees that each of them runs as SubTree.
-
-    Attributes:
-        has_gaps: whether a SubTree names an unknown tree, so that it is not known which trees are reached.
-    """
-
-    def __init__(self, runs: Mapping[str, Runs]) -> None:
-        self._called = {name: called for name, (called, _) in runs.items()}
-        self._meant = {name: meant for name, (_, meant) in runs.items()}
-        self.has_gaps = any(name not in runs for names in self._called.values() for name in names)
-
-    def __eq__(self, other: object) -> bool:
-        """Whether both are equal for every tree, in the same order."""
-        return isinstance(other, Calls) and (
-            (self._called, self._meant, [*self._called]) == (other._called, other._meant, [*other._called])
-        )
-
-    __hash__ = None  # type: ignore[assignment]  # it is never hashed
-
-    def called_by(self, name: str) -> tuple[str, ...]:
-        """The trees that a tree runs, in the order of their SubTrees; empty for an unknown tree."""
-        return self._called.get(name, ())
-
-    @property
-    def names(self) -> KeysView[str]:
-        """The trees."""
-        return self._called.keys()
-
-    @cached_property
-    def callers(self) -> dict[str, tuple[str, ...]]:
-        """The other trees that run a tree, or probably mean to."""
-        meant = _turned(self._meant)
-        found = {name: (*callers, *meant.pop(name, ())) for name, callers in self._callers.items()}
-        return found | {name: tuple(callers) for name, callers in meant.items()}
-
-    def reached_from(self, *names: str) -> frozenset[str]:
-        """Trees and all that they run, directly or not, including those that they probably mean to run."""
-        return frozenset(reached(names, lambda name: (*self.called_by(name), *self._meant.get(name, ()))))
-
-    @cached_property
-    def circles(self) -> dict[str, tuple[str, ...]]:
-        """The shortest way from a tree back to itself, for the first tree of each knot."""
-        return {name: self._circle(name, knot) for name, knot in self.knots.items()}
-
-    def _circle(self, name: str, knot: frozenset[str]) -> tuple[str, ...]:
-        before: dict[str, str] = {}
-        waiting = [name]
-        for tree in waiting:
-            for called in self.called_by(tree):
-                if called == name:
-                    way = [name, tree]
-                    while way[-1] != name:
-                        way.append(before[way[-1]])
-                    return tuple(reversed(way))
-                if called in knot and called not in before:
-                    before[called] = tree
-                    waiting.append(called)
-        raise AssertionError("each tree of a knot reaches itself")
-
-    @cached_property
-    def _callers(self) -> dict[str, list[str]]:
-        return _turned(self._called)
-
-    @cached_property
-    def callees_first(self) -> tuple[str, ...]:
-        """The trees, each after those that it runs, except in circles."""
-        called = self._called
-        finished: dict[str, None] = {}
-        begun: set[str] = set()
-        for start in called:
-            waiting = [start] if start not in begun else []
-            while waiting:
-                tree = waiting[-1]
-                if tree in begun:
-                    waiting.pop()
-                    finished[tree] = None
-                    continue
-                begun.add(tree)
-                if called[tree]:
-                    waiting += [each for each in called[tree] if each in called and each not in begun]
-        return tuple(finished)
-
-    @cached_property
-    def knots(self) -> dict[str, frozenset[str]]:
-        """The strongly connected components that contain a circle, each under the first of its trees (Kosaraju)."""
-        finished = self.callees_first
-        place_of = {name: number for number, name in enumerate(finished)}
-        if all(place_of.get(called, -1) < place_of[name] for name in finished for called in self._called[name]):
-            return {}  # as in nearly all files
-        knots: dict[str, frozenset[str]] = {}
-        place = {name: number for number, name in enumerate(self._called)}
-        left_over = set(finished)
-        for start in reversed(finished):
-            knot: set[str] = set()
-            waiting = [start] if start in left_over else []
-            while waiting:
-                tree = waiting.pop()
-                if tree in left_over:
-                    left_over.remove(tree)
-                    knot.add(tree)
-                    waiting += self._callers.get(tree, ())
-            if len(knot) > 1 or (knot and start in self.called_by(start)):
-                knots[min(knot, key=place.__getitem__)] = frozenset(knot)
-        return knots
+def _run_from(mains: tuple[str, ...], known: Mapping[str, Runs]) -> Set[str]:
+    """Trees and all that they run, directly or not, including those that they probably mean to run."""
+    return {*reached(mains, lambda name: chain(*known.get(name, ())))}
 
 
-def _turned(graph: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:
+def _reached(start: str, graph: Mapping[str, tuple[str, ...]]) -> Set[str]:
+    return {*reached([start], lambda name: graph.get(name, ()))}
+
+
+def _on_circle(graph: Mapping[str, Iterable[str]]) -> str | None:
+    """A tree that runs itself, directly or not, if there is one."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return str(error.args[1][0])
+    return None
+
+
+def _way_back(start: str, graph: Mapping[str, Iterable[str]]) -> tuple[str, ...]:
+    """The shortest way from a tree to itself, both ends included."""
+    before: dict[str, str] = {}
+    for tree in reached([start], graph.__getitem__):
+        for called in graph[tree]:
+            before.setdefault(called, tree)
+    way = [start, before[start]]
+    while way[-1] != start:
+        way.append(before[way[-1]])
+    return tuple(reversed(way))
+
+
+def _turned(graph: Iterable[tuple[str, Iterable[str]]]) -> dict[str, tuple[str, ...]]:
+    """The other trees that run each tree."""
     turned: dict[str, list[str]] = {}
-    for name, called in graph.items():
+    for name, called in graph:
         for tree in called:
             if tree != name:
                 turned.setdefault(tree, []).append(name)
-    return turned
+    return {tree: tuple(names) for tree, names in turned.items()}
 
 
 def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
