@@ -113,7 +113,7 @@ def side_file(workspace: Workspace, built: Built) -> str | None:
                 {"requirement": each.requirement, "nodes": running.uids(Target(each.node))} for each in found.traces
             ],
             **_guards(built.documents[-1].root),
-            "concerns": list(_concerns(workspace, paths, found.nodes, running)),
+            "concerns": list(_concerns(found.nodes, running)),
             "nodes": [_node(instance, node, place) for instance, node in running.all],
         }
     )
@@ -229,23 +229,19 @@ def _applied(applied: Applied, clauses: tuple[ClauseEnforcement, ...], running: 
     return found
 
 
-def _concerns(workspace: Workspace, paths: tuple[str, ...], nodes: Nodes, running: RunningTree) -> Iterator[Json]:
+def _concerns(nodes: Nodes, running: RunningTree) -> Iterator[Json]:
     """The concerns that `satisfices` names, for a tree as for its node."""
-    for path in paths:
-        for entry in workspace.files[path].parsed.entries:
-            if not isinstance(entry.item, Tree):
-                continue
-            parts = [(nodes.within(entry.item).root, entry.item.clauses)]
-            parts += [(nodes.of(node), node.clauses) for node in entry.item.walk() if node.clauses]
-            for node, clauses in parts:
-                qualities: list[Json] = [
-                    quality.path.text
-                    for clause in clauses
-                    if isinstance(clause, Satisfices)
-                    for quality in clause.qualities
-                ]
-                if node is not None and qualities:
-                    yield {"qualities": qualities, "nodes": running.uids(Target(node))}
+    for tree in nodes.trees:
+        parts = [(tree.root, tree.item.clauses), *[(node, node.node.clauses) for node in tree.all]]
+        for node, clauses in parts:
+            qualities: list[Json] = [
+                quality.path.text
+                for clause in clauses
+                if isinstance(clause, Satisfices)
+                for quality in clause.qualities
+            ]
+            if node is not None and qualities:
+                yield {"qualities": qualities, "nodes": running.uids(Target(node))}
 
 
 # ---- values ----

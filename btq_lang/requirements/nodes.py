@@ -6,18 +6,21 @@ through SubTree nodes names them.  Callers report paths with no node or several.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from functools import cached_property, wraps
+from typing import Concatenate, ParamSpec, TypeVar
 
 from btq_lang.requirements.model import Target
-from btq_lang.syntax.tree import Node, Tree
 from btq_lang.util.reach import reached
 from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree, tree_named, tree_nodes
 from btq_lang.workspace.workspace import Workspace
 
-# ---- queries, one each, so that an equal result ends the recomputation after an edit ----
+P = ParamSpec("P")
+T = TypeVar("T")
+
+# ---- queries ----
 
 
 def nodes(store: Store[Workspace], viewpoint: str) -> Nodes:
@@ -25,54 +28,13 @@ def nodes(store: Store[Workspace], viewpoint: str) -> Nodes:
     return Nodes([store.ask(tree_nodes, viewpoint, path, facts) for path, facts in inputs.trees(store, viewpoint)])
 
 
-def find(store: Store[Workspace], viewpoint: str, names: tuple[str, ...]) -> tuple[Target, ...]:
-    """The nodes that a path means, as for `Nodes.find`."""
-    return store.ask(nodes, viewpoint).find(names)
-
-
-def every(store: Store[Workspace], viewpoint: str, name: str) -> tuple[ResolvedNode, ...]:
-    """The nodes of an ID or kind, as for `Nodes.every`."""
-    return store.ask(nodes, viewpoint).every(name)
-
-
-def has_any(store: Store[Workspace], viewpoint: str, name: str) -> bool:
-    """Whether there are any of these."""
-    return bool(store.ask(every, viewpoint, name))
-
-
-def tagged(store: Store[Workspace], viewpoint: str, tag: str) -> tuple[ResolvedNode, ...]:
-    """The nodes with a tag."""
-    return store.ask(nodes, viewpoint).tagged(tag)
-
-
-def every_under(store: Store[Workspace], viewpoint: str, name: str, top: Target) -> tuple[ResolvedNode, ...]:
-    """The nodes of an ID or kind below a node, or in a tree that runs below it."""
-    return store.ask(nodes, viewpoint).under(store.ask(every, viewpoint, name), top)
-
-
 def callers(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[ResolvedNode, ...]:
     """The SubTree nodes that run a tree."""
     return store.ask(_callers_by_tree, viewpoint).get(tree, ())
 
 
-def has_name(store: Store[Workspace], viewpoint: str, name: str) -> bool:
-    """Whether a name can occur in a path."""
-    return store.ask(nodes, viewpoint).has_name(name)
-
-
-def node_names(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
-    """Every name that can occur in a path."""
-    return store.ask(nodes, viewpoint).names
-
-
-def kinds(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
-    """Every ID and kind that a node has."""
-    return store.ask(nodes, viewpoint).kinds
-
-
-def tags(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
-    """Every tag that a node has."""
-    return store.ask(nodes, viewpoint).tags
+def _callers_by_tree(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[ResolvedNode, ...]]:
+    return store.ask(nodes, viewpoint).callers_by_tree
 
 
 def knows_all_nodes(store: Store[Workspace], viewpoint: str) -> bool:
@@ -98,13 +60,14 @@ def root(store: Store[Workspace], viewpoint: str, tree: str) -> ResolvedNode | N
     return found.root if found is not None else None
 
 
-def has_nodes(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether there are any nodes in scope."""
-    return store.ask(nodes, viewpoint).are_known
+def _of_nodes(read: Callable[Concatenate[Nodes, P], T]) -> Callable[Concatenate[Store[Workspace], str, P], T]:
+    """A method of `Nodes` as a query of its own, so that an equal result ends the recomputation after an edit."""
 
+    @wraps(read)
+    def query(store: Store[Workspace], viewpoint: str, /, *key: P.args, **named: P.kwargs) -> T:
+        return read(store.ask(nodes, viewpoint), *key, **named)
 
-def _callers_by_tree(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[ResolvedNode, ...]]:
-    return store.ask(nodes, viewpoint).callers_by_tree
+    return query
 
 
 # ---- the index ----
@@ -130,26 +93,9 @@ class Nodes:
         """In the order of the files and of their text."""
         return tuple([node for tree in self.trees for node in tree.all])
 
-    @cached_property
     def are_known(self) -> bool:
         """Whether there are any."""
         return any(tree.all for tree in self.trees)
-
-    def within(self, item: Tree) -> ResolvedTree:
-        """The nodes of one of the trees.
-
-        Raises:
-            KeyError: it is not one of them.
-        """
-        return self._of_item[id(item)]
-
-    @cached_property
-    def _of_item(self) -> dict[int, ResolvedTree]:
-        return {id(tree.item): tree for tree in self.trees}
-
-    def of(self, node: Node) -> ResolvedNode | None:
-        """The resolved node of a syntax node."""
-        return self._of_node.get(id(node))
 
     def callers(self, tree: str | None) -> tuple[ResolvedNode, ...]:
         """The SubTree nodes that run a tree."""
@@ -192,6 +138,10 @@ class Nodes:
             return (root,)
         return tuple(found)
 
+    def has_any(self, name: str) -> bool:
+        """Whether there are any of these."""
+        return bool(self.every(name))
+
     def tagged(self, tag: str) -> tuple[ResolvedNode, ...]:
         """The nodes with a tag; a tag of a tree is one of its root."""
         found: list[ResolvedNode] = []
@@ -201,26 +151,23 @@ class Nodes:
                 found += [node for node in tree.all if id(node) in tagged]
         return tuple(found)
 
-    @cached_property
     def tags(self) -> frozenset[str]:
         """Every tag that a node has."""
         return frozenset().union(*(tree.by_tag for tree in self.trees))
 
-    @cached_property
     def kinds(self) -> frozenset[str]:
         """Every ID and kind that a node has."""
         return frozenset().union(*(node.kinds for node in self.all))
 
-    def under(self, nodes: Sequence[ResolvedNode], top: Target) -> tuple[ResolvedNode, ...]:
-        """Those of the nodes that are below a node, or in a tree that runs below it."""
+    def every_under(self, name: str, top: Target) -> tuple[ResolvedNode, ...]:
+        """The nodes of an ID or kind below a node, or in a tree that runs below it."""
         below = self._below(top.node)
-        return tuple(node for node in nodes if id(node) in below)
+        return tuple(node for node in self.every(name) if id(node) in below)
 
     def has_name(self, name: str) -> bool:
         """Whether a name can occur in a path."""
         return name in self._by_name or name in self._roots
 
-    @cached_property
     def names(self) -> tuple[str, ...]:
         """Every name that can occur in a path."""
         return (*self._by_name, *self._roots)
@@ -233,56 +180,25 @@ class Nodes:
                 found.setdefault(name, []).extend(nodes)
         return found
 
-    @cached_property
-    def _of_node(self) -> dict[int, ResolvedNode]:
-        return {id(node.node): node for node in self.all}
-
     def _target(self, node: ResolvedNode, above: tuple[str, ...], is_tree: bool) -> Target | None:
         """The node as target of a path, if the path's other names are found above it.
 
         Args:
             is_tree: whether the path's last name was the tree's, so that the tree is not a step above the node.
         """
-        left = len(above)
-        at = None if is_tree else node.parent
-        while left and at is not None:
-            left -= above[left - 1] in at.names
-            at = at.parent
-        if left and not is_tree and above[left - 1] == node.tree:
-            left -= 1
-        if not left:
-            return Target(node)
-        matched, missed = self._chains(node.tree, above, left)
-        return (Target(node, above[:left]) if missed else Target(node)) if matched else None
+        left = len(above) if is_tree else _left(node.parent, node.tree, above)
 
-    def _chains(self, tree: str | None, above: tuple[str, ...], left: int) -> tuple[bool, bool]:
-        """Whether the remaining names are found above a tree on some way, and whether they are missing on some. Each
-        step is a SubTree node with what is above it; the name of its tree does not count here."""
-        matched = missed = False
-        seen: set[tuple[str | None, int]] = set()
-        waiting = [(tree, left)]
-        while waiting:
-            state = waiting.pop()
-            if state in seen:
-                continue
-            seen.add(state)
+        def following(state: tuple[str | None, int]) -> list[tuple[str | None, int]]:
             called, wanted = state
-            callers = self.callers(called)
-            missed = missed or not callers
-            for caller in callers:
-                open_ = wanted
-                at: ResolvedNode | None = caller
-                while open_ and at is not None:
-                    if above[open_ - 1] in at.names and not (at is caller and above[open_ - 1] == called):
-                        open_ -= 1
-                    at = at.parent
-                if open_ and above[open_ - 1] == caller.tree:
-                    open_ -= 1
-                if open_:
-                    waiting.append((caller.tree, open_))
-                else:
-                    matched = True
-        return matched, missed
+            callers = self.callers(called) if wanted else ()
+            return [(each.tree, _left(each, each.tree, above[:wanted], called)) for each in callers]
+
+        # Trees on all ways up, each with the number of names that are still to be found above it.
+        states = [*reached([(node.tree, left)], following)]
+        if all(wanted for _, wanted in states):
+            return None
+        is_missed = any(wanted and not self.callers(tree) for tree, wanted in states)
+        return Target(node, above[:left]) if is_missed else Target(node)
 
     def _below(self, top: ResolvedNode) -> set[int]:
         def following(node: ResolvedNode) -> list[ResolvedNode]:
@@ -292,6 +208,32 @@ class Nodes:
         return {id(node) for node in reached(following(top), following)}
 
 
+def _left(node: ResolvedNode | None, tree: str | None, above: tuple[str, ...], called: str | None = None) -> int:
+    """How many of some names are not found, the last one first, from a node on up to its tree.
+
+    Args:
+        called: the tree that the node runs, whose name does not count there.
+    """
+    left = len(above)
+    at = node
+    while left and at is not None:
+        left -= above[left - 1] in at.names and not (at is node and above[left - 1] == called)
+        at = at.parent
+    return left - bool(left and above[left - 1] == tree)
+
+
 def _runs(node: ResolvedNode, tree: str) -> bool:
     """Whether it is a SubTree node of that tree, whatever its label."""
     return node.category == "SubTree" and node.node.id is not None and node.node.id.text == tree
+
+
+find = _of_nodes(Nodes.find)
+every = _of_nodes(Nodes.every)
+has_any = _of_nodes(Nodes.has_any)
+every_under = _of_nodes(Nodes.every_under)
+tagged = _of_nodes(Nodes.tagged)
+has_name = _of_nodes(Nodes.has_name)
+node_names = _of_nodes(Nodes.names)
+kinds = _of_nodes(Nodes.kinds)
+tags = _of_nodes(Nodes.tags)
+has_nodes = _of_nodes(Nodes.are_known)
