@@ -61,21 +61,8 @@ from btq_lang.checks import (
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.scan import line_start
-from btq_lang.syntax.tree import (
-    Apply,
-    Context,
-    Entry,
-    Include,
-    Model,
-    Models,
-    Qualities,
-    QualityDecl,
-    Requirement,
-    Root,
-    Signal,
-    Tree,
-)
 from btq_lang.workspace.config import configured
 from btq_lang.workspace.findings import Findings, Reported
 from btq_lang.workspace.item_index import Facts
@@ -113,7 +100,7 @@ _OF_QUALITIES: tuple[Check, ...] = (
 )
 # The checks of each type of item: most items are small, and most checks do not concern most of them.
 CHECKS: dict[type, tuple[Check, ...]] = {
-    Include: (
+    syntax.Include: (
         includes.missing_include,
         includes.cyclic_include,
         trees.duplicate_tree,
@@ -122,8 +109,8 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         ports.duplicate_attribute,
         moving.moving_include,
     ),
-    Root: (trees.unknown_tree, empty.empty_text, ports.duplicate_attribute, version3.version_3_file),
-    Tree: (
+    syntax.Root: (trees.unknown_tree, empty.empty_text, ports.duplicate_attribute, version3.version_3_file),
+    syntax.Tree: (
         trees.unknown_tree,
         trees.duplicate_tree,
         trees.recursive_tree,
@@ -164,7 +151,6 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         repeated.named_twice,
         empty.empty_text,
         *_OF_QUALITIES,
-        clauses.subtraction_without_blanks,
         prose.prose_constraint,
         reactive.reactive_multiple_async,
         reactive.explicit_in_reactive,
@@ -183,36 +169,34 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         measures.unresolved,
         demands.demands,
     ),
-    Model: _OF_MODELS,
-    Models: _OF_MODELS,
-    Signal: (
+    syntax.Model: _OF_MODELS,
+    syntax.Models: _OF_MODELS,
+    syntax.Signal: (
         kinds.duplicate_definition,
         empty.empty_text,
         requirements.unused_signal,
         measures.unresolved,
         demands.demands,
     ),
-    Context: (
+    syntax.Context: (
         kinds.duplicate_definition,
-        clauses.subtraction_without_blanks,
         requirements.unused_context,
         measures.unresolved,
     ),
-    Requirement: (
+    syntax.Requirement: (
         requirements.conflicting_requirement,
         requirements.unused_requirement,
         *_OF_CLAUSES,
         empty.empty_text,
         *_OF_QUALITIES,
-        clauses.subtraction_without_blanks,
         prose.prose_constraint,
         measures.unresolved,
         measures.requirement_without_subject,
         demands.demands,
     ),
-    Apply: (requirements.unknown_requirement, repeated.named_twice, measures.unresolved, demands.demands),
-    Qualities: (qualities.unknown_quality,),
-    QualityDecl: (kinds.duplicate_definition, empty.empty_text, *_OF_QUALITIES),
+    syntax.Apply: (requirements.unknown_requirement, repeated.named_twice, measures.unresolved, demands.demands),
+    syntax.Qualities: (qualities.unknown_quality,),
+    syntax.QualityDecl: (kinds.duplicate_definition, empty.empty_text, *_OF_QUALITIES),
 }
 
 
@@ -234,7 +218,7 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
 )
 # Of models, of which a file has many, `_OF_PORTS` need only the ports, and these only the ports of trees' models.
 _OF_PORTS_OF_TREES: frozenset[Check] = frozenset((literals.number_for_text, names.forbidden_name))
-_OF_NODES = tuple(each for each in CHECKS[Model] if each not in _OF_PORTS_OF_TREES)
+_OF_NODES = tuple(each for each in CHECKS[syntax.Model] if each not in _OF_PORTS_OF_TREES)
 _WITHOUT_PORTS = tuple(each for each in _OF_NODES if each not in _OF_PORTS)
 
 
@@ -325,7 +309,7 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
         is_alone: leave out what is wrong in the files that it includes.
     """
     items = lookups.items(store, viewpoint)
-    found = [store.ask(_reported, viewpoint, facts, is_alone and type(facts.item) is Include) for facts in items]
+    found = [store.ask(_reported, viewpoint, facts, is_alone and type(facts.item) is syntax.Include) for facts in items]
     return tuple([each for each in found if each is not None])
 
 
@@ -338,7 +322,7 @@ def _reported(store: Store[Workspace], viewpoint: str, facts: Facts, is_alone: b
         from btq_lang.checks.moved_engine import new_in_target  # few checks have a target
 
         found = [*found, *new_in_target(view, checks, [*found])]
-    if type(facts.item) is Include and not is_alone:
+    if type(facts.item) is syntax.Include and not is_alone:
         found = [*found, *includes.include_with_errors(view, _errors_in)]
     if entry.diagnostics:
         found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
@@ -363,20 +347,20 @@ def _errors_in(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Place, st
     )
 
 
-def checks_of(entry: Entry) -> tuple[Check, ...]:
+def checks_of(entry: syntax.Entry) -> tuple[Check, ...]:
     """The checks that may concern an entry."""
     item = entry.item
     checks = CHECKS.get(type(item), ())
-    if type(item) is Model and not item.body:
+    if type(item) is syntax.Model and not item.body:
         return _WITHOUT_PORTS
-    if type(item) is Model and item.category.raw != "SubTree":
+    if type(item) is syntax.Model and item.category.raw != "SubTree":
         return _OF_NODES
     if entry.diagnostics and any(problem.rule in _STRUCTURE_IS_LOST for problem in entry.diagnostics):
         checks = tuple(each for each in checks if each not in _OF_STRUCTURE)
     return checks
 
 
-def _on_sound_lines(found: Iterable[Diagnostic], entry: Entry, text: str) -> Iterator[Diagnostic]:
+def _on_sound_lines(found: Iterable[Diagnostic], entry: syntax.Entry, text: str) -> Iterator[Diagnostic]:
     """The diagnostics that are not on a line with a syntax error, whose meaning is unknown."""
     broken = {_line(text, each) for each in entry.diagnostics if each.effective_severity is Severity.ERROR}
     return (each for each in found if _line(text, each) not in broken)

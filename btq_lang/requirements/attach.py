@@ -31,9 +31,7 @@ from btq_lang.requirements.model import (
 )
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Problems, Reader
-from btq_lang.syntax.tree import Apply, NodeClause, ReqRef, Selector, Tree, Word, is_name
-from btq_lang.syntax.tree import Argument as WrittenArgument
-from btq_lang.syntax.tree import Requirement as WrittenRequirement
+from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import Record, fields_of, replace
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span as TextSpan
@@ -79,9 +77,9 @@ def uses_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) ->
     reader = Reader(store, viewpoint, path, facts)
     uses: list[Use] = []
     mentioned: set[str] = set()
-    if isinstance(facts.item, Tree):
+    if isinstance(facts.item, syntax.Tree):
         _at_nodes(reader, facts.item, uses, mentioned)
-    elif isinstance(facts.item, Apply):
+    elif isinstance(facts.item, syntax.Apply):
         _applies(reader, facts.item, uses, mentioned)
     return Uses(tuple(uses), frozenset(mentioned), reader.problems)
 
@@ -280,9 +278,9 @@ def _by_subject(store: Store[Workspace], viewpoint: str, of_name: Requirement) -
         yield Applied(made, subject, arguments, place, "subject")  # type: ignore[arg-type]  # no Every is left
 
 
-def _at_nodes(reader: Reader, tree: Tree, uses: list[Use], mentioned: set[str]) -> None:
+def _at_nodes(reader: Reader, tree: syntax.Tree, uses: list[Use], mentioned: set[str]) -> None:
     of_tree = reader.store.ask(tree_nodes, reader.viewpoint, reader.path, reader.facts)
-    places: list[tuple[ResolvedNode | None, tuple[NodeClause, ...]]] = [(of_tree.root, tree.clauses)]
+    places: list[tuple[ResolvedNode | None, tuple[syntax.NodeClause, ...]]] = [(of_tree.root, tree.clauses)]
     places += [(node, node.node.clauses) for node in of_tree.all if node.node.clauses]
     for node, clauses in places:
         for written in requirements_at(clauses):
@@ -297,7 +295,7 @@ def _at_nodes(reader: Reader, tree: Tree, uses: list[Use], mentioned: set[str]) 
                 uses.append(Use(of_name.name, Target(node), arguments, _AT_NODE, "satisfies", place))
 
 
-def _applies(reader: Reader, apply: Apply, uses: list[Use], mentioned: set[str]) -> None:
+def _applies(reader: Reader, apply: syntax.Apply, uses: list[Use], mentioned: set[str]) -> None:
     targets = [found for selector in apply.targets for found in _selected(reader, selector)]
     excepted = _excepted(reader, apply, {id(target.node) for target, _ in targets})
     for reference in apply.uses:
@@ -318,7 +316,7 @@ def _requirement(reader: Reader, name: str) -> Requirement | None:
     return reader.store.ask(requirement, reader.viewpoint, name)[0]
 
 
-def _excepted(reader: Reader, apply: Apply, applied_to: set[int]) -> set[int]:
+def _excepted(reader: Reader, apply: syntax.Apply, applied_to: set[int]) -> set[int]:
     """The nodes after `except`; a selector's should be among those that the requirement is applied to."""
     excepted: set[int] = set()
     for selector in apply.exceptions:
@@ -331,7 +329,7 @@ def _excepted(reader: Reader, apply: Apply, applied_to: set[int]) -> set[int]:
     return excepted
 
 
-def _selected(reader: Reader, selector: Selector) -> Iterator[tuple[Target, int]]:
+def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[Target, int]]:
     """The nodes of a selector, and how specific it is."""
     if selector.tag is not None:
         found = reader.store.ask(nodes.tagged, reader.viewpoint, selector.tag.text)
@@ -363,13 +361,13 @@ def _under(reader: Reader, name: str, top: Target) -> tuple[ResolvedNode, ...]:
 
 
 def _arguments(
-    reader: Reader, of_name: Requirement, written: WrittenRequirement | ReqRef, span: TextSpan
+    reader: Reader, of_name: Requirement, written: syntax.Requirement | syntax.ReqRef, span: TextSpan
 ) -> tuple[Argument, ...] | None:
     """The values of the parameters; None if one is missing or wrong, which is reported."""
     given: dict[str, Bounded] = {}
     complete = True
     parameters = {parameter.name: parameter for parameter in of_name.parameters}
-    for argument in written.arguments if isinstance(written, ReqRef) else ():
+    for argument in written.arguments if isinstance(written, syntax.ReqRef) else ():
         parameter = parameters.get(argument.name.text)
         if parameter is None:
             _no_parameter(reader, of_name, argument)
@@ -396,10 +394,10 @@ def _arguments(
     return tuple(Argument(name, value) for name, value in values if value is not None)
 
 
-def _no_parameter(reader: Reader, of_name: Requirement, argument: WrittenArgument) -> None:
-    word: Word = argument.name
+def _no_parameter(reader: Reader, of_name: Requirement, argument: syntax.Argument) -> None:
+    word: syntax.Word = argument.name
     known = [parameter.name for parameter in of_name.parameters]
-    likely = [name for name in near(word.text, known) if is_name(name)]
+    likely = [name for name in near(word.text, known) if syntax.is_name(name)]
     fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, name) for name in likely)
     notes = (f"its parameters: {', '.join(f'`{name}`' for name in known)}",) if known else ("it has no parameters",)
     reader.complain(

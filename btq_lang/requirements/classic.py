@@ -13,13 +13,12 @@ from btq_lang.requirements.clauses import with_clauses
 from btq_lang.requirements.constraints import Constraint, can_be_checked, clauses_of, constraints, is_script
 from btq_lang.requirements.model import Claim, Limit, Not, Relation, Requirement, Script
 from btq_lang.requirements.reader import Reader
-from btq_lang.syntax.tree import Claim as WrittenClaim
-from btq_lang.syntax.tree import Word
+from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 
 
-def with_constraints(reader: Reader, requirement: Requirement, text: Word) -> Requirement:
+def with_constraints(reader: Reader, requirement: Requirement, text: syntax.Word) -> Requirement:
     """A requirement without clauses, with the claims of its description."""
     found = constraints(text)
     names = frozenset(reader.names("nodes")) if found else frozenset()
@@ -41,7 +40,7 @@ def _with(reader: Reader, requirement: Requirement, constraint: Constraint, span
     found = clauses_of(constraint.text)
     assert found is not None, "what can be checked is a script or has clauses"
     item, text = found
-    if constraint.violates and not all(isinstance(clause, WrittenClaim) for clause in item.clauses):
+    if constraint.violates and not all(isinstance(clause, syntax.Claim) for clause in item.clauses):
         return requirement
     inner = Reader(reader.store, reader.viewpoint, reader.path, reader.facts)
     inner.source = text, span

@@ -34,51 +34,41 @@ from btq_lang.requirements.model import (
 )
 from btq_lang.requirements.reader import Reader
 from btq_lang.requirements.terms import COUNT, DURATION, PERCENT, SORTS, TIME, Wanted, sort_of
-from btq_lang.syntax.tree import Because, Between, Bound, Confidence, Goal, How, OnViolation, Path, Sum, Word
-from btq_lang.syntax.tree import Claim as WrittenClaim
-from btq_lang.syntax.tree import Clause as WrittenClause
-from btq_lang.syntax.tree import Event as WrittenEvent
-from btq_lang.syntax.tree import Every as WrittenEvery
-from btq_lang.syntax.tree import Mission as WrittenMission
-from btq_lang.syntax.tree import Odds as WrittenOdds
-from btq_lang.syntax.tree import Parameter as WrittenParameter
-from btq_lang.syntax.tree import Scope as WrittenScope
-from btq_lang.syntax.tree import Subject as WrittenSubject
-from btq_lang.syntax.tree import Window as WrittenWindow
+from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span as TextSpan
 
 
-def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[WrittenClause, ...]) -> Requirement:
+def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[syntax.Clause, ...]) -> Requirement:
     """A requirement with these clauses resolved; of clauses that may occur once, the first counts."""
     claims: list[Claim] = []
     scopes: list[Scope] = []
     once: dict[str, object] = {}
     reasons: list[str] = []
-    goals: list[Goal] = []
+    goals: list[syntax.Goal] = []
     for clause in clauses:
         found: dict[str, object] = {}
-        if isinstance(clause, WrittenClaim):
+        if isinstance(clause, syntax.Claim):
             claim = claim_of(reader, clause)
             claims += [claim] if claim is not None else []
-        elif isinstance(clause, WrittenScope):
+        elif isinstance(clause, syntax.Scope):
             condition = reader.condition(clause.condition)
             if condition is not None:
                 word = "while" if clause.word.raw == "while" else "when"
                 scopes.append(Scope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
-        elif isinstance(clause, WrittenOdds):
+        elif isinstance(clause, syntax.Odds):
             found["odds"] = _odds(reader, clause)
-        elif isinstance(clause, Confidence):
+        elif isinstance(clause, syntax.Confidence):
             found["confidence"] = _confidence(reader, clause)
-        elif isinstance(clause, WrittenWindow):
+        elif isinstance(clause, syntax.Window):
             found["window"] = _window(reader, clause)
-        elif isinstance(clause, OnViolation) and clause.action is not None:
+        elif isinstance(clause, syntax.OnViolation) and clause.action is not None:
             found = {"action": clause.action.raw}
-        elif isinstance(clause, Goal):
+        elif isinstance(clause, syntax.Goal):
             goals.append(clause)
-        elif isinstance(clause, Because) and clause.text is not None:
+        elif isinstance(clause, syntax.Because) and clause.text is not None:
             reasons.append(clause.text.text)
-        elif isinstance(clause, How) and clause.method is not None:
+        elif isinstance(clause, syntax.How) and clause.method is not None:
             found["method"] = clause.method.raw
         for key, value in found.items():
             if value is not None:
@@ -94,7 +84,7 @@ def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[Writte
     )
 
 
-def claim_of(reader: Reader, written: WrittenClaim) -> Claim | None:
+def claim_of(reader: Reader, written: syntax.Claim) -> Claim | None:
     """What a claim demands; None if a part of it was not understood."""
     subject: Subject | None = None
     if written.subject is not None:
@@ -107,7 +97,7 @@ def claim_of(reader: Reader, written: WrittenClaim) -> Claim | None:
     return found if found is None or subject is None else replace(found, subject=subject)
 
 
-def _verb(reader: Reader, written: WrittenClaim) -> Claim | None:
+def _verb(reader: Reader, written: syntax.Claim) -> Claim | None:
     place = reader.place(TextSpan(written.start, written.end))
     claim = Claim(written.verb.raw, reader.text(written.start, written.end), place)
     operand = VERBS[claim.verb].operand
@@ -136,7 +126,7 @@ def _verb(reader: Reader, written: WrittenClaim) -> Claim | None:
     return claim if per is None else replace(claim, per=per)
 
 
-def _resource(reader: Reader, word: Word | None) -> tuple[Signal | None, Wanted | None]:
+def _resource(reader: Reader, word: syntax.Word | None) -> tuple[Signal | None, Wanted | None]:
     """The signal that is used up, and the kind of its difference over an activation."""
     if word is None:
         return None, None
@@ -157,7 +147,7 @@ def _resource(reader: Reader, word: Word | None) -> tuple[Signal | None, Wanted 
     return signal, Wanted(what, (signal.unit.dimension,), None if plain else unit, "difference")
 
 
-def _limit(reader: Reader, written: Bound | None, wanted: Wanted) -> Limit | None:
+def _limit(reader: Reader, written: syntax.Bound | None, wanted: Wanted) -> Limit | None:
     if written is None:
         return None
     value = reader.bounded(written.value, wanted)
@@ -167,13 +157,13 @@ def _limit(reader: Reader, written: Bound | None, wanted: Wanted) -> Limit | Non
     return Limit(written.relation, value, upper)  # type: ignore[arg-type]  # the parser's relations
 
 
-def _per(reader: Reader, written: Path | Word | None) -> Target | Value | None:
-    if isinstance(written, Path):
+def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> Target | Value | None:
+    if isinstance(written, syntax.Path):
         return reader.target(written)
     return reader.quantity(written, DURATION) if written is not None else None
 
 
-def _event(reader: Reader, written: WrittenEvent | None) -> Event | None:
+def _event(reader: Reader, written: syntax.Event | None) -> Event | None:
     if written is None:
         return None
     if written.happening == "when":
@@ -183,26 +173,26 @@ def _event(reader: Reader, written: WrittenEvent | None) -> Event | None:
     return Event(written.happening, subject) if subject is not None else None  # type: ignore[arg-type]  # the parser's words
 
 
-def _subject(reader: Reader, written: WrittenSubject) -> Subject | None:
-    if isinstance(written, Path):
+def _subject(reader: Reader, written: syntax.Subject) -> Subject | None:
+    if isinstance(written, syntax.Path):
         return reader.target(written)
-    if isinstance(written, WrittenMission):
+    if isinstance(written, syntax.Mission):
         return Mission(reader.mission)
-    if isinstance(written, WrittenEvery):
+    if isinstance(written, syntax.Every):
         if not reader.store.ask(nodes.has_any, reader.viewpoint, written.name.text):
             reader.none_of(written.name)
             return None
         return Every(written.name.text)
-    if isinstance(written, Between):
+    if isinstance(written, syntax.Between):
         first, last = _event(reader, written.first), _event(reader, written.last)
         return Span(first, last) if first is not None and last is not None else None
-    assert isinstance(written, Sum), "the last kind of subject"
+    assert isinstance(written, syntax.Sum), "the last kind of subject"
     targets = [reader.target(path) for path in written.paths]
     found = tuple(target for target in targets if target is not None)
     return Total(found) if len(found) == len(targets) else None
 
 
-def _odds(reader: Reader, written: WrittenOdds) -> Odds | None:
+def _odds(reader: Reader, written: syntax.Odds) -> Odds | None:
     share = reader.quantity(written.value, _SHARE)
     if share is None or written.value is None:
         return None
@@ -219,7 +209,7 @@ def _odds(reader: Reader, written: WrittenOdds) -> Odds | None:
     return Odds(written.relation, share.si, "runs" if of_runs else "activations", text, place)
 
 
-def _confidence(reader: Reader, written: Confidence) -> float | None:
+def _confidence(reader: Reader, written: syntax.Confidence) -> float | None:
     share = reader.quantity(written.value, _SHARE)
     if share is None or written.value is None:
         return None
@@ -230,7 +220,7 @@ def _confidence(reader: Reader, written: Confidence) -> float | None:
     return share.si
 
 
-def _window(reader: Reader, written: WrittenWindow) -> Window | None:
+def _window(reader: Reader, written: syntax.Window) -> Window | None:
     if written.size is None:
         return None
     text = reader.text(written.start, written.end)
@@ -264,7 +254,7 @@ def _of_goal(claims: list[Claim], has_odds: bool) -> Wanted | None:
     return Wanted("a goal of the same dimension as the bound", tuple(dimensions), unit) if claims else None
 
 
-def parameter_of(reader: Reader, written: WrittenParameter) -> Parameter:
+def parameter_of(reader: Reader, written: syntax.Parameter) -> Parameter:
     """A parameter with its default."""
     sort, unit = sort_of(written.unit)
     parameter = Parameter(written.name.text, sort, unit, None)

@@ -6,8 +6,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.requirements.clauses import parameter_of, with_clauses
 from btq_lang.requirements.model import Parameter, Requirement
 from btq_lang.requirements.reader import Problems, Reader
-from btq_lang.syntax.tree import Requirement as WrittenRequirement
-from btq_lang.syntax.tree import Tree
+from btq_lang.syntax import tree as syntax
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
@@ -23,7 +22,7 @@ def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Req
         return None, ()
     symbol = inputs.symbol(found[1], Kind.REQUIREMENT, name)
     written = symbol.target
-    assert isinstance(written, WrittenRequirement), "its kind says so"
+    assert isinstance(written, syntax.Requirement), "its kind says so"
     reader = Reader(store, viewpoint, *found)
     parameters: dict[str, Parameter] = {}
     for each in written.parameters:
@@ -48,11 +47,11 @@ def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Req
 
 
 def _quality(
-    store: Store[Workspace], viewpoint: str, path: str, facts: Facts, written: WrittenRequirement
+    store: Store[Workspace], viewpoint: str, path: str, facts: Facts, written: syntax.Requirement
 ) -> str | None:
     """The quality that a requirement names, or that encloses it."""
     if written.quality is not None:
         return written.quality.text
-    if not isinstance(facts.item, Tree):
+    if not isinstance(facts.item, syntax.Tree):
         return None
     return store.ask(tree_nodes, viewpoint, path, facts).qualities.get(id(written))

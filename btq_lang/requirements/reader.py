@@ -55,25 +55,9 @@ from btq_lang.requirements.terms import (
     unit_beside,
     unit_symbol,
 )
+from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import NAME, NUMBER, QUANTITY, STRING
-from btq_lang.syntax.tree import (
-    Amount,
-    Binary,
-    Call,
-    Comparison,
-    Context,
-    Negative,
-    NodeRuns,
-    Operand,
-    Path,
-    Word,
-    walk,
-)
-from btq_lang.syntax.tree import Bounded as WrittenBounded
-from btq_lang.syntax.tree import Condition as WrittenCondition
-from btq_lang.syntax.tree import Not as WrittenNot
-from btq_lang.syntax.tree import Signal as WrittenSignal
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
@@ -93,7 +77,7 @@ def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Signal |
         return None, ()
     symbol = inputs.symbol(found[1], Kind.SIGNAL, name)
     item = symbol.target
-    assert isinstance(item, WrittenSignal), "its kind says so"
+    assert isinstance(item, syntax.Signal), "its kind says so"
     names = inputs.names(store, viewpoint, Kind.SIGNAL) if item.initially is not None else ()
     reader = Reader(store, viewpoint, *found, known=names[: names.index(name)] if name in names else ())
     sort, unit = sort_of(item.unit)
@@ -150,15 +134,15 @@ def _depth(store: Store[Workspace], viewpoint: str, name: str) -> int:
     return 1 + max([store.ask(_depth, viewpoint, other) for other in others], default=0)
 
 
-def _written_context(facts: Facts, name: str) -> Context:
+def _written_context(facts: Facts, name: str) -> syntax.Context:
     written = inputs.symbol(facts, Kind.CONTEXT, name).target
-    assert isinstance(written, Context), "its kind says so"
+    assert isinstance(written, syntax.Context), "its kind says so"
     return written
 
 
-def _contexts_in(store: Store[Workspace], viewpoint: str, written: Context) -> Iterator[str]:
+def _contexts_in(store: Store[Workspace], viewpoint: str, written: syntax.Context) -> Iterator[str]:
     """The contexts that a context names."""
-    words = [part.word for part in walk(written.condition) if isinstance(part, Operand)]
+    words = [part.word for part in syntax.walk(written.condition) if isinstance(part, syntax.Operand)]
     for name in [word.text for word in words if word.kind == NAME]:
         if inputs.definition(store, viewpoint, Kind.CONTEXT, name) is not None:
             yield name
@@ -183,11 +167,11 @@ class Reader(PathReader):
 
     # ---- values ----
 
-    def bounded(self, written: WrittenBounded | None, wanted: Wanted | None) -> Bounded | None:
+    def bounded(self, written: syntax.Bounded | None, wanted: Wanted | None) -> Bounded | None:
         """A value, or a table of values, of the wanted kind; None: any."""
         if written is None:
             return None
-        if isinstance(written, Amount):
+        if isinstance(written, syntax.Amount):
             term = self._amount(written, wanted)
             fits = term is not None and (wanted is None or self._fits(term, wanted))
             return simple(term.value) if term is not None and fits else None
@@ -203,7 +187,7 @@ class Reader(PathReader):
             return None
         return Table((*cases, Case(otherwise, None)))
 
-    def argument(self, parameter: Parameter, written: WrittenBounded) -> Bounded | None:
+    def argument(self, parameter: Parameter, written: syntax.Bounded) -> Bounded | None:
         """The argument for a parameter, or the first value of a signal."""
         if parameter.sort == "number":
             unit = parameter.unit
@@ -219,19 +203,19 @@ class Reader(PathReader):
                 return None
         return found
 
-    def quantity(self, word: Word | None, wanted: Wanted) -> Value | None:
+    def quantity(self, word: syntax.Word | None, wanted: Wanted) -> Value | None:
         """A quantity or a number by itself."""
         term = self._number(word, False) if word is not None else None
         if term is None or not self._fits(term, wanted):
             return None
         return term.value if isinstance(term.value, Value) else None
 
-    def _amount(self, amount: Amount, wanted: Wanted | None) -> Term | None:
+    def _amount(self, amount: syntax.Amount, wanted: Wanted | None) -> Term | None:
         if amount.word.kind in (NUMBER, QUANTITY):
             return self._number(amount.word, amount.negative)
-        return self._named(amount.word, unit=wanted.unit if wanted is not None else None)
+        return self._named(amount.word, unit=wanted.unit if wanted is not None else None, in_bound=True)
 
-    def _number(self, word: Word, negative: bool) -> Term | None:
+    def _number(self, word: syntax.Word, negative: bool) -> Term | None:
         raw = f"-{word.raw}" if negative else word.raw
         if word.kind == NUMBER:
             term = Term(Value(raw, float(raw), ONE), "number", NO_DIMENSION, None, word.span, word=word)
@@ -246,17 +230,20 @@ class Reader(PathReader):
         level: Level = "level" if unit.offset else "either"
         return Term(Value(raw, value, unit), "number", unit.dimension, unit_text, word.span, level, word)
 
-    def _is_finite(self, value: float, word: Word) -> bool:
+    def _is_finite(self, value: float, word: syntax.Word) -> bool:
         if not isfinite(value):
             self.complain("invalid-literal", word.span, f"`{word.raw}` exceeds the range of numbers")
         return isfinite(value)
 
-    def _named(self, word: Word, beside: Term | None = None, unit: str | None = None) -> Term | None:
+    def _named(
+        self, word: syntax.Word, beside: Term | None = None, unit: str | None = None, *, in_bound: bool = False
+    ) -> Term | None:
         """A parameter, a signal, or a literal that looks like a name.
 
         Args:
             beside: what it is compared with.
             unit: wanted, if it is not compared with anything.
+            in_bound: whether no subtraction can be written there.
         """
         name = word.text
         if word.kind == STRING:
@@ -269,11 +256,11 @@ class Reader(PathReader):
             return term_of(Read(signal), word)
         if self.is_context(name):
             self.complain("unit-mismatch", word.span, f"`{name}` is a context, not a value")
-            return None
-        self.unknown(word, ("parameters", "signals"), unit or unit_beside(beside))
+        elif in_bound or not self._is_subtraction(word):
+            self.unknown(word, ("parameters", "signals"), unit or unit_beside(beside))
         return None
 
-    def unknown(self, word: Word, kinds: tuple[str, ...], unit: str = "m") -> None:
+    def unknown(self, word: syntax.Word, kinds: tuple[str, ...], unit: str = "m") -> None:
         """Report a name that is not declared.
 
         Args:
@@ -282,8 +269,6 @@ class Reader(PathReader):
         """
         if not inputs.is_complete(self.store, self.viewpoint):
             return
-        if any(at > 0 and c == "-" for at, c in enumerate(word.text)) and self._is_subtraction(word.text):
-            return  # reported as a subtraction without blanks
         meant = self.near(word.text, *kinds) if word.text not in OF_PYTHON else (word.text.lower(),)
         fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, name) for name in meant)
         if word.text[-1] in "²³":
@@ -298,13 +283,23 @@ class Reader(PathReader):
         message = f"unknown signal `{word.text}`{did_you_mean(meant)}"
         self.complain("unknown-signal", word.span, message, notes=(note,), fixes=fixes)
 
-    def _is_subtraction(self, name: str) -> bool:
-        return any(
-            c == "-" and self._is_declared(name[:at]) and self._is_declared(name[at + 1 :]) for at, c in enumerate(name)
-        )
+    def _is_subtraction(self, word: syntax.Word) -> bool:
+        """Whether an unknown name is two known ones with a `-` between them, which is then reported."""
+        for at, character in enumerate(word.text):
+            left, right = word.text[:at], word.text[at + 1 :]
+            if character == "-" and self._is_declared(left) and self._is_declared(right):
+                self.complain(
+                    "subtraction-without-blanks",
+                    word.span,
+                    f"undefined name `{word.text}`; write spaces around `-` to subtract",
+                    notes=("without spaces `-` is part of the name",),
+                    fixes=(replace_fix(f"Write `{left} - {right}`", word.span, f"{left} - {right}", safe=True),),
+                )
+                return True
+        return False
 
     def _is_declared(self, name: str) -> bool:
-        return name in self.parameters or self.signal(name) is not None or self.is_context(name)
+        return self._is_value(name) or self.is_context(name)
 
     def _fits(self, term: Term, wanted: Wanted) -> bool:
         """Whether a value is of the wanted kind; else that is reported."""
@@ -354,33 +349,35 @@ class Reader(PathReader):
 
     # ---- conditions ----
 
-    def condition(self, written: WrittenCondition | None) -> Condition | None:
+    def condition(self, written: syntax.Condition | None) -> Condition | None:
         """A condition; None if a part of it was not understood."""
-        if isinstance(written, Operand):
+        if isinstance(written, syntax.Operand):
             return self._lone(written.word)
-        if isinstance(written, NodeRuns):
-            target = self.target(written.path)
-            return Running(target) if target is not None else None
-        if isinstance(written, WrittenNot):
+        if isinstance(written, syntax.NodeRuns):
+            return self._running(written.path)
+        if isinstance(written, syntax.Not):
             operand = self.condition(written.operand)
             return Not(operand) if operand is not None else None
-        if isinstance(written, Binary) and written.operator in ("and", "or"):
+        if isinstance(written, syntax.Binary) and written.operator in ("and", "or"):
             return self._joined(written)
-        if isinstance(written, Comparison):
+        if isinstance(written, syntax.Comparison):
             return self._compare(written)
-        if isinstance(written, Binary) and (path := self._as_path(written)) is not None:
-            target = self.target(path)
-            return Running(target) if target is not None else None
+        if isinstance(written, syntax.Binary) and (path := self._as_path(written)) is not None:
+            return self._running(path)
         if written is not None:
             term = self._expression(written)
             if term is not None:
                 self._no_condition(term)
         return None
 
-    def _joined(self, written: Binary) -> Condition | None:
-        parts: list[WrittenCondition] = []
-        at: WrittenCondition = written
-        while isinstance(at, Binary) and at.operator == written.operator:
+    def _running(self, path: syntax.Path) -> Condition | None:
+        target = self.target(path)
+        return Running(target) if target is not None else None
+
+    def _joined(self, written: syntax.Binary) -> Condition | None:
+        parts: list[syntax.Condition] = []
+        at: syntax.Condition = written
+        while isinstance(at, syntax.Binary) and at.operator == written.operator:
             parts.append(at.right)
             at = at.left
         conditions = [self.condition(part) for part in (at, *reversed(parts))]
@@ -389,7 +386,7 @@ class Reader(PathReader):
             return None
         return All(found) if written.operator == "and" else Any(found)
 
-    def _lone(self, word: Word) -> Condition | None:
+    def _lone(self, word: syntax.Word) -> Condition | None:
         """A context, a bool signal or parameter, `true` or `false`, or else a running node."""
         name = word.text
         if word.kind in (NUMBER, QUANTITY):
@@ -411,14 +408,10 @@ class Reader(PathReader):
                 if term is not None:
                     self._no_condition(term)
                 return None
-        if self.find((name,)):
-            target = self.target(Path((word,)))
-            return Running(target) if target is not None else None
-        if word.kind == STRING:
-            if self.knows_all_nodes:
-                self.target(Path((word,)))
-            return None
-        self.unknown(word, ("parameters", "signals", "contexts", "nodes"))
+        if word.kind == STRING or self.find((name,)):
+            return self._running(syntax.Path((word,)))
+        if not self._is_subtraction(word):
+            self.unknown(word, ("parameters", "signals", "contexts", "nodes"))
         return None
 
     def _no_condition(self, term: Term) -> None:
@@ -426,25 +419,25 @@ class Reader(PathReader):
             return
         self._unexpected("a condition", term)
 
-    def _as_path(self, written: Binary) -> Path | None:
+    def _as_path(self, written: syntax.Binary) -> syntax.Path | None:
         """`A/B`, which is parsed as a division, if no name in it is a signal."""
-        words: list[Word] = []
-        at: WrittenCondition = written
-        while isinstance(at, Binary) and at.operator == "/" and isinstance(at.right, Operand):
+        words: list[syntax.Word] = []
+        at: syntax.Condition = written
+        while isinstance(at, syntax.Binary) and at.operator == "/" and isinstance(at.right, syntax.Operand):
             words.append(at.right.word)
             at = at.left
-        if not isinstance(at, Operand):
+        if not isinstance(at, syntax.Operand):
             return None
         words.append(at.word)
         if all(word.kind in (NAME, STRING) and not self._is_value(word.text) for word in words):
-            return Path(tuple(reversed(words)))
+            return syntax.Path(tuple(reversed(words)))
         return None
 
-    def _compare(self, written: Comparison) -> Condition | None:
+    def _compare(self, written: syntax.Comparison) -> Condition | None:
         terms: list[Term | None] = [None] * len(written.operands)
         # An undeclared name may get the unit of what it is compared with, so names come last.
         for at, operand in sorted(enumerate(written.operands), key=lambda each: self._is_unknown(each[1])):
-            if self._is_unknown(operand) and isinstance(operand, Operand):
+            if self._is_unknown(operand) and isinstance(operand, syntax.Operand):
                 terms[at] = self._named(operand.word, next(filter(None, terms), None))
             else:
                 terms[at] = self._expression(operand)
@@ -457,11 +450,10 @@ class Reader(PathReader):
             ok = self._comparable(left, right, operator) and ok
         return Compare(written.operators, tuple(term.value for term in found)) if ok else None
 
-    def _is_unknown(self, written: WrittenCondition) -> bool:
-        if not isinstance(written, Operand) or written.word.kind != NAME:
+    def _is_unknown(self, written: syntax.Condition) -> bool:
+        if not isinstance(written, syntax.Operand) or written.word.kind != NAME:
             return False
-        name = written.word.text
-        return name not in ("true", "false") and not self._is_value(name) and not self.is_context(name)
+        return written.word.text not in ("true", "false") and not self._is_declared(written.word.text)
 
     def _is_value(self, name: str) -> bool:
         """Whether it is the name of a parameter or of a signal."""
@@ -504,26 +496,26 @@ class Reader(PathReader):
     def _at(self, span: Span) -> str:
         return self.text(span.start, span.end)
 
-    def _expression(self, written: WrittenCondition) -> Term | None:
-        if isinstance(written, Operand):
+    def _expression(self, written: syntax.Condition) -> Term | None:
+        if isinstance(written, syntax.Operand):
             word = written.word
             return self._number(word, False) if word.kind in (NUMBER, QUANTITY) else self._named(word)
-        if isinstance(written, Negative):
+        if isinstance(written, syntax.Negative):
             inner = written.operand
-            if isinstance(inner, Operand) and inner.word.kind in (NUMBER, QUANTITY):
+            if isinstance(inner, syntax.Operand) and inner.word.kind in (NUMBER, QUANTITY):
                 return self._number(inner.word, True)
             term = self._expression(inner)
             return term and Term(Minus(term.value), term.sort, term.dimension, term.unit, term.span, term.level)
-        if isinstance(written, Call):
+        if isinstance(written, syntax.Call):
             return self._call(written)
-        if isinstance(written, Binary) and written.operator in "+-*/":
+        if isinstance(written, syntax.Binary) and written.operator in "+-*/":
             return self._arithmetic(written)
         if self.condition(written) is not None:
             span = Span(written.start, written.end)
             self.complain("unit-mismatch", span, f"expected a value, found the condition `{self._at(span)}`")
         return None
 
-    def _call(self, written: Call) -> Term | None:
+    def _call(self, written: syntax.Call) -> Term | None:
         word = written.signal
         if word is None:
             return None
@@ -548,7 +540,7 @@ class Reader(PathReader):
             return Term(value, "number", unit.dimension, "K" if unit.offset else unit.symbol, span, "difference")
         return Term(value, "number", unit.dimension, unit_symbol(unit), span, level)
 
-    def _arithmetic(self, written: Binary) -> Term | None:
+    def _arithmetic(self, written: syntax.Binary) -> Term | None:
         left, right = self._expression(written.left), self._expression(written.right)
         if left is None or right is None:
             return None

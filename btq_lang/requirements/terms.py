@@ -22,10 +22,8 @@ from btq_lang.requirements.model import (
     Text,
     Value,
 )
+from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import NUMBER
-from btq_lang.syntax.tree import Amount, Word
-from btq_lang.syntax.tree import Bounded as WrittenBounded
-from btq_lang.syntax.tree import Table as WrittenTable
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
@@ -64,7 +62,7 @@ class Term(Record):
     unit: str | None
     span: Span
     level: Level = "either"
-    word: Word | None = None
+    word: syntax.Word | None = None
 
     @property
     def is_bare(self) -> bool:
@@ -72,16 +70,16 @@ class Term(Record):
         return self.word is not None and self.word.kind == NUMBER
 
 
-def amounts(found: Bounded | None, written: WrittenBounded) -> tuple[tuple[Simple, Span], ...]:
+def amounts(found: Bounded | None, written: syntax.Bounded) -> tuple[tuple[Simple, Span], ...]:
     """Each value with its place."""
     if found is None:
         return ()
-    if isinstance(found, Table) and isinstance(written, WrittenTable):
+    if isinstance(found, Table) and isinstance(written, syntax.Table):
         amounts = (*(case.value for case in written.cases), written.otherwise)
         pairs = zip(found.cases, amounts, strict=True)
         return tuple((case.value, amount.word.span) for case, amount in pairs if amount is not None)
     assert not isinstance(found, Table), "a table is read from a table"
-    assert isinstance(written, Amount), "a table is read from a table"
+    assert isinstance(written, syntax.Amount), "a table is read from a table"
     return ((found, written.word.span),)
 
 
@@ -97,7 +95,7 @@ def simple(value: Number) -> Simple | None:
     return value if isinstance(value, Value | Flag | Text | Read | Parameter) else None
 
 
-def term_of(value: Read | Parameter, word: Word) -> Term:
+def term_of(value: Read | Parameter, word: syntax.Word) -> Term:
     kind = value.signal if isinstance(value, Read) else value
     unit = kind.unit
     if kind.sort != "number" or unit is None:
@@ -138,7 +136,7 @@ def in_words(term: Term) -> str:
     return a_dimension(Unit("", term.dimension, 1.0)) if term.dimension is not None else "a number"
 
 
-def sort_of(written: Word | None) -> tuple[Sort, Unit | None]:
+def sort_of(written: syntax.Word | None) -> tuple[Sort, Unit | None]:
     """The meaning of the word after the `:` of a signal or a parameter."""
     if written is not None and written.text in ("bool", "text"):
         return ("bool" if written.text == "bool" else "text"), None

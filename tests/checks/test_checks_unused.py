@@ -71,6 +71,10 @@ def test_one_mistake_is_told_once() -> None:
         f'signal a : % from {{a}}\nsignal b : % from {{b}}\nQualityReq rq1 "t"\n    leaves a-b > 3 %\n{NODE}',
         "4:12 hint subtraction-without-blanks «a-b» undefined name `a-b`; write spaces around `-` to subtract",
     )
+    assert_problems(  # a bound is one value
+        f'signal a : s from {{a}}\nsignal b : s from {{b}}\nQualityReq rq1 "t"\n    takes at most a-b\n{NODE}',
+        "4:19 error unknown-signal «a-b» unknown signal `a-b`",
+    )
 
 
 def test_a_file_without_trees_and_one_that_others_include_are_for_others() -> None:
