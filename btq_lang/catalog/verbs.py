@@ -1,7 +1,8 @@
 """The verbs of clauses, one row each: what a clause with it demands, how it is judged, enforced, completed and worded.
 
 One invariant: whatever differs from verb to verb is in its row, or in what is found by the row's word: its production
-in `grammar/claims`, its module in `evidence/verbs`, and, if it can be enforced, its function in `btcpp/guards`.
+in `grammar/claims`, its function in `evidence/verbs` or `evidence/run_verbs`, and, if it can be enforced, its function
+in `btcpp/guards`.
 """
 
 from __future__ import annotations

@@ -8,10 +8,10 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     identity.py    which node of a log is which written node
     named_runs.py  the same for a log without a tree, run by run
     signals.py, history.py   values of signals at a moment, and what nodes did in the open run
-    observed.py, conditions.py   what was observed during an activation or a run, and whether conditions held
+    observed.py, conditions.py   what was observed during an activation or a run, whether conditions held, and measures
     guards.py      what the nodes that a build adds around others did
-    verbs/         a module a verb: the judgement of an activation or a run
-    limits.py, over_run.py   shared by verbs: measures compared with bounds, and when events happened
+    verbs.py, run_verbs.py   a function a verb: the judgement of an activation or of a run
+    over_run.py    what a clause judged over a run reads: what its nodes did, and when events happened
     scopes.py      which activations count
     outline.py   the clauses of a mission and where they are, so that a later text is known again
     clause.py, evaluate.py   a clause, and all clauses of a mission, judged while a log is read

@@ -26,10 +26,11 @@ from btq_lang.evidence.model import (
 from btq_lang.evidence.observed import Observed, parts_in
 from btq_lang.evidence.over_run import OverRun, target_of
 from btq_lang.evidence.recent import Recent
+from btq_lang.evidence.run_verbs import run_judge
 from btq_lang.evidence.scopes import in_scope, within
 from btq_lang.evidence.signals import Signals, Unknown
 from btq_lang.evidence.tally import Run, Tally
-from btq_lang.evidence.verbs import Judgement, judges_of
+from btq_lang.evidence.verbs import JUDGES, Judgement
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Link, Measures
 from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import Mission, Running, Span, Target, Total, Value
@@ -91,7 +92,8 @@ class JudgedClause:
         odds, confidence, window = requirement.odds, requirement.confidence, requirement.window
         self._tally: Final = Tally(odds, confidence, limits) if window is None else Recent(window, odds, confidence)
         self._subject: Final = subject
-        self._judge, self._judge_run = judges_of(claim, subject)
+        self._judge: Final = JUDGES.get(claim.verb) if not isinstance(subject, Span | Total) else None
+        self._judge_run: Final = run_judge(claim, subject)
         self.judged: Final = replace(within(claim, requirement.scopes), subject=subject)
         self._edge: Final = edge_of(self.judged, subject, requirement) if with_measures else None
         self._extremes: Final = self._edge.extremes if self._edge is not None else ()

@@ -1,4 +1,4 @@
-"""Evaluates conditions and bounds at a moment, from what was observed.
+"""Evaluates conditions and bounds at a moment, from what was observed, and compares measures with bounds.
 
 One invariant: an unknown part makes the whole unknown unless the other parts decide it (Kleene), and the reason of the
 first such part is kept.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.units import ONE, Unit, parse_unit
 from btq_lang.evidence.signals import Unknown
@@ -34,25 +34,44 @@ from btq_lang.requirements.model import (
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Moment, SampleValue
     from btq_lang.evidence.observed import Observed
-    from btq_lang.requirements.model import Bounded, Condition, Number
+    from btq_lang.requirements.model import Bounded, Condition, Limit, Number
 
     Truth: TypeAlias = bool | Unknown
 
 
-class Reading(NamedTuple):  # not a Record, which takes longer to make: a log has many, as of Measure
-    """A signal, or an aggregate of it, compared with a bound, as in `battery >= 3 %`.
+class Measure:
+    """A measured value, with the bound that it is compared with, or of two the one that it is closer to violating.
 
     Attributes:
-        name: as typed: `battery`, `max(force)`.
+        unit: to print both in; None for a number of starts.
         excess: how far the value is on the wrong side of the bound, in SI; negative on the right side.
+        is_upper: the value is bounded from above.
+        name: of what a condition compares, as typed: `battery`, `max(force)`.
     """
 
-    name: str
-    unit: Unit | None
-    si: float
-    bound: Value
-    excess: float
-    holds: bool
+    # Not a Record: a log has as many as it has judgements, and a Record takes three times as long to make.
+    __slots__ = ("bound", "excess", "is_upper", "name", "si", "unit")
+
+    def __init__(self, si: float, relation: str, bound: Value, unit: Unit | None, name: str = "") -> None:
+        self.si: Final = si
+        self.unit = unit
+        self.bound: Final = bound
+        self.is_upper: Final = relation in ("<=", "<")
+        self.name: Final = name
+        self.excess = si - bound.si if self.is_upper else bound.si - si
+        if self.excess == 0 and relation in ("<", ">"):
+            self.excess = _JUST
+
+    @property
+    def holds(self) -> bool:
+        """Whether the bound is kept."""
+        return self.excess <= 0
+
+    def kept(self, is_complete: bool) -> bool | None:
+        """Whether the bound is kept; None: undecided, because a measure that is not complete may grow."""
+        if self.excess > 0:
+            return False if self.is_upper or is_complete else None
+        return True if is_complete else None
 
 
 def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
@@ -103,28 +122,38 @@ def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Value | Un
     return Value(bounded.text, value, unit or ONE)
 
 
-def reading_of(condition: Condition, observed: Observed, moment: Moment) -> Reading | None:
-    """The reading of a condition that compares a signal with a bound, or is `not A or B` with such a B where A holds;
+def compared(limit: Limit, si: float, observed: Observed, moment: Moment) -> Measure | Unknown:
+    """Compare a measured value with its bound, which is evaluated at a moment."""
+    bound = bound_at(limit.value, observed, moment)
+    if isinstance(bound, Unknown):
+        return bound
+    measure = Measure(si, limit.relation, bound, bound.unit)
+    if limit.upper is None:
+        return measure
+    upper = bound_at(limit.upper, observed, moment)
+    if isinstance(upper, Unknown):
+        return upper
+    return max(measure, Measure(si, "<=", upper, upper.unit), key=operator.attrgetter("excess"))
+
+
+def measure_of(condition: Condition, observed: Observed, moment: Moment, is_negated: bool = False) -> Measure | None:
+    """What a condition measures that compares a signal with a bound, or is `not A or B` with such a B where A holds;
     None for other conditions and unknown values.
     """
     if isinstance(condition, Compare):
-        return _compared_with_bound(condition, observed, moment)
-    if isinstance(condition, InContext):
-        return reading_of(condition.condition, observed, moment)
-    if isinstance(condition, Not):
-        found = reading_of(condition.condition, observed, moment)
-        if found is None:
-            return None
-        return Reading(found.name, found.unit, found.si, found.bound, -found.excess, not found.holds)
+        return _compared_with_bound(condition, observed, moment, is_negated)
+    if isinstance(condition, InContext | Not):
+        is_other = is_negated != isinstance(condition, Not)
+        return measure_of(condition.condition, observed, moment, is_other)
     if isinstance(condition, Any):
         *cases, last = condition.conditions
         is_last = all(isinstance(case, Not) and truth(case, observed, moment) is False for case in cases)
-        return reading_of(last, observed, moment) if is_last else None
+        return measure_of(last, observed, moment, is_negated) if is_last else None
     return None
 
 
-def _compared_with_bound(condition: Compare, observed: Observed, moment: Moment) -> Reading | None:
-    """The reading of a comparison of a signal with a bound; None for other comparisons and unknown values."""
+def _compared_with_bound(condition: Compare, observed: Observed, moment: Moment, is_negated: bool) -> Measure | None:
+    """The measure of a comparison of a signal with a bound; None for other comparisons and unknown values."""
     sign, *others = condition.operators
     if others or sign not in MIRRORED:
         return None
@@ -138,8 +167,7 @@ def _compared_with_bound(condition: Compare, observed: Observed, moment: Moment)
     if not isinstance(value, float) or isinstance(bound, Unknown):
         return None
     name = left.signal.name if isinstance(left, Read) else f"{left.function}({left.signal.name})"
-    excess = value - bound.si if sign in ("<", "<=") else bound.si - value
-    return Reading(name, _unit(left), value, bound, excess, _COMPARISONS[sign](value, bound.si))
+    return Measure(value, OPPOSITE[sign] if is_negated else sign, bound, _unit(left), name)
 
 
 def _compared(condition: Compare, observed: Observed, moment: Moment) -> Truth:
@@ -219,3 +247,5 @@ _OPERATIONS: Final[dict[str, Callable[[float, float], float]]] = {
 _MEASURED: Final = (Read, Aggregate)
 _BOUNDS: Final = (Value, Table, Read)
 MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+OPPOSITE: Final = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
+_JUST: Final = 1e-9  # a measure equal to a strict bound violates it

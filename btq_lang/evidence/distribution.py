@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.verdicts import Histogram
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.conditions import Reading
-    from btq_lang.evidence.limits import Measure
+    from btq_lang.evidence.conditions import Measure
     from btq_lang.requirements.model import Value
 
 
@@ -22,11 +21,11 @@ class Distribution:
 
     def __init__(self) -> None:
         self._counts: dict[int, int] = {}  # by how many steps above the bound
-        self._last: Measure | Reading | None = None
+        self._last: Measure | None = None
         self._origin = 0.0
         self._step = 0.0
 
-    def add(self, measure: Measure | Reading) -> None:
+    def add(self, measure: Measure) -> None:
         """Count a value."""
         if self._last is None:
             self._origin = measure.bound.si

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.verbs import VERBS, words
-from btq_lang.evidence.conditions import MIRRORED
+from btq_lang.evidence.conditions import MIRRORED, OPPOSITE
 from btq_lang.requirements.model import Aggregate, Compare, Limit, Read, Total, Value
 from btq_lang.util.record import Record, replace
 
@@ -82,7 +82,7 @@ def _edge_of_condition(claim: Claim) -> Edge | None:
         return None
     sign = MIRRORED[sign] if is_mirrored else sign
     if claim.verb == "never":
-        sign = _OPPOSITE[sign]
+        sign = OPPOSITE[sign]
 
     def moved(other: Value) -> Claim:
         operands = (other, measured) if is_mirrored else (measured, other)
@@ -92,5 +92,4 @@ def _edge_of_condition(claim: Claim) -> Edge | None:
 
 
 _FAR: Final = 1e15  # further than any measure, and exact when a number of starts is added
-_OPPOSITE: Final = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 WHILE_IT_RUNS: Final = words(enforced="guard") & words(operands=("condition",))  # the first violation decides

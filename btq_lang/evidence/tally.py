@@ -15,8 +15,7 @@ from btq_lang.evidence.wording import measured
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.conditions import Reading
-    from btq_lang.evidence.limits import Measure
+    from btq_lang.evidence.conditions import Measure
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.evidence.verdicts import Link, Verdict
@@ -61,7 +60,7 @@ class Tally:
         self._worst_excess = float("-inf")
         self._broken: Final[list[tuple[Judgement, str, tuple[Link, ...]]]] = []  # of the open run
         self._kept = self._unclear = 0  # likewise
-        self._worst_now: Measure | Reading | None = None  # if it is the worst of all runs
+        self._worst_now: Measure | None = None  # if it is the worst of all runs
 
     def add(self, judgement: Judgement, path: str, end: int, chain: tuple[Link, ...]) -> None:
         """Count the judgement of an activation in the open run, or of the run.

@@ -11,7 +11,6 @@ from evidence_logs import MAIN, MAIN_XML, btlog, rows
 # In a process of its own, before anything has read the table.
 SCRIPT = """
 import sys
-from types import ModuleType
 from btq_lang.catalog.verbs import VERBS, Verb
 
 VERBS["rests"] = Verb(
@@ -25,13 +24,11 @@ VERBS["rests"] = Verb(
     why_monitored="no node of the engine sees that nothing runs",
 )
 
-from btq_lang.evidence.verbs.takes import duration, judged
+from btq_lang.evidence.verbs import JUDGES, duration, judged
 
-rests = ModuleType("btq_lang.evidence.verbs.rests")
-rests.judge = lambda claim, activation, observed: judged(
-    claim.limit, duration(claim.limit, activation, observed), activation, VERBS["rests"].said
+JUDGES["rests"] = lambda claim, activation, observed: judged(
+    claim, duration(claim.limit, activation, observed), activation
 )
-sys.modules[rests.__name__] = rests
 
 from btq_lang.cli import main
 

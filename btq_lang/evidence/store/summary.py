@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from btq_lang.catalog.units import parse_unit
 from btq_lang.diagnostics.model import Place
 from btq_lang.evidence.clause import verdict_of
-from btq_lang.evidence.limits import Measure
+from btq_lang.evidence.conditions import Measure
 from btq_lang.evidence.store.queries import QUERIES
 from btq_lang.evidence.tally import Run, Tally
 from btq_lang.evidence.verbs import Judgement
@@ -231,10 +231,8 @@ def _measure(row: Row, unit: Unit) -> Measure | None:
     si, bound = row["measured_si"], row["bound_si"]
     if si is None:
         return None
-    beyond = abs(si - bound)
-    return Measure(
-        si, Value(quantity(bound, unit), bound, unit), beyond if row["verdict"] != SATISFIED else -beyond, si > bound
-    )
+    relation = ">=" if (si > bound) == (row["verdict"] == SATISFIED) else "<="
+    return Measure(si, relation, Value(quantity(bound, unit), bound, unit), unit)
 
 
 def _grouped(rows: Sequence[Row], columns: Sequence[str]) -> dict[tuple[Any, ...], list[Row]]:

@@ -1,0 +1,188 @@
+"""Judges clauses whose verbs are about one activation of a node; `run_verbs.py` judges the others.
+
+One invariant: an activation is judged when it has ended, None if it does not count.  Odds and windows are unknown here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.conditions import Measure, compared, measure_of, truth
+from btq_lang.evidence.model import CLOCK_SET_BACK, UNKNOWN_END, Activation
+from btq_lang.evidence.observed import Observed, parts_in
+from btq_lang.evidence.signals import Unknown
+from btq_lang.requirements.model import Aggregate, Claim, Condition, Limit, Not, Signal
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.model import Moment
+
+    Judge: TypeAlias = Callable[[Claim, Activation, Observed], "Judgement | None"]
+
+
+class Judgement(NamedTuple):  # not a Record for the same reason as Measure
+    """Whether an activation, or a run, satisfies a clause.
+
+    Attributes:
+        holds: None: unknown.
+        at: when that was decided.
+        sentence: what was observed, where `{}` is the measure, unless it holds; if `holds` is None, the reason.
+        since: for a clause judged over a run, when the judged time began.
+        starts: for such a clause, the activations that it counts or adds up.
+    """
+
+    holds: bool | None
+    at: int
+    sentence: str
+    measure: Measure | None = None
+    since: int | None = None
+    starts: Sequence[Activation] = ()
+
+
+# ---- durations and results ----
+
+
+def takes(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
+    """`takes at most d`: how long an activation lasts."""
+    assert claim.limit is not None, "a time has a bound"
+    return judged(claim, duration(claim.limit, activation, observed), activation)
+
+
+def succeeds(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
+    """`succeeds [within d]`: its result, and how long it takes; halted or cut off before, it does not count."""
+    outcome, at = activation.outcome, activation.end
+    if outcome == "F" or claim.limit is None:
+        said = {"S": "succeeded", "F": "failed"}
+        return Judgement(outcome == "S", at, said[outcome]) if outcome in said else None
+    found = duration(claim.limit, activation, observed)
+    if isinstance(found, Unknown):
+        return Judgement(None, at, found.why)
+    if not found.holds and activation.timing == "latest":
+        return Judgement(None, at, UNKNOWN_END, found)
+    if found.holds and outcome != "S":
+        return None
+    return Judgement(found.holds, at, "succeeded after {}" if outcome == "S" else "had not succeeded after {}", found)
+
+
+def uses(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
+    """`uses at most x of k`: how much a level falls, or a counter rises, during an activation."""
+    assert claim.limit is not None, "the use has a bound"
+    assert claim.signal is not None, "the clause names what is used"
+    used = _used(claim.signal, activation, observed)
+    found = used if isinstance(used, Unknown) else compared(claim.limit, used, observed, activation.started)
+    return judged(claim, found, activation)
+
+
+def judged(claim: Claim, found: Measure | Unknown, activation: Activation) -> Judgement | None:
+    """The judgement of a measure that grows during an activation.
+
+    An upper bound is violated as soon as it is exceeded, however the activation ends; a lower bound is judged only if
+    that has ended by itself.
+    """
+    assert claim.limit is not None, "it is compared with a bound"
+    is_complete = activation.outcome in ("S", "F")
+    if isinstance(found, Unknown):
+        can_fail = is_complete or claim.limit.relation not in (">=", ">")
+        return Judgement(None, activation.end, found.why) if can_fail else None
+    holds = found.kept(is_complete)
+    if holds is None:
+        return None
+    if not holds and activation.timing == "latest":
+        return Judgement(None, activation.end, UNKNOWN_END, found)
+    return Judgement(holds, activation.end, VERBS[claim.verb].said, found)
+
+
+def duration(limit: Limit, activation: Activation, observed: Observed) -> Measure | Unknown:
+    """The duration of an activation, compared with its bound; unknown if either is."""
+    if activation.timing == "broken":
+        return Unknown(CLOCK_SET_BACK)
+    return compared(limit, activation.seconds, observed, activation.started)
+
+
+def _used(signal: Signal, activation: Activation, observed: Observed) -> float | Unknown:
+    if activation.timing == "broken":
+        return Unknown(CLOCK_SET_BACK)
+    if signal.behaviour == "gauge":
+        return Unknown(f"`{signal.name}` is neither a level nor a counter")
+    levels: list[float] = []
+    for moment in (activation.started, activation.ended):
+        value = observed.reading(signal, moment)
+        if isinstance(value, Unknown):
+            return value
+        levels.append(float(value))
+    before, after = levels
+    return before - after if signal.behaviour == "level" else after - before
+
+
+# ---- conditions ----
+
+
+def needs(claim: Claim, activation: Activation, observed: Observed) -> Judgement:
+    """`needs φ`: a condition at the start of an activation, however it ends."""
+    assert claim.condition is not None, "it needs a condition"
+    return _of(_result(claim.condition, activation.started, observed), activation.begin, claim)
+
+
+def leaves(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
+    """`leaves φ`: a condition at the end of an activation that succeeded."""
+    assert claim.condition is not None, "it leaves a condition"
+    if activation.outcome != "S":
+        return None
+    return _of(_result(claim.condition, activation.ended, observed), activation.end, claim)
+
+
+def keeps(claim: Claim, activation: Activation, observed: Observed) -> Judgement:
+    """`keeps φ`: a condition from the start of an activation to its end, at each moment at which it may change.
+
+    The first violation decides, else a moment at which it is unknown, else the moment closest to a violation.
+    """
+    assert claim.condition is not None, "something is kept"
+    condition = Not(claim.condition) if claim.verb == "never" else claim.condition
+    unknown: tuple[Unknown, Moment] | None = None
+    closest: tuple[Measure | bool, Moment] | None = None
+    most = float("-inf")
+    for moment in observed.moments(condition):
+        found = _result(condition, moment, observed)
+        if isinstance(found, Unknown):
+            unknown = unknown or (found, moment)
+        elif found is False or (isinstance(found, Measure) and not found.holds):
+            if activation.timing != "exact" and moment != observed.begin:
+                return Judgement(None, moment[0], "the log does not say whether it was still running")
+            is_of_all = any(isinstance(each, Aggregate) for each in parts_in(condition))  # known only at the end
+            return _of(found, activation.end if is_of_all else moment[0], claim)
+        else:
+            excess = found.excess if isinstance(found, Measure) else most
+            if closest is None or excess > most:
+                closest, most = (found, moment), excess
+    result = unknown or closest
+    assert result is not None, "the start is one of the moments"
+    return _of(result[0], result[1][0], claim)
+
+
+def _result(condition: Condition, moment: Moment, observed: Observed) -> Measure | bool | Unknown:
+    """Whether a condition holds at a moment, as a measure if it compares a signal with a bound."""
+    measure = measure_of(condition, observed, moment)
+    return measure if measure is not None else truth(condition, observed, moment)
+
+
+def _of(result: Measure | bool | Unknown, time: int, claim: Claim) -> Judgement:
+    """The judgement of a condition evaluated at a time."""
+    if isinstance(result, Unknown):
+        return Judgement(None, time, result.why)
+    sentence = VERBS[claim.verb].said
+    if isinstance(result, Measure):
+        said = "" if result.holds else sentence.replace("{}", f"`{result.name}` was {{}}")
+        return Judgement(result.holds, time, said, result)
+    return Judgement(result, time, sentence.replace("{}", f"the condition {'holds' if result else 'does not hold'}"))
+
+
+JUDGES: Final[dict[str, Judge]] = {
+    "takes": takes,
+    "succeeds": succeeds,
+    "uses": uses,
+    "needs": needs,
+    "leaves": leaves,
+    "keeps": keeps,
+    "never": keeps,
+}
