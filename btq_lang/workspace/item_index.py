@@ -10,14 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from itertools import chain
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax.tree import Item, Model, Signal, Tree
-from btq_lang.workspace.symbols import Summary, Symbol, asked_for, claiming, summarize
-
-if TYPE_CHECKING:
-    from btq_lang.workspace.references import Mention
+from btq_lang.workspace.references import Mention, kinds, mentions, summarize
+from btq_lang.workspace.symbols import Summary, Symbol, asked_for, claiming
 
 Name: TypeAlias = tuple[Kind, str]
 
@@ -49,15 +47,11 @@ class Facts:
     @cached_property
     def mentions(self) -> tuple[Mention, ...]:
         """Every word of it that names something."""
-        from btq_lang.workspace.references import mentions  # only editors need them
-
         return mentions(self.item)
 
     @cached_property
     def kinds(self) -> frozenset[tuple[str, bool]]:
         """The kinds of its nodes, and whether they are quoted."""
-        from btq_lang.workspace.references import kinds  # as above
-
         nodes = self.item.walk() if isinstance(self.item, Tree) else ()
         return frozenset([(word.text, word.quoted) for node in nodes for word in kinds(node)])
 

@@ -1,8 +1,8 @@
 """References: every word of an item that names something, so that an editor can resolve the word under the cursor.
 
 One invariant: mentions depend on the item alone, and their spans count from it, so they are valid as long as the item
-exists.  A summary (`symbols`) has what checks need; this has every word that a user may point at: ports, blackboard
-keys, parameters and the names in conditions too.  What a mention means in its file is for `ide.meaning`.
+exists.  A summary (`symbols`) has the names that checks look up; a mention is made of every word that a user may point
+at: ports, blackboard keys, parameters and the names in conditions too.  What it means in its file is for `ide.meaning`.
 """
 
 from __future__ import annotations
@@ -10,17 +10,21 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import Enum
 from functools import lru_cache
-from operator import attrgetter, itemgetter
-from typing import TypeAlias
+from operator import attrgetter
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import BRACED, NAME, NUMBER, QUANTITY, STRING
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace.symbols import requirements_at
+from btq_lang.workspace.symbols import Summary, Symbol, Target, Use, requirements_at
+
+if TYPE_CHECKING:
+    from btq_lang.syntax.script.tree import Variable
 
 
 class What(Enum):
@@ -88,6 +92,13 @@ def mentions(item: syntax.Item) -> tuple[Mention, ...]:
     return tuple(sorted(listener.mentions, key=attrgetter("span")))
 
 
+def summarize(item: syntax.Item) -> Summary:
+    """The names that an item defines and refers to."""
+    names = _Names(item)
+    report(item, names)
+    return Summary(tuple(names.symbols), tuple(names.uses)) if names.symbols or names.uses else _NOTHING
+
+
 def report(item: syntax.Item, to: Listener) -> None:
     """Report the words of an item that name something, nearly in the order of the text."""
     if isinstance(item, syntax.Tree):
@@ -138,7 +149,12 @@ def report(item: syntax.Item, to: Listener) -> None:
 class Listener:
     """Makes a mention of each word of an item that names something.  That would be too slow for some, who receive the
     words themselves.
+
+    Attributes:
+        skips_values: whether conditions and the attributes of nodes are left out, and of a node all names but one.
     """
+
+    skips_values = False
 
     def __init__(self) -> None:
         self.mentions: list[Mention] = []
@@ -169,6 +185,38 @@ class Listener:
         """The value of an attribute that as a whole names nothing; parts of it may follow, in the order of the text."""
 
 
+class _Names(Listener):
+    """The symbols and uses of a summary."""
+
+    skips_values = True
+
+    def __init__(self, item: syntax.Item) -> None:
+        super().__init__()
+        self.symbols: list[Symbol] = []
+        self.uses: list[Use] = []
+        self._item = item
+
+    def word(
+        self,
+        what: What,
+        word: syntax.Word | None,
+        defines: bool = False,
+        node: syntax.Node | None = None,
+        owner: Owner = None,
+        pair: syntax.Pair | None = None,
+    ) -> None:
+        kind = _KINDS.get(what)
+        if word is None or kind is None:
+            return
+        if not defines:
+            self.uses.append(Use(kind, word.text, word.span, node))
+        elif isinstance(target := owner or self._item, Target):
+            self.symbols.append(Symbol(kind, word.text, word.span, target))
+
+    def words(self, what: What, words: tuple[syntax.Word, ...], span: Span, node: syntax.Node | None = None) -> None:
+        self.uses.append(Use(_KINDS[what], ".".join([word.text for word in words]), span, node))
+
+
 def _model(model: syntax.Model, to: Listener) -> None:
     to.word(What.NODE, model.name, defines=True, owner=model)
     _ports(model.ports, model, to)
@@ -188,6 +236,16 @@ def _ports(ports: Iterable[syntax.Port], owner: syntax.Model | syntax.Tree, to: 
 
 
 def _node(node: syntax.Node, tree: syntax.Tree, to: Listener) -> None:
+    if to.skips_values:
+        run = called(node)
+        to.word(What.NODE if run is None else What.TREE, run or node.id, node=node)
+    else:
+        _words_of(node, tree, to)
+    if node.clauses:
+        _clauses(node.clauses, node, to)
+
+
+def _words_of(node: syntax.Node, tree: syntax.Tree, to: Listener) -> None:
     kind, label = node.kind, node.label
     stands_for: syntax.Word | None = None
     if node.category is None and kind is not None and kind.raw not in _STANDING_FOR_OTHERS:  # nearly all
@@ -204,8 +262,6 @@ def _node(node: syntax.Node, tree: syntax.Tree, to: Listener) -> None:
         to.word(What.INSTANCE, label, defines=True, node=node, owner=tree)
     for pair in node.attributes:
         _pair(pair, node, tree, stands_for, to)
-    if node.clauses:
-        _clauses(node.clauses, node, to)
 
 
 def kinds(node: syntax.Node) -> list[syntax.Word]:
@@ -297,32 +353,21 @@ def _script(word: syntax.Word, node: syntax.Node, tree: syntax.Tree, pair: synta
     if len(text) != len(word.raw) - (2 if word.quoted else 0):
         return
     offset = word.start + (1 if word.quoted else 0)
-    for end, name, operator in _names_in_script(text):
-        root = name.startswith("@")
-        name = name[1:] if root else name
-        span = Span(offset + end - len(name), offset + end)
-        is_update = operator not in (None, ":=", "=")
-        writes = operator is not None
-        to.part(Mention(What.KEY, name, span, word, False, node, tree, pair, writes, root, is_update))
+    for variable in _variables(text):
+        root = variable.name.startswith("@")
+        name = variable.name[1:] if root else variable.name
+        end = offset + variable.span.end
+        span, writes = Span(end - len(name), end), variable.writes
+        updates = writes and variable.reads
+        to.part(Mention(What.KEY, name, span, word, False, node, tree, pair, writes, root, updates))
 
 
 @lru_cache(1_000)  # many nodes have the same one
-def _names_in_script(text: str) -> list[tuple[int, str, str | None]]:
-    """Where each name in a script ends, in the order of the text; the name; the operator that assigns to it."""
+def _variables(text: str) -> tuple[Variable, ...]:
     from btq_lang.syntax.script.parser import parse_script  # most files have no script, and it is large
-    from btq_lang.syntax.script.tree import Assign, Name
-    from btq_lang.syntax.script.tree import children as parts
+    from btq_lang.syntax.script.tree import variables
 
-    found: list[tuple[int, str, str | None]] = []
-    stack = list(parse_script(text).statements)
-    written = {id(part.target): part.operator for part in stack if isinstance(part, Assign)}
-    while stack:
-        part = stack.pop()
-        if isinstance(part, Name):
-            found.append((part.end, part.name, written.get(id(part))))
-        else:
-            stack += parts(part)
-    return sorted(found, key=itemgetter(0))
+    return variables(parse_script(text))
 
 
 def _clauses(clauses: Iterable[syntax.NodeClause], node: syntax.Node | None, to: Listener) -> None:
@@ -374,7 +419,7 @@ def _values(
     part: syntax.Clause | syntax.Parameter | syntax.Argument | object, owner: syntax.Requirement | None, to: Listener
 ) -> None:
     """The names and quantities in clauses, conditions and bounds."""
-    for found in syntax.walk(part):
+    for found in () if to.skips_values else syntax.walk(part):
         if isinstance(found, syntax.Word):  # nearly half of them are
             if found.kind == QUANTITY:
                 to.word(What.QUANTITY, found)
@@ -394,7 +439,7 @@ def _values(
 
 
 def _quantities(part: object, to: Listener) -> None:
-    for found in syntax.walk(part):
+    for found in () if to.skips_values else syntax.walk(part):
         if isinstance(found, syntax.Word) and found.kind == QUANTITY:
             to.word(What.QUANTITY, found)
 
@@ -404,4 +449,13 @@ def _path(path: syntax.Path | None, to: Listener) -> None:
         to.word(What.PLACE, name)
 
 
-_STANDING_FOR_OTHERS = frozenset((*PLACEHOLDERS, "SubTreePlus"))
+_STANDING_FOR_OTHERS: Final = frozenset((*PLACEHOLDERS, "SubTreePlus"))
+_KINDS: Final = {
+    What.TREE: Kind.TREE,
+    What.NODE: Kind.MODEL,
+    What.REQUIREMENT: Kind.REQUIREMENT,
+    What.SIGNAL: Kind.SIGNAL,
+    What.CONTEXT: Kind.CONTEXT,
+    What.QUALITY: Kind.QUALITY,
+}
+_NOTHING: Final = Summary((), ())

@@ -1,7 +1,7 @@
 """What an item defines and refers to: a summary made from its tree alone.
 
-One invariant: a summary depends only on the item, so it is made once and is valid as long as the item exists.  Which
-definition a use refers to is for the workspace.
+One invariant: a summary depends only on the item, so it is made once (`references.summarize`) and is valid as long as
+the item exists.  Which definition a use refers to is for the workspace.
 """
 
 from __future__ import annotations
@@ -55,16 +55,6 @@ class Summary(Record):
 
     symbols: tuple[Symbol, ...]
     uses: tuple[Use, ...]
-
-
-NOTHING = Summary((), ())
-
-
-def summarize(item: syntax.Item) -> Summary:
-    """The summary of an item."""
-    names = _Names()
-    names.add(item)
-    return Summary(tuple(names.symbols), tuple(names.uses)) if names.symbols or names.uses else NOTHING
 
 
 def requirements_at(clauses: tuple[syntax.NodeClause, ...]) -> Iterator[syntax.Requirement | syntax.ReqRef]:
@@ -186,87 +176,6 @@ def _saying(requirement: syntax.Requirement) -> object:
         syntax.shape(requirement.parameters),
         syntax.shape(requirement.clauses),
     )
-
-
-class _Names:
-    """The names in an item, collected without nested generators, for every node of every file is visited."""
-
-    def __init__(self) -> None:
-        self.symbols: list[Symbol] = []
-        self.uses: list[Use] = []
-
-    def add(self, item: syntax.Item) -> None:
-        if isinstance(item, syntax.Model):
-            self._define(Kind.MODEL, item.name, item)
-        elif isinstance(item, syntax.Tree):
-            self._define(Kind.TREE, item.name, item)
-            self._add_clauses(item.clauses, None)
-            for node in item.walk():
-                self._add_node(node)
-        elif isinstance(item, syntax.Models):
-            for model in item.models:
-                if isinstance(model, syntax.Model):
-                    self._define(Kind.MODEL, model.name, model)
-        elif isinstance(item, syntax.Requirement):
-            self._add_requirement(item, None, attached=False)
-        elif isinstance(item, syntax.Signal):
-            self._define(Kind.SIGNAL, item.name, item)
-        elif isinstance(item, syntax.Context):
-            self._define(Kind.CONTEXT, item.name, item)
-        elif isinstance(item, syntax.QualityDecl):
-            self._define(Kind.QUALITY, item.name, item)
-            self._use_quality(item.parent, None)
-        elif isinstance(item, syntax.Apply):
-            for reference in item.uses:
-                self._use(Kind.REQUIREMENT, reference.name, None)
-        elif isinstance(item, syntax.Root):
-            self._use(Kind.TREE, item.name, None)
-            for pair in item.attributes:
-                if pair.key.text == "main_tree_to_execute":
-                    self._use(Kind.TREE, pair.value, None)
-
-    def _add_node(self, node: syntax.Node) -> None:
-        name, kind, category = node.id, node.kind, node.category
-        if kind is not None and kind.raw == "SubTreePlus" and (tree := node.attribute("ID")) is not None:
-            self._use(Kind.TREE, tree, node)  # version 3's name of SubTree
-        elif name is not None:
-            is_subtree = category is not None and category.raw == "SubTree"
-            self._use(Kind.TREE if is_subtree else Kind.MODEL, name, node)
-        if node.clauses:
-            self._add_clauses(node.clauses, node)
-
-    def _add_clauses(self, clauses: tuple[syntax.NodeClause, ...], node: syntax.Node | None) -> None:
-        for clause in clauses:
-            if isinstance(clause, syntax.Tags):
-                continue
-            if isinstance(clause, syntax.Satisfices):
-                for quality in clause.qualities:
-                    self._use_quality(quality.path, node)
-            for requirement in requirements_at((clause,)):
-                if isinstance(requirement, syntax.ReqRef):
-                    self._use(Kind.REQUIREMENT, requirement.name, node)
-                else:
-                    self._add_requirement(requirement, node, attached=True)
-
-    def _add_requirement(self, requirement: syntax.Requirement, node: syntax.Node | None, *, attached: bool) -> None:
-        """attached: it is in a `satisfies` or `satisfices`, so without a text it refers to another definition."""
-        if attached and requirement.is_reference:
-            self._use(Kind.REQUIREMENT, requirement.name, node)
-        else:
-            self._define(Kind.REQUIREMENT, requirement.name, requirement)
-        self._use_quality(requirement.quality, node)
-
-    def _use_quality(self, path: syntax.QualityPath | None, node: syntax.Node | None) -> None:
-        if path is not None:
-            self.uses.append(Use(Kind.QUALITY, path.text, path.span, node))
-
-    def _define(self, kind: Kind, name: syntax.Word | None, target: Target) -> None:
-        if name is not None:
-            self.symbols.append(Symbol(kind, name.text, name.span, target))
-
-    def _use(self, kind: Kind, name: syntax.Word | None, node: syntax.Node | None) -> None:
-        if name is not None:
-            self.uses.append(Use(kind, name.text, name.span, node))
 
 
 _WORDS: Final = re.compile(r"\w+")

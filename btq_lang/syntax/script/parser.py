@@ -31,8 +31,8 @@ from btq_lang.syntax.script.tree import (
     Text,
     Unary,
     ungrouped,
-    walk,
 )
+from btq_lang.syntax.tree import walk
 from btq_lang.util.text import Span
 
 # Nested operators, redundant brackets included.  The engine has no limit except its stack; the engines up to 4.8 refuse
@@ -108,7 +108,7 @@ class _Parser:
         kind = self.kinds[self.at]
         if kind not in BEGINS:
             self.unexpected(statement)
-        does_nothing = not any(isinstance(node, Assign) for node in walk((statement,)))
+        does_nothing = not any(isinstance(node, Assign) for node in walk(statement))
         if does_nothing or kind in (NUMBER, TEXT) or self.is_unit() or self.is_call():
             self.two_operands()
 

@@ -6,10 +6,10 @@ One invariant: `start` and `end` of a record are its place in the script's text,
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, fields_of
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
@@ -191,28 +191,9 @@ def variables(script: Script) -> tuple[Variable, ...]:
 
 def children(node: Expression) -> tuple[Expression, ...]:
     """The expressions directly inside another, in the order of the text."""
-    if isinstance(node, Group):
-        return (node.inner,)
-    if isinstance(node, Unary):
-        return (node.operand,)
-    if isinstance(node, Binary):
-        return (node.left, node.right)
-    if isinstance(node, Comparison):
-        return node.operands
-    if isinstance(node, Ternary):
-        return (node.condition, node.then, node.otherwise)
-    if isinstance(node, Assign):
-        return (node.target, node.value)
-    return ()
-
-
-def walk(nodes: tuple[Expression, ...]) -> Iterator[Expression]:
-    """All expressions in these and below, in no particular order."""
-    stack = list(nodes)
-    while stack:
-        node = stack.pop()
-        yield node
-        stack.extend(children(node))
+    values = (getattr(node, field) for field in fields_of(node))
+    parts = chain.from_iterable(value if isinstance(value, tuple) else (value,) for value in values)
+    return tuple([part for part in parts if isinstance(part, Expression)])
 
 
 def ungrouped(node: Expression) -> Expression:
