@@ -46,6 +46,7 @@ from btq_lang.syntax.tree import (
     quote,
 )
 from btq_lang.syntax.words import unquote
+from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 
 
@@ -414,16 +415,7 @@ class NodeParser(AttributeParser):
             self.no_block(inner)
         if end == requirement.end:
             return requirement
-        return Requirement(
-            requirement.start,
-            end,
-            requirement.name,
-            requirement.classic,
-            requirement.parameters,
-            requirement.quality,
-            requirement.text,
-            tuple(clauses),
-        )
+        return replace(requirement, end=end, clauses=tuple(clauses))
 
     def verbatim(self) -> Verbatim:
         """ "xml" STRING NL"""

@@ -10,7 +10,7 @@ import re
 from typing import Final
 
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
-from btq_lang.util.text import Span
+from btq_lang.util.text import Span, counted
 
 
 class Indentation:
@@ -110,10 +110,9 @@ def _shown(blanks: str) -> str:
     if not blanks:
         return "nothing"
     tabs = blanks.count("\t")
-    parts = [
-        f"{count} {word}{'s' * (count > 1)}" for count, word in ((tabs, "tab"), (len(blanks) - tabs, "space")) if count
-    ]
-    return " and ".join(parts)
+    return " and ".join(
+        counted(number, word) for number, word in ((tabs, "tab"), (len(blanks) - tabs, "space")) if number
+    )
 
 
 # The words that begin an item, and what must follow for a line to end a forgotten bracket (docs/language.md, Brackets).

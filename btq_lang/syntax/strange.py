@@ -45,16 +45,12 @@ class StrangeCharacters(Indentation):
         if character == "$" and (entry := _SHELL_ENTRY.match(text, start)) and self.raws[-1:] == ["="]:
             return self._shell_entry(start, entry.end())
         if character == ";" and self._separates(start):
-            self._strange = True
             fix = replace_fix("Write `,`", Span(start, start + 1), ",", safe=True)
-            message = "expected `,` between attributes, found `;`"
-            self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), message, fixes=(fix,)))
+            self._mistake(Span(start, start + 1), "expected `,` between attributes, found `;`", fix)
             return start + 1
         if character == "[" and self.raws[-1:] == ["="] and (square := _SQUARE.match(text, start)):
-            self._strange = True
-            fixes = (value_meant(text, start, square.end(), safe=self._takes_strings()),)
-            span = Span(start, square.end())
-            self.problems.append(Diagnostic("syntax-error", span, "this value needs quotes", fixes=fixes))
+            fix = value_meant(text, start, square.end(), safe=self._takes_strings())
+            self._mistake(Span(start, square.end()), "this value needs quotes", fix)
             return self._add(NAME, start, square.end())
         in_value = self._brackets and (character == "[" or character not in INSTEAD)
         if in_value and _WHOLE_WORD.match(text, start) and self._in_value(start):
@@ -83,9 +79,7 @@ class StrangeCharacters(Indentation):
         """Handle a blackboard entry in the syntax of shell variables: `$key` or `${key}`."""
         written = f"{{{self.text[start:end].strip('${}')}}}"
         fix = replace_fix(f"Write `{written}`", Span(start, end), written)
-        self._strange = True
-        message = f"a blackboard entry is written `{written}`"
-        self.problems.append(Diagnostic("syntax-error", Span(start, end), message, fixes=(fix,)))
+        self._mistake(Span(start, end), f"a blackboard entry is written `{written}`", fix)
         return self._add(NAME, start, end)
 
     def _block_sign(self, start: int, character: str) -> int:
@@ -112,10 +106,8 @@ class StrangeCharacters(Indentation):
             end = line_end(self.text, closing)
             end += 2 if self.text.startswith("\r\n", end) else end < self.size
             changes += (Change(Place(Span(line_start(self.text, start, closing), end)), ""),)
-        fix = Fix(f"Remove `{character}`", changes)
-        self._strange = True
         message = f"unexpected `{character}`: a block consists of indented lines"
-        self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), message, fixes=(fix,)))
+        self._mistake(Span(start, start + 1), message, Fix(f"Remove `{character}`", changes))
         return start + 1
 
     def _block_end(self, start: int, sign: str) -> int:
@@ -137,27 +129,22 @@ class StrangeCharacters(Indentation):
         """Handle an unpaired brace: `{key` or `key}`; the key remains as a word."""
         if character == "{" and (twice := _TWICE_BRACED.match(self.text, start)):
             fix = replace_fix(f"Write `{twice[1]}`", Span(start, twice.end()), twice[1], safe=True)
-            message = "a blackboard entry has one pair of braces"
-            self.problems.append(Diagnostic("syntax-error", Span(start, twice.end()), message, fixes=(fix,)))
-            self._strange = True
+            self._mistake(Span(start, twice.end()), "a blackboard entry has one pair of braces", fix)
             return self._add(NAME, start, twice.end())
         word = _WHOLE_WORD.match(self.text, start + 1) if character == "{" else None
         end = self._add(NAME, start, word.end()) if word else start + 1
         if self._strange:
             return end
-        self._strange = True
         if character == "{" and not self._brackets and (mended := attributes_in_braces(self.text, start)) is not None:
-            self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), ATTRIBUTES, fixes=(mended,)))
+            self._mistake(Span(start, start + 1), ATTRIBUTES, mended)
             return end
         other = "}" if character == "{" else "{"
         at = end
         if character == "}":
             at = self.starts[-1] if self.raws and self.starts[-1] + len(self.raws[-1]) == start else start
         fix = replace_fix(f"Add `{other}`", Span(at, at), other)
-        message = f"missing `{other}` for this `{character}`"
-        notes = ("a blackboard entry is written `{key}`, on one line and without quotes in it",)
-        span = Span(start, start + 1)
-        self.problems.append(Diagnostic("syntax-error", span, message, notes=notes, fixes=(fix,)))
+        note = "a blackboard entry is written `{key}`, on one line and without quotes in it"
+        self._mistake(Span(start, start + 1), f"missing `{other}` for this `{character}`", fix, notes=(note,))
         return end
 
     def _close_square(self, position: int) -> int:
@@ -170,12 +157,16 @@ class StrangeCharacters(Indentation):
     def _quote_value(self, at: int) -> int:
         """Report an invalid character inside a value: `a = 1;2`."""
         start, end = self._whole_word(at)
-        self._strange = True  # more of the value may follow
         fixes: tuple[Fix, ...] = ()
         if _VALUE_END.match(self.text, end):
             fixes = (value_meant(self.text, start, end, safe=self._takes_strings()),)
-        self.problems.append(Diagnostic("syntax-error", Span(start, end), "this value needs quotes", fixes=fixes))
+        self._mistake(Span(start, end), "this value needs quotes", *fixes)
         return self._add(NAME, start, end)
+
+    def _mistake(self, span: Span, message: str, *fixes: Fix, notes: tuple[str, ...] = ()) -> None:
+        """Report a mistake; what is wrong on the rest of the line may be a part of it."""
+        self._strange = True
+        self.problems.append(Diagnostic("syntax-error", span, message, notes=notes, fixes=fixes))
 
     def _takes_strings(self) -> bool:
         """Whether values may be strings here: those of a requirement's parameters may not."""
