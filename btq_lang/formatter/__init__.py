@@ -30,19 +30,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Container, Iterable, Iterator, Sequence
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Final
 
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.formatter.alignment import Gap, paddings
+from btq_lang.formatter.alignment import align
 from btq_lang.formatter.clauses import sections
-from btq_lang.formatter.layout import FormatOptions, laid_out
+from btq_lang.formatter.layout import FormatOptions, Row, laid_out
 from btq_lang.formatter.lines import Line, Remark, logical_lines
 from btq_lang.formatter.marks import Marks
 from btq_lang.parser import Parsed, parse
-from btq_lang.util.record import Record, replace
-from btq_lang.util.text import LINE_END, Edit, Span, alike, apply_edits
+from btq_lang.util.record import Record
+from btq_lang.util.text import LINE_END, Edit, Span, alike
 
 __all__ = ["DEFAULTS", "FormatOptions", "Formatted", "format_range", "format_text"]
 
@@ -127,48 +127,23 @@ def _stretches(parsed: Parsed, options: FormatOptions) -> list[_Stretch]:
     parts = tuple(sections(logical_lines(parsed.text, parsed.tokens, marks.atoms), marks, options))
     items = {entry.start + entry.item.start for entry in parsed.entries}
     _part_items([line for section in parts for line in section.lines], items)
-    sections_of_rows: list[list[_Row]] = []
-    above = -1  # the level of the row above
-    for section in parts:
-        rows = [row for line in section.lines for row in _rows(line, marks, options)]
-        for index, row in enumerate(rows):
-            if row.blank and row.level <= above:
-                rows[index] = replace(row, text="\n" + row.text, gaps=tuple(_moved(row.gaps, 1)))
-            above = row.level
-        sections_of_rows.append(rows)
+    written = [[part for line in section.lines for part in _written(line, marks, options)] for section in parts]
+    above = -1  # the level of the part above
+    for part in chain.from_iterable(written):
+        if part.blank and part.level <= above:
+            part.rows[0].code = "\n" + part.rows[0].code
+        above = part.level
+    align(parsed.text, [row for part in chain.from_iterable(written) for row in part.rows])
     line_end = _line_end(parsed.text)
     return [
         _Stretch(
             *section.span,
             section.lines[0].level,
-            any(row.is_moved for row in rows),
-            "".join(f"{row.text}\n" for row in rows).replace("\n", line_end),
+            any(part.is_moved for part in inside),
+            "".join(f"{row.text}\n" for part in inside for row in part.rows).replace("\n", line_end),
         )
-        for section, rows in zip(parts, _aligned(parsed.text, sections_of_rows), strict=True)
+        for section, inside in zip(parts, written, strict=True)
     ]
-
-
-def _aligned(old: str, sections_of_rows: list[list[_Row]]) -> list[list[_Row]]:
-    """The rows, with formerly aligned comments aligned again."""
-    gaps: list[Gap] = []
-    at = 0
-    for row in (row for rows in sections_of_rows for row in rows):
-        gaps += _moved(row.gaps, at)
-        at += len(row.text) + 1
-    if len(gaps) < 2:
-        return sections_of_rows
-    new = "".join(f"{row.text}\n" for rows in sections_of_rows for row in rows)
-    blanks = iter(paddings(old, new, gaps))
-    return [[_padded(row, blanks) for row in rows] for rows in sections_of_rows]
-
-
-def _moved(gaps: Iterable[Gap], by: int) -> Iterator[Gap]:
-    return (Gap(gap.at + by, gap.comment) for gap in gaps)
-
-
-def _padded(row: _Row, blanks: Iterator[int]) -> _Row:
-    edits = [Edit(Span(gap.at, gap.at), " " * next(blanks)) for gap in row.gaps]
-    return replace(row, text=apply_edits(row.text, edits)) if edits else row
 
 
 def _line_end(text: str) -> str:
@@ -193,30 +168,29 @@ def _part_items(lines: Sequence[Line], items: Container[int]) -> None:
         previous, was_block = line, is_block
 
 
-class _Row(Record):
-    """A logical line or a comment line, as text; `blank`: a blank line precedes it, unless it opens a block."""
+class _Part(Record):
+    """A logical line or a comment line, as rows; `blank`: a blank line precedes it, unless it opens a block."""
 
     level: int
     blank: bool
     is_moved: bool
-    text: str
-    gaps: tuple[Gap, ...] = ()
+    rows: list[Row]
 
 
-def _rows(line: Line, marks: Marks, options: FormatOptions) -> Iterator[_Row]:
+def _written(line: Line, marks: Marks, options: FormatOptions) -> Iterator[_Part]:
     """A line with the comment lines above and below it."""
     for remark in line.lead:
-        yield _remark_row(remark, options)
+        yield _remark(remark, options)
     if line.pieces:
         moved = line.blanks != " " * (line.level * options.indent)
-        yield _Row(line.level, line.blank, moved, *laid_out(line.pieces, line.level, marks, options))
+        yield _Part(line.level, line.blank, moved, laid_out(line.pieces, line.level, marks, options))
     for remark in line.tail:
-        yield _remark_row(remark, options)
+        yield _remark(remark, options)
 
 
-def _remark_row(remark: Remark, options: FormatOptions) -> _Row:
+def _remark(remark: Remark, options: FormatOptions) -> _Part:
     indent = " " * (remark.depth * options.indent)
-    return _Row(remark.depth, remark.blank, remark.blanks != indent, indent + remark.text)
+    return _Part(remark.depth, remark.blank, remark.blanks != indent, [Row(indent + remark.text)])
 
 
 # ---- edits ----------------------------------------------------------------------------------------------------------

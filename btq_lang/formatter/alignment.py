@@ -6,42 +6,26 @@ lines.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
-from btq_lang.util.record import Record
+from btq_lang.formatter.layout import Row
 from btq_lang.util.text import LineIndex
 
 
-class Gap(Record):
-    """The blanks between code and the comments after it.
-
-    Attributes:
-        at: where they begin in the new text, whose line ends are `\n`.
-        comment: where the first comment begins in the old text.
-    """
-
-    at: int
-    comment: int
-
-
-def paddings(old: str, new: str, gaps: Sequence[Gap]) -> list[int]:
-    """How many more blanks each gap needs; the gaps are in the order of the new text, one a line at most."""
-    found = [0] * len(gaps)
+def align(old: str, rows: Iterable[Row]) -> None:
+    """Align the comments of rows that follow each other with those that were in the same column of the old text."""
     lines = LineIndex(old)
-    columns = [_column(old, gap.comment, lines.position(gap.comment).column) for gap in gaps]
-    ends = [gap.at - new.rfind("\n", 0, gap.at) for gap in gaps]
-    first = 0  # of the gaps aligned with the current one
-    for index in range(1, len(gaps) + 1):
-        if (
-            index < len(gaps)
-            and columns[index] == columns[first]
-            and new.count("\n", gaps[index - 1].at, gaps[index].at) == 1
-        ):
-            continue
-        longest = max(ends[first:index])
-        found[first:index] = [longest - end for end in ends[first:index]]
-        first = index
-    return found
+    run: list[Row] = []
+    shared = -1  # the column of its comments
+    for row in (*rows, Row("")):
+        column = _column(old, row.at, lines.position(row.at).column) if row.comment else -1
+        if column != shared or "\n" in row.code or any("\n" in above.comment for above in run[-1:]):
+            ends = [len(each.code) - each.code.rfind("\n") for each in run]
+            for each, end in zip(run, ends, strict=True):
+                each.code += " " * (max(ends) - end)
+            run, shared = [], column
+        if row.comment:
+            run.append(row)
 
 
 def _column(text: str, at: int, length: int) -> int:

@@ -8,10 +8,8 @@ sides are the same either way, and a new one is inserted only before a name or a
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import accumulate
 from typing import Final
 
-from btq_lang.formatter.alignment import Gap
 from btq_lang.formatter.lines import Piece
 from btq_lang.formatter.marks import Marks
 from btq_lang.syntax.tokens import CLOSE, COMMENT, NAME, OPEN, OPERATOR
@@ -25,12 +23,33 @@ class FormatOptions(Record):
     indent: int = 4
 
 
-def laid_out(pieces: Sequence[Piece], level: int, marks: Marks, options: FormatOptions) -> tuple[str, tuple[Gap, ...]]:
-    """The text of a logical line, with indentation and without line end, and the gaps before its trailing comments."""
+class Row:
+    """A physical line without its line end; its strings and comments may have some.
+
+    Attributes:
+        code: with its indentation, perhaps after a blank line.
+        comment: the comments after the code, and the gap that would be before them if code followed.
+        at: where the first of them begins in the file.
+    """
+
+    __slots__ = ("at", "code", "comment")
+
+    def __init__(self, code: str) -> None:
+        self.code = code
+        self.comment = ""
+        self.at = 0
+
+    @property
+    def text(self) -> str:
+        return f"{self.code}  {self.comment.lstrip(' ')}" if self.comment else self.code
+
+
+def laid_out(pieces: Sequence[Piece], level: int, marks: Marks, options: FormatOptions) -> list[Row]:
+    """The rows of a logical line."""
     writer = _Writer(pieces, level * options.indent, marks, options)
     for index in range(len(pieces)):
         writer.write(index)
-    return writer.written()
+    return writer.rows
 
 
 def fits(pieces: Iterable[Piece], column: int, marks: Marks, options: FormatOptions) -> bool:
@@ -78,13 +97,9 @@ class _Writer:
         self.options: Final = options
         self.closing: Final = _closing(pieces)
         self.groups: Final[list[_Group]] = []
-        self.out: Final = [" " * indent]
-        self.indent = indent  # of the current physical line
-        self.column = indent
+        self.rows: Final = [Row(" " * indent)]
+        self.indent = indent  # of the current row
         self.next_word = -1  # the first piece after the current comments that is not a comment
-        self.remark = -1  # the gap in `out` after this line's code, if only comments follow
-        self.comment = 0  # where the first of them begins in the file
-        self.gaps: Final[list[tuple[int, int]]] = []  # of earlier lines
 
     def write(self, index: int) -> None:
         piece = self.pieces[index]
@@ -92,44 +107,28 @@ class _Writer:
         indent = None if before is None else self.new_line(index, before)
         if indent is not None:
             group = self.groups[-1]
-            self.end_line(indent, piece.blank and group.has_lines and piece.kind != CLOSE)
+            is_blank = piece.blank and group.has_lines and piece.kind != CLOSE
+            self.rows.append(Row("\n" * is_blank + " " * indent))
+            self.indent = indent
             group.has_lines = True
-        elif piece.kind != COMMENT:
-            self.remark = -1
-        elif before is not None and before.kind != COMMENT:
-            self.remark = len(self.out)
-            self.comment = piece.start
-        self.put("" if indent is not None else _gap(before, piece, self.marks))
-        self.put(piece.text)
+        row = self.rows[-1]
+        gap = "" if indent is not None else _gap(before, piece, self.marks)
+        if piece.kind != COMMENT:
+            row.code += row.comment + gap + piece.text
+            row.comment = ""
+        elif row.comment:
+            row.comment += gap + piece.text
+        elif before is None or indent is not None or before.kind == COMMENT:
+            row.code += gap + piece.text  # the row begins with comments
+        else:
+            row.comment = gap + piece.text
+            row.at = piece.start
         if piece.kind == OPEN:
             self.groups.append(_Group(self.spreads(index), self.indent))
         elif piece.kind == CLOSE:
             self.groups.pop()
         elif indent is not None and piece.start in self.marks.elements:
             self.groups[-1].loose = not self.fits(self.rest_of_element(index), indent)
-
-    def written(self) -> tuple[str, tuple[Gap, ...]]:
-        self.end_code()
-        ends = list(accumulate(map(len, self.out), initial=0)) if self.gaps else ()
-        return "".join(self.out), tuple(Gap(ends[index], comment) for index, comment in self.gaps)
-
-    def put(self, text: str) -> None:
-        self.out.append(text)
-        last = text.rfind("\n")
-        self.column = len(text) - last - 1 if last >= 0 else self.column + len(text)
-
-    def end_line(self, indent: int, blank: bool) -> None:
-        self.end_code()
-        self.put("\n\n" if blank else "\n")
-        self.put(" " * indent)
-        self.indent = indent
-
-    def end_code(self) -> None:
-        """Separate the comments at the end of the current physical line."""
-        if self.remark >= 0:
-            self.out[self.remark] = "  "
-            self.gaps.append((self.remark, self.comment))
-            self.remark = -1
 
     # ---- line ends ----
 
@@ -184,7 +183,8 @@ class _Writer:
             return True
         if start not in self.marks.attributes:
             return False
-        column = self.column - 1  # of the bracket, which is already written
+        code = self.rows[-1].code
+        column = len(code) - code.rfind("\n") - 2  # of the bracket, which is already written
         if not self.fits(self.pieces[index : close + 1], column):
             return True
         return not self.fits(self.rest_of_element(index), column) and self.fits(
