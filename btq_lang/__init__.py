@@ -19,49 +19,30 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from btq_lang.btcpp.importing import Imported, import_xml
-    from btq_lang.checks import check
-    from btq_lang.commands.building import Built, build
-    from btq_lang.commands.opening import open_workspace
-    from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.diff.changes import Change
-    from btq_lang.diff.comparison import diff_missions
-    from btq_lang.evidence.verifying import Verification, verify_logs
-    from btq_lang.formatter import format_text
-    from btq_lang.graph.missions import draw_tree
-    from btq_lang.parser import Parsed, parse
-    from btq_lang.syntax.tree import Node, Requirement, Tree
-    from btq_lang.trace.missions import TraceTable, trace_table
-    from btq_lang.util.text import LineIndex, Span
-    from btq_lang.util.version import __version__
-    from btq_lang.workspace.workspace import Workspace
-
-__all__ = [
-    "Built",
-    "Change",
-    "Diagnostic",
-    "Imported",
-    "LineIndex",
-    "Node",
-    "Parsed",
-    "Requirement",
-    "Span",
-    "TraceTable",
-    "Tree",
-    "Verification",
-    "Workspace",
-    "__version__",
-    "build",
-    "check",
-    "diff_missions",
-    "draw_tree",
-    "format_text",
-    "import_xml",
-    "open_workspace",
-    "parse",
-    "trace_table",
-    "verify_logs",
-]
+    from btq_lang.btcpp.importing import Imported as Imported
+    from btq_lang.btcpp.importing import import_xml as import_xml
+    from btq_lang.checks import check as check
+    from btq_lang.commands.building import Built as Built
+    from btq_lang.commands.building import build as build
+    from btq_lang.commands.opening import open_workspace as open_workspace
+    from btq_lang.diagnostics.model import Diagnostic as Diagnostic
+    from btq_lang.diff.changes import Change as Change
+    from btq_lang.diff.comparison import diff_missions as diff_missions
+    from btq_lang.evidence.verifying import Verification as Verification
+    from btq_lang.evidence.verifying import verify_logs as verify_logs
+    from btq_lang.formatter import format_text as format_text
+    from btq_lang.graph.missions import draw_tree as draw_tree
+    from btq_lang.parser import Parsed as Parsed
+    from btq_lang.parser import parse as parse
+    from btq_lang.syntax.tree import Node as Node
+    from btq_lang.syntax.tree import Requirement as Requirement
+    from btq_lang.syntax.tree import Tree as Tree
+    from btq_lang.trace.missions import TraceTable as TraceTable
+    from btq_lang.trace.missions import trace_table as trace_table
+    from btq_lang.util.text import LineIndex as LineIndex
+    from btq_lang.util.text import Span as Span
+    from btq_lang.util.version import __version__ as __version__
+    from btq_lang.workspace.workspace import Workspace as Workspace
 
 _HOMES = {
     "Built": "commands.building",
@@ -89,6 +70,7 @@ _HOMES = {
     "trace_table": "trace.missions",
     "verify_logs": "evidence.verifying",
 }
+__all__ = [*_HOMES]
 
 
 def __getattr__(name: str) -> object:
