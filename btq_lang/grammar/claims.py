@@ -135,7 +135,7 @@ class ClaimParser(ConditionParser):
         elif first is not None and self.kind == OPERATOR and self.raw in _COMPARISONS:
             at = first.start + self.base
             fix = replace_fix("Put `keeps` before it", Span(at, at), "keeps ")
-            if first.raw in ("time", "duration") and (bound := _INSTEAD_OF_BOUNDS.get(self.raw)):
+            if first.raw in ("time", "duration") and (bound := _BOUNDS.get((self.raw,))):
                 written = f"takes {' '.join(bound)}"
                 fix = replace_fix(f"Write `{written}`", Span(at, self.here().end), written)
             message = "expected a verb before the condition: `keeps`, `never`, `needs` or `leaves`"
@@ -239,53 +239,41 @@ class ClaimParser(ConditionParser):
             lower = self.simple()
             upper = self.simple() if self.expect_word("and") else None
             return Bound(start, self.last_end(), "between", lower, upper)
-        relation = None
-        if self.kind == NAME and self.kinds[self.index + 1] == NAME:
-            relation = RELATIONS.get((self.raw, self.raws[self.index + 1]))
-        if sign := self.bound_in_other_words():
-            relation = sign
-        elif relation is None:
-            meant = _INSTEAD_OF_BOUNDS.get(self.raw) if self.kind in (NAME, OPERATOR) else None
-            if meant is None:
-                example = self.raw if self.kind in (QUANTITY, NUMBER) else "30 s"
-                note = f"write the kind of bound before the value: `at most {example}`"
-                if self.kind in (QUANTITY, NUMBER) and self.raws[self.index + 1] == "-":
-                    note = "a range is written `between 10 s and 20 s`"
-                fixes: tuple[Fix, ...] = ()
-                if (
-                    self.kind == QUANTITY
-                    and self.raws[self.index + 1] != "-"
-                    and self.raws[self.index - 1] in _OF_DURATIONS
-                ):
-                    at = self.here().start
-                    fixes = (replace_fix("Put `at most` before it", Span(at, at), "at most "),)
-                self.expected("a bound: at most, at least, less than, more than or between", (note,), fixes)
-                return None
-            relation = RELATIONS[meant]
-            written = " ".join(meant)
-            fix = replace_fix(f"Write `{written}`", self.here(), written, safe=True)
-            self.complain("syntax-error", self.here(), f"this bound is written `{written}`", (), (fix,))
-        else:
-            self.advance()
-        self.advance()
+        relation = self.relation()
+        if relation is None:
+            self.no_relation()
+            return None
         value = self.bounded()
         return Bound(start, self.last_end(), relation, value)
 
-    def bound_in_other_words(self) -> str | None:
-        """Report `no more than`, `up to`, and stop at their last word."""
+    def relation(self) -> str | None:
+        """ "at" "most" | "at" "least" | "less" "than" | "more" "than"; other words for it are reported"""
         if self.kind != NAME and self.kind != OPERATOR:
             return None
-        for length in (5, 4, 3, 2):
+        for length in (5, 4, 3, 2, 1):
             words = tuple(self.raws[self.index : self.index + length])
-            meant = _BOUNDS_IN_WORDS.get(words)
+            meant = _BOUNDS.get(words)
             if meant is not None:
-                span = Span(self.here().start, self.starts[self.index + length - 1] + len(words[-1]))
-                written = " ".join(meant)
-                fix = replace_fix(f"Write `{written}`", span, written, safe=True)
-                self.complain("syntax-error", span, f"this bound is written `{written}`", (), (fix,))
-                self.go_to(self.index + length - 1)
+                if words != meant:
+                    span = Span(self.here().start, self.starts[self.index + length - 1] + len(words[-1]))
+                    written = " ".join(meant)
+                    fix = replace_fix(f"Write `{written}`", span, written, safe=True)
+                    self.complain("syntax-error", span, f"this bound is written `{written}`", (), (fix,))
+                self.go_to(self.index + length)
                 return RELATIONS[meant]
         return None
+
+    def no_relation(self) -> None:
+        """Report a bound without its first words."""
+        is_value = self.kind in (QUANTITY, NUMBER)
+        note = f"write the kind of bound before the value: `at most {self.raw if is_value else '30 s'}`"
+        fixes: tuple[Fix, ...] = ()
+        if is_value and self.raws[self.index + 1] == "-":
+            note = "a range is written `between 10 s and 20 s`"
+        elif self.kind == QUANTITY and self.raws[self.index - 1] in _OF_DURATIONS:
+            at = self.here().start
+            fixes = (replace_fix("Put `at most` before it", Span(at, at), "at most "),)
+        self.expected("a bound: at most, at least, less than, more than or between", (note,), fixes)
 
     def within(self) -> Bound:
         """Bounded, as the upper bound after `within` and `every`"""
@@ -368,33 +356,26 @@ _NEVER_FAILS: Final = (
     "write `succeeds` for a node that must not fail, or `never node Dock` for a node that must not run"
 )
 _OF_DURATIONS: Final = words(operands=("duration",))
-_BOUNDS_IN_WORDS: Final[dict[tuple[str, ...], tuple[str, str]]] = {
-    **dict.fromkeys(
-        (("no", "more", "than"), ("not", "more", "than"), ("no", "longer", "than"), ("up", "to"), ("=", "<")),
-        ("at", "most"),
-    ),
-    **dict.fromkeys(
-        (("no", "less", "than"), ("not", "less", "than"), ("no", "fewer", "than"), ("=", ">")), ("at", "least")
-    ),
+# How a bound begins, and what else people write for that.
+_BOUNDS: Final[dict[tuple[str, ...], tuple[str, str]]] = {
+    **{words: words for words in RELATIONS},
     **{
         (word, *than, "or", "equal", *to): (("at", "most") if word in ("less", "smaller", "lower") else ("at", "least"))
         for word in ("less", "smaller", "lower", "more", "greater", "larger")
         for than in ((), ("than",))
         for to in ((), ("to",))
     },
+    **dict.fromkeys(
+        (("no", "more", "than"), ("not", "more", "than"), ("no", "longer", "than"), ("up", "to"), ("=", "<")),
+        ("at", "most"),
+    ),
+    **dict.fromkeys((("<=",), ("within",), ("max",), ("maximum",), ("maximal",), ("maximally",)), ("at", "most")),
+    **dict.fromkeys(
+        (("no", "less", "than"), ("not", "less", "than"), ("no", "fewer", "than"), ("=", ">")), ("at", "least")
+    ),
+    **dict.fromkeys(((">=",), ("min",), ("minimum",), ("minimal",), ("minimally",)), ("at", "least")),
     **dict.fromkeys((("longer", "than"), ("greater", "than"), ("larger", "than")), ("more", "than")),
+    **dict.fromkeys(((">",), ("above",), ("over",)), ("more", "than")),
     **dict.fromkeys((("shorter", "than"), ("smaller", "than"), ("fewer", "than")), ("less", "than")),
-}
-_INSTEAD_OF_BOUNDS: Final = {
-    "<=": ("at", "most"),
-    ">=": ("at", "least"),
-    "<": ("less", "than"),
-    ">": ("more", "than"),
-    "under": ("less", "than"),
-    "below": ("less", "than"),
-    "above": ("more", "than"),
-    "within": ("at", "most"),
-    "over": ("more", "than"),
-    **dict.fromkeys(("max", "maximum", "maximal", "maximally"), ("at", "most")),
-    **dict.fromkeys(("min", "minimum", "minimal", "minimally"), ("at", "least")),
+    **dict.fromkeys((("<",), ("under",), ("below",)), ("less", "than")),
 }
