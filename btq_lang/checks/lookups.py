@@ -300,13 +300,13 @@ def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str
 @of_viewpoint
 def is_node_name(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a path can name a node by this name."""
-    return any(name in workspace.files[each].node_names for each in workspace.scope(viewpoint).paths)
+    return any(name in workspace.files[each].said("node_names") for each in workspace.scope(viewpoint).paths)
 
 
 @of_viewpoint
 def is_asked_for(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a condition, a bound or an argument in the file names it."""
-    return name in workspace.files[viewpoint].asked_for
+    return name in workspace.files[viewpoint].said("asked_for")
 
 
 @of_viewpoint
@@ -316,7 +316,7 @@ def asked_for_in_vain(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     return frozenset(
         [
             name
-            for name in workspace.files[viewpoint].asked_for
+            for name in workspace.files[viewpoint].said("asked_for")
             if not (find(Kind.SIGNAL, name) or find(Kind.CONTEXT, name))
         ]
     )
@@ -383,7 +383,7 @@ def is_first_registered(workspace: Workspace, viewpoint: str) -> bool:
 @of_viewpoint
 def used(workspace: Workspace, viewpoint: str, kind: Kind) -> frozenset[str]:
     """The names of a kind that the file refers to."""
-    return workspace.files[viewpoint].used(kind)
+    return workspace.files[viewpoint].said(kind)
 
 
 @of_viewpoint
@@ -395,7 +395,7 @@ def first_user(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> F
 @of_viewpoint
 def names_unknown_requirements(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file refers to a requirement that is defined nowhere."""
-    used = workspace.files[viewpoint].used(Kind.REQUIREMENT)
+    used = workspace.files[viewpoint].said(Kind.REQUIREMENT)
     return not used.issubset(workspace.scope(viewpoint).names(Kind.REQUIREMENT))
 
 
@@ -412,7 +412,7 @@ def custom_node(workspace: Workspace, viewpoint: str, name: str) -> tuple[str, t
 def most_have_models(workspace: Workspace, viewpoint: str) -> bool:
     """Whether few of the custom nodes that a file knows or uses have no model: a third at most."""
     known = workspace.scope(viewpoint).names(Kind.MODEL)
-    unknown = workspace.files[viewpoint].used(Kind.MODEL).difference(known)
+    unknown = workspace.files[viewpoint].said(Kind.MODEL).difference(known)
     return len(known) >= 2 and 2 * sum(lookup(name) is None for name in unknown) <= len(known)
 
 
@@ -420,7 +420,7 @@ def most_have_models(workspace: Workspace, viewpoint: str) -> bool:
 def is_crowded(workspace: Workspace, viewpoint: str, kind: Kind) -> bool:
     """Whether so many of the names of a kind are unknown that suggestions are of no use."""
     known = workspace.scope(viewpoint).names(kind)
-    unknown = workspace.files[viewpoint].used(kind).difference(known)
+    unknown = workspace.files[viewpoint].said(kind).difference(known)
     if kind is Kind.MODEL:
         unknown = unknown.difference(BUILTINS)
     return len(unknown) * (len(known) + len(BUILTINS)) > _MOST_COMPARED

@@ -208,7 +208,7 @@ def _connected(workspace: Workspace) -> list[list[str]]:
         for included in workspace.closure(path):
             join(path, included)
         scope = workspace.scope(path)
-        for name in file.used(Kind.TREE):
+        for name in file.said(Kind.TREE):
             found = () if scope.defines(Kind.TREE, name) else workspace.pooled(path, Kind.TREE, name)
             if len(found) == 1:
                 join(path, found[0].path)
@@ -279,7 +279,7 @@ def nav2_line(workspace: Workspace, holds: Callable[[str], bool]) -> str:
 def _of_format(workspace: Workspace, used: Mapping[str, set[str]]) -> Iterator[str]:
     """The distributions whose engine reads the format of the files that use some nodes."""
     formats = {
-        "BTCPP_format" in file.source for file in workspace.files.values() if not file.used(Kind.MODEL).isdisjoint(used)
+        "BTCPP_format" in file.source for file in workspace.files.values() if not file.said(Kind.MODEL).isdisjoint(used)
     }
     for each in DISTRIBUTIONS:
         if formats <= {each not in _OF_VERSION_3}:

@@ -194,7 +194,7 @@ def _strangers(workspace: Workspace) -> dict[str, Place]:
     for path in workspace.registered:
         names = {
             name
-            for name in workspace.files[path].used(Kind.MODEL)
+            for name in workspace.files[path].said(Kind.MODEL)
             if name not in BUILTINS and name not in KNOWN_WORDS and not _defines(workspace, name)
         }
         for reference in workspace.uses_in(path) if names else ():

@@ -83,7 +83,7 @@ def custom_node(workspace: Workspace, path: str, name: str) -> CustomNode:
     uses = [
         use.node
         for other in sorted(workspace.linked(path))
-        if name in workspace.files[other].used(Kind.MODEL)
+        if name in workspace.files[other].said(Kind.MODEL)
         for facts in workspace.files[other].facts.values()
         for use in facts.summary.uses
         if use.node is not None and use.kind is Kind.MODEL and use.name == name

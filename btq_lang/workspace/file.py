@@ -18,7 +18,7 @@ from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.syntax.tree import Entry, Include, Item
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Placed, Span, changed
-from btq_lang.workspace.item_index import Facts, Name, Names, Tally
+from btq_lang.workspace.item_index import Facts, Name, Names, Said, Tally
 from btq_lang.workspace.symbols import Summary, Symbol
 
 if TYPE_CHECKING:
@@ -201,37 +201,14 @@ class File:
     def _first_users(self) -> dict[Kind, dict[str, Facts]]:
         return {}
 
-    @property
-    def node_names(self) -> frozenset[str]:
-        """Every name by which a path can name a node in the file."""
-        return self._said("node_names")
-
-    @property
-    def asked_for(self) -> frozenset[str]:
-        """The names in the file's conditions, bounds and arguments."""
-        return self._said("asked_for")
-
-    @property
-    def claiming(self) -> frozenset[str]:
-        """The file's requirements whose claims may name their own subjects."""
-        return self._said("claiming")
-
-    @property
-    def runs(self) -> frozenset[str]:
-        """The trees that the file's items refer to; a tree's reference to itself does not count."""
-        return self._said("runs")
-
-    def used(self, kind: Kind) -> frozenset[str]:
-        """The names of a kind that the file refers to."""
-        return self._said(kind)
-
-    def _said(self, of: Kind | str) -> frozenset[str]:
+    def said(self, of: Said) -> frozenset[str]:
+        """The names of a kind that the file's items refer to, or those that their facts have of another sort."""
         if of not in self._tallies:
             self._tallies[of] = Tally.of(self.facts.values(), of)
         return self._tallies[of].names
 
     @cached_property
-    def _tallies(self) -> dict[Kind | str, Tally]:
+    def _tallies(self) -> dict[Said, Tally]:
         return {}
 
     @cached_property
@@ -252,11 +229,7 @@ class File:
     @cached_property
     def problems(self) -> tuple[Diagnostic, ...]:
         """The diagnostics of its syntax; spans count from the items."""
-        found: tuple[Diagnostic, ...] = ()
-        for entry in self.parsed.entries:
-            if entry.diagnostics:
-                found += entry.diagnostics
-        return found
+        return tuple([each for entry in self.parsed.entries for each in entry.diagnostics])
 
     @cached_property
     def is_swallowed(self) -> bool:

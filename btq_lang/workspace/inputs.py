@@ -39,42 +39,28 @@ Declared: TypeAlias = "tuple[str | None, NodeKind | None]"
 # ---- topics: what an edit has to touch to invalidate an input ----
 
 
-def of_viewpoint(
-    read: Callable[Concatenate[Workspace, str, P], T],
-) -> Callable[Concatenate[Store[Workspace], str, P], T]:
-    """An input that may change with an edit of any file that is linked with the viewpoint by includes, or in which XML
-    that is linked with it looks up names.
-    """
+def _input(
+    topic: Callable[..., Hashable],
+) -> Callable[[Callable[Concatenate[Workspace, P], T]], Callable[Concatenate[Store[Workspace], P], T]]:
+    """Declare an input by a function of the workspace and its key; the topic follows from the key."""
 
-    @wraps(read)
-    def ask(store: Store[Workspace], viewpoint: str, /, *key: P.args, **_: P.kwargs) -> T:
-        return store.read(viewpoint, read, viewpoint, *key)
+    def declare(read: Callable[Concatenate[Workspace, P], T]) -> Callable[Concatenate[Store[Workspace], P], T]:
+        @wraps(read)
+        def ask(store: Store[Workspace], /, *key: P.args, **_: P.kwargs) -> T:
+            return store.read(topic(*key), read, *key)
 
-    return ask
+        return ask
 
-
-def of_name(
-    read: Callable[[Workspace, str, Kind, str], T],
-) -> Callable[[Store[Workspace], str, Kind, str], T]:
-    """An input that depends only on the items that define a name, in whatever file."""
-
-    @wraps(read)
-    def ask(store: Store[Workspace], viewpoint: str, kind: Kind, name: str) -> T:
-        return store.read((kind, name), read, viewpoint, kind, name)
-
-    return ask
+    return declare
 
 
-def of_item(
-    read: Callable[[Workspace, str, Facts], T],
-) -> Callable[[Store[Workspace], str, Facts], T]:
-    """An input that never changes, for an edited item is a new one."""
-
-    @wraps(read)
-    def ask(store: Store[Workspace], path: str, facts: Facts) -> T:
-        return store.read(facts, read, path, facts)
-
-    return ask
+# May change with an edit of any file that is linked with the viewpoint by includes, or in which XML that is linked with
+# it looks up names.
+of_viewpoint = _input(lambda viewpoint, *_: viewpoint)
+# Depends only on the items that define a name, in whatever file.
+of_name = _input(lambda viewpoint, kind, name: (kind, name))
+# Never changes, for an edited item is a new one.
+of_item = _input(lambda path, facts: facts)
 
 
 def advance(before: Workspace, after: Workspace) -> None:
@@ -235,7 +221,7 @@ def names(workspace: Workspace, viewpoint: str, kind: Kind) -> tuple[str, ...]:
 @of_viewpoint
 def claiming(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The requirements in scope whose claims may name their own subjects, in the order of their definitions."""
-    found: frozenset[str] = frozenset().union(*[file.claiming for file in _files(workspace, viewpoint)])
+    found: frozenset[str] = frozenset().union(*[file.said("claiming") for file in _files(workspace, viewpoint)])
     names = workspace.scope(viewpoint).names(Kind.REQUIREMENT) if found else ()
     return tuple([name for name in names if name in found])
 
@@ -245,7 +231,7 @@ def asked_for(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in all clauses in scope, and those by which `apply` selects nodes."""
     asked: set[str] = set()
     for file in _files(workspace, viewpoint):
-        asked |= file.asked_for
+        asked |= file.said("asked_for")
         for apply in file.of_type(Apply):
             for selector in (*apply.targets, *apply.exceptions):
                 words = selector.path.names if selector.path is not None else ()

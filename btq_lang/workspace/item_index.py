@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from itertools import chain
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax.tree import Item, Model, Signal, Tree
@@ -18,6 +18,8 @@ from btq_lang.workspace.references import Mention, kinds, mentions, summarize
 from btq_lang.workspace.symbols import Summary, Symbol, asked_for, claiming
 
 Name: TypeAlias = tuple[Kind, str]
+# The names of a kind that an item refers to, or the property of its facts with other names.
+Said: TypeAlias = Kind | Literal["asked_for", "claiming", "node_names", "runs"]
 
 
 class Facts:
@@ -63,7 +65,7 @@ class Facts:
             found.setdefault(use.kind, set()).add(use.name)
         return {kind: frozenset(names) for kind, names in found.items()}
 
-    def names_of(self, of: Kind | str) -> frozenset[str]:
+    def names_of(self, of: Said) -> frozenset[str]:
         """The names of a kind that it refers to, or the value of the property with this name."""
         names: frozenset[str] = self.used.get(of, frozenset()) if isinstance(of, Kind) else getattr(self, of)
         return names
@@ -87,12 +89,12 @@ class Facts:
 class Tally:
     """For each of some names, the number of a file's items that have it."""
 
-    def __init__(self, of: Kind | str, counts: dict[str, int]) -> None:
+    def __init__(self, of: Said, counts: dict[str, int]) -> None:
         self._of = of
         self._counts = counts
 
     @classmethod
-    def of(cls, items: Iterable[Facts], of: Kind | str) -> Tally:
+    def of(cls, items: Iterable[Facts], of: Said) -> Tally:
         """A tally of the names of a kind that items use, or of another set of names in their facts."""
         names = [each.names_of(of) for each in items if type(each.item) not in _SAYING_NOTHING]
         counts: dict[str, int] = {}

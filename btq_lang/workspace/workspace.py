@@ -48,7 +48,6 @@ class Workspace:
         self._scopes: dict[str, Scope] = {}
         self._everywhere: dict[Name, tuple[Definition, ...]] = {}
         self._closures: dict[str, tuple[str, ...]] = {}
-        self._main_trees: dict[str, Definition | None] = {}
         self._referred: dict[str, dict[Span, tuple[Reference, ...]]] = {}
 
     @classmethod
@@ -104,7 +103,6 @@ class Workspace:
                 self.files[path].let_go()
         self._scopes = {path: scope for path, scope in self._scopes.items() if gone.isdisjoint(scope.paths)}
         self._everywhere.clear()
-        self._main_trees.clear()
         self._referred.clear()
 
     def _take_over(self, before: Workspace, edited: str) -> None:
@@ -365,11 +363,6 @@ class Workspace:
     def main_tree(self, path: str) -> Definition | None:
         """The tree that runs when the engine loads the file: the factory's first main tree, or the one that its `Root`
         names, its only tree, or the only one of its trees that no other of its trees refers to."""
-        if path not in self._main_trees:
-            self._main_trees[path] = self._main_tree(path)
-        return self._main_trees[path]
-
-    def _main_tree(self, path: str) -> Definition | None:
         if self.factory is not None and self.factory.main:
             return self.scope(path).find(Kind.TREE, self.factory.main[0])
         file = self.files[path]
@@ -380,7 +373,7 @@ class Workspace:
                 return self.scope(path).find(Kind.TREE, named.text)
         trees = file.names.by_kind[Kind.TREE]
         if len(trees) > 1 or any(len(file.names.found[Kind.TREE, name]) > 1 for name in trees):
-            runs = file.runs
+            runs = file.said("runs")
             trees = tuple([name for name in trees if name not in runs])
         found = file.definitions(Kind.TREE, trees[0]) if len(trees) == 1 else ()
         return found[0] if len(found) == 1 else None
