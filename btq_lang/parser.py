@@ -57,7 +57,7 @@ class Parsed:
         maps: of the text, for the next parse.
     """
 
-    __slots__ = ("_diagnostics", "_tokens", "entries", "maps", "starts", "text")
+    __slots__ = ("_tokens", "entries", "maps", "starts", "text")
 
     def __init__(self, text: str, maps: Maps, entries: tuple[Entry, ...], starts: tuple[Start | None, ...]) -> None:
         self.text: Final = text
@@ -65,7 +65,6 @@ class Parsed:
         self.entries: Final = entries
         self.starts: Final = starts
         self._tokens: tuple[Token, ...] | None = None
-        self._diagnostics: tuple[Diagnostic, ...] | None = None
 
     @property
     def tokens(self) -> tuple[Token, ...]:
@@ -77,11 +76,7 @@ class Parsed:
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The syntax diagnostics; spans count from the start of the file."""
-        if self._diagnostics is None:
-            self._diagnostics = tuple(
-                shifted(problem, entry.start) for entry in self.entries for problem in entry.diagnostics
-            )
-        return self._diagnostics
+        return tuple(shifted(problem, entry.start) for entry in self.entries for problem in entry.diagnostics)
 
     @property
     def trees(self) -> tuple[Tree, ...]:

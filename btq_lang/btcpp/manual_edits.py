@@ -6,8 +6,8 @@ unchanged are never reported, wherever they were moved and however the mission's
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import Final
+from collections.abc import Iterator, Mapping
+from typing import Final, TypeAlias
 
 from btq_lang.btcpp.document import Element
 from btq_lang.btcpp.wrappers import MARK, MOVED
@@ -17,16 +17,9 @@ from btq_lang.util.text import Span
 ADVICE: Final = "the next build restores it; change the requirement that it enforces instead"
 
 
-class NodeGuards(Record):
-    """One of the mission's nodes, with the guards that a build put around and beside it.
-
-    Attributes:
-        node: its tree, kind and name, and its number among the nodes of the tree that share those: `Main/Pick/Again/1`.
-        guards: the checksum of each, by name.
-    """
-
-    node: str
-    guards: tuple[tuple[str, str], ...]
+# The guards that a build put around and beside each of the mission's nodes, as checksums by name.  A node's key is its
+# tree, kind and name, and its number among the nodes of the tree that share those: `Main/Pick/Again/1`.
+Guards: TypeAlias = Mapping[str, Mapping[str, str]]
 
 
 class ManualEdit(Record):
@@ -46,17 +39,14 @@ class ManualEdit(Record):
         return "changed" if self.sum else "removed"
 
 
-def node_guards(root: Element) -> Iterator[NodeGuards]:
-    """The nodes of a file that have guards, in order."""
-    for key, _, guards in _nodes(root):
-        if guards:
-            yield NodeGuards(key, tuple(guards.items()))
+def node_guards(root: Element) -> Guards:
+    """The guards of a file, in its order."""
+    return {key: guards for key, _, guards in _nodes(root) if guards}
 
 
-def manual_edits(root: Element, built: Iterable[NodeGuards]) -> tuple[ManualEdit, ...]:
+def manual_edits(root: Element, built: Guards) -> tuple[ManualEdit, ...]:
     """The manual edits since a build, in the order of the file."""
-    built = tuple(built)
-    known = {guard for each in built for guard in each.guards}
+    known = {guard for guards in built.values() for guard in guards.items()}
     marked = {_name(each): each for each in root.walk() if each.get(MARK) is not None and _name(each)}
     nodes = {key: (node, guards) for key, node, guards in _nodes(root)}
     found = [
@@ -65,11 +55,11 @@ def manual_edits(root: Element, built: Iterable[NodeGuards]) -> tuple[ManualEdit
         for name, sum_ in guards.items()
         if (name, sum_) not in known
     ]
-    for each in built:
-        node, guards = nodes.get(each.node, (None, {}))
-        was_another = bool(guards) and guards.keys().isdisjoint(dict(each.guards))  # of its kind, before it was deleted
+    for key, before in built.items():
+        node, guards = nodes.get(key, (None, {}))
+        was_another = bool(guards) and guards.keys().isdisjoint(before)  # of its kind, before it was deleted
         if node is not None and not was_another:
-            found += [ManualEdit(name, "", node.tag_span) for name, _ in each.guards if name not in marked]
+            found += [ManualEdit(name, "", node.tag_span) for name in before if name not in marked]
     return tuple(sorted(found, key=lambda each: each.span))
 
 

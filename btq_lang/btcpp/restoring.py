@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
-from btq_lang.btcpp.manual_edits import ManualEdit, NodeGuards, manual_edits
+from btq_lang.btcpp.manual_edits import ManualEdit, manual_edits
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.side_file import FORMAT, VERSIONS
 from btq_lang.catalog.names import legal_name
@@ -86,10 +86,10 @@ def restored(xml: str, imported: str, side: str) -> Restored | None:
         mission, built = data["mission"]["text"], data["xml"]["sha256"]
         place = data["mission"]["file"]
         others = tuple((each["file"], each["text"]) for each in data.get("sources", ()))
-        guards = tuple(
-            NodeGuards(str(each["node"]), tuple((name, str(sum_)) for name, sum_ in dict(each["guards"]).items()))
+        guards = {
+            str(each["node"]): {name: str(sum_) for name, sum_ in dict(each["guards"]).items()}
             for each in data.get("guards", ())
-        )
+        }
     except (ValueError, LookupError, TypeError, RecursionError):
         return None
     if not is_known or not all(_is_text(each) for each in (mission, place, *chain(*others))):

@@ -193,7 +193,7 @@ class RunningTree:
 
 def _guards(root: Element) -> dict[str, Json]:
     """The checksums of the guards in the file, by the nodes that they are at."""
-    found: list[Json] = [{"node": each.node, "guards": dict(each.guards)} for each in node_guards(root)]
+    found: list[Json] = [{"node": node, "guards": {**guards}} for node, guards in node_guards(root).items()]
     return {"guards": found} if found else {}
 
 

@@ -17,10 +17,8 @@ from typing import Final
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import near
 
-# Exponents over length, mass, time, current, temperature, angle, data, count, percent.
-Dimension = tuple[int, int, int, int, int, int, int, int, int]
-
 BASES: Final = ("length", "mass", "time", "current", "temperature", "angle", "data", "count", "percent")
+Dimension = tuple[int, ...]  # an exponent for each
 
 
 class Unit(Record):
@@ -69,7 +67,7 @@ def parse_unit(text: str) -> Unit | None:
             dimension[base] += power * unit_exponent
     if written == ["1"] or (written[:1] == ["1"] and written[1][0] != "/") or not 0.0 < factor < inf:
         return None
-    return Unit("".join(written), (*dimension,), factor)  # type: ignore[arg-type]  # as long as it was
+    return Unit("".join(written), (*dimension,), factor)
 
 
 def nearest_units(text: str, wanted: str | None = None) -> tuple[str, ...]:
@@ -216,18 +214,9 @@ _MICRO: Final = "u µ μ"  # one prefix, three spellings
 _Entry = tuple[str, Dimension, float, float]  # symbol, dimension, factor, offset
 
 
-def _dimension(
-    length: int = 0,
-    mass: int = 0,
-    time: int = 0,
-    current: int = 0,
-    temperature: int = 0,
-    angle: int = 0,
-    data: int = 0,
-    count: int = 0,
-    percent: int = 0,
-) -> Dimension:
-    return length, mass, time, current, temperature, angle, data, count, percent
+def _dimension(**exponents: int) -> Dimension:
+    """The exponents of some bases, by their names; those of the others are 0."""
+    return tuple([exponents.get(base, 0) for base in BASES])
 
 
 _NO_DIMENSION: Final = _dimension()

@@ -11,7 +11,7 @@ from math import isfinite
 from typing import Final, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.units import Dimension, a_dimension, to_si
+from btq_lang.catalog.units import a_dimension, to_si
 from btq_lang.diagnostics.model import Fix, replace_fix
 from btq_lang.requirements.model import (
     NO_DIMENSION,
@@ -575,7 +575,7 @@ class Reader(PathReader):
                 return None
         sign = 1 if value.operator == "*" else -1
         pairs = zip(left.dimension, right.dimension, strict=True)
-        dimension: Dimension = (*(a + sign * b for a, b in pairs),)  # type: ignore[assignment]  # as long as they are
+        dimension = tuple([a + sign * b for a, b in pairs])
         unit = (
             left.unit
             if right.dimension == NO_DIMENSION
