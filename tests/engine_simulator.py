@@ -38,7 +38,7 @@ class Run:
 
     def drawn(self, leaf: ResolvedNode) -> float:
         """A duration that the leaf's `takes between` allows, often one of the ends."""
-        (applied,) = self.found.of(leaf)
+        (applied,) = [each for each in self.found.applied if each.node is leaf]
         limit = applied.requirement.claims[0].limit
         assert limit is not None
         assert isinstance(limit.value, Value)

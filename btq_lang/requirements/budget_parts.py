@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import fsum, inf
 
 from btq_lang.catalog.kinds import Role
@@ -59,6 +59,19 @@ class Budget(Record):
         return longest is not None and longest.high < inf
 
 
+def mapped(budget: Budget, change: Callable[[Range | None], Range | None]) -> Budget:
+    """The budget with changed ranges, and without its reason; an absent skip stays absent."""
+    success = change(budget.success)
+    failure = success if budget.failure is budget.success else change(budget.failure)
+    skip = change(budget.skip) if budget.skip is not None else None
+    return Budget(success, failure, skip, budget.waits, budget.probability, "", budget.endless)
+
+
+def opened(budget: Budget) -> Budget:
+    """The budget of a node with the same outcomes, each at any time."""
+    return mapped(budget, lambda each: ANY if each is not None else None)
+
+
 def inverted(budget: Budget) -> Budget:
     """The same with success and failure exchanged."""
     return replace(budget, success=budget.failure, failure=budget.success)
@@ -67,6 +80,11 @@ def inverted(budget: Budget) -> Budget:
 def unknown(reason: str) -> Budget:
     """The budget of a node that may do anything and take any time."""
     return Budget(ANY, ANY, ANY, reason=reason, endless=True)
+
+
+def without_limit(reason: str, *children: Budget) -> Budget:
+    """The budget of a node that may tick its children again without limit."""
+    return replace(unknown(reason), probability=likelihood([child.probability for child in children], None))
 
 
 def port_seconds(node: ResolvedNode) -> float | None:

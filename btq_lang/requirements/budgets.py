@@ -7,14 +7,14 @@ activations only (a scope, some instances) does not count here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from math import fsum, inf
 from typing import Final
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements import nodes
 from btq_lang.requirements.attach import applied_in
-from btq_lang.requirements.budget_parts import Budget, port_count, port_seconds, unknown
+from btq_lang.requirements.budget_parts import Budget, mapped, opened, port_count, port_seconds, unknown
 from btq_lang.requirements.composition import compose
 from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
 from btq_lang.requirements.model import Applied, Bounded, Claim, Limit, Table, Target, Value
@@ -314,7 +314,7 @@ def _is_sure(budget: Budget) -> bool:
 
 def _shortest(budget: Budget) -> Budget:
     """The shortest time that a budget allows, for each outcome."""
-    found = _with_ranges(budget, lambda each: Range(each.low, each.low) if each is not None else None)
+    found = mapped(budget, lambda each: Range(each.low, each.low) if each is not None else None)
     return replace(found, probability=1.0, endless=False)
 
 
@@ -326,26 +326,19 @@ def _as_part(node: ResolvedNode, budget: Budget) -> Budget:
             return each
         return Range(each.low, each.high, (Term(node, 1, each.high),) if each.high > 0.0 else ())
 
-    return _with_ranges(budget, part)
+    return mapped(budget, part)
 
 
 def _without_terms(budget: Budget) -> Budget:
     """A budget as another tree sees it: without terms."""
-    return _with_ranges(budget, lambda each: Range(each.low, each.high) if each is not None and each.terms else each)
-
-
-def _with_ranges(budget: Budget, change: Callable[[Range | None], Range | None]) -> Budget:
-    """The budget with changed ranges; absent ones stay absent."""
-    success = change(budget.success)
-    failure = success if budget.failure is budget.success else change(budget.failure)
-    skip = change(budget.skip) if budget.skip is not None else None
-    return Budget(success, failure, skip, budget.waits, budget.probability, "", budget.endless)
+    return mapped(budget, lambda each: Range(each.low, each.high) if each is not None and each.terms else each)
 
 
 def _with_claims(composed: Budget, claims: list[tuple[Applied, Claim]]) -> Budget:
     """What is demanded of a node; of bounds with odds the likeliest, and only if there is no certain bound."""
     sure = [claim for applied, claim in claims if applied.requirement.odds is None]
-    held = _all_narrowed(composed if composed.probability == 1.0 else _opened(composed), sure)
+    without_odds = replace(opened(composed), probability=1.0, reason=composed.reason)
+    held = _all_narrowed(composed if composed.probability == 1.0 else without_odds, sure)
     if held.is_bounded:
         return held
     choices = [_all_narrowed(composed, sure)] if composed.probability < 1.0 else []
@@ -369,14 +362,6 @@ def _with_attributes(node: ResolvedNode, budget: Budget) -> Budget:
     if "_while" in keys:
         budget = replace(budget, skip=hull(budget.skip, budget.running if budget.waits else ZERO))
     return budget
-
-
-def _opened(budget: Budget) -> Budget:
-    """A budget without bounds that have odds."""
-    success, failure, skip = (
-        ANY if each is not None else None for each in (budget.success, budget.failure, budget.skip)
-    )
-    return Budget(success, failure, skip, budget.waits, 1.0, budget.reason, budget.endless)
 
 
 def _all_narrowed(budget: Budget, claims: list[Claim]) -> Budget:

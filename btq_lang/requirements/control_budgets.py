@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf
 
-from btq_lang.requirements.budget_parts import Budget, in_order, likelihood, made, port_count
-from btq_lang.requirements.durations import ANY, ZERO, Range, from_zero, hull, plus, total
+from btq_lang.requirements.budget_parts import Budget, in_order, likelihood, made, opened, port_count, without_limit
+from btq_lang.requirements.durations import ZERO, Range, from_zero, hull, plus, total
 from btq_lang.util.record import replace
 from btq_lang.workspace.resolved import ResolvedNode
 
@@ -40,15 +40,8 @@ def _reactive(children: Sequence[Budget], found: Budget, ends: str) -> Budget:
     waiting = [index for index, child in enumerate(children) if child.waits]
     if len(waiting) > 1:
         reason = "has several children that take time, and may restart each of them without limit"
-        return replace(
-            found,
-            success=ANY if found.success is not None else None,
-            failure=ANY if found.failure is not None else None,
-            skip=ANY if found.skip is not None else None,
-            probability=0.0 if found.probability < 1.0 else 1.0,
-            reason=reason,
-            endless=True,
-        )
+        likely = likelihood([found.probability], None)
+        return replace(opened(found), probability=likely, reason=reason, endless=True)
     before = children[: waiting[0]] if waiting else ()
     if any(getattr(child, ends) is not None for child in before):
         running = children[waiting[0]].running
@@ -95,9 +88,7 @@ def _with_skips(node: ResolvedNode, children: Sequence[Budget], asks_again: bool
     if not skips:
         return None
     if asks_again or any(child.endless for child in children) or sum(skip.high > 0.0 for skip in skips) > 1:
-        reason = "ticks a skipped child without limit"
-        likely = likelihood([child.probability for child in children], None)
-        return Budget(ANY, ANY, ANY, probability=likely, reason=reason, endless=True)
+        return without_limit("ticks a skipped child without limit", *children)
     longest = total(child.running for child in children)
     return made(children, longest, longest, longest)
 
@@ -154,17 +145,13 @@ def _if_then_else(children: Sequence[Budget]) -> Budget:
 def _rechecking(children: Sequence[Budget], found: Budget) -> Budget:
     """The condition is evaluated at every tick, and its result may change."""
     condition, *branches = children
-    if condition.waits or (len(branches) == 2 and all(branch.waits for branch in branches)):
-        changes = condition.success is not None and condition.failure is not None
-        if condition.waits or changes:
-            reason = "checks its condition at every tick, so it may restart its branches without limit"
-            return Budget(
-                ANY, ANY, ANY, reason=reason, probability=0.0 if found.probability < 1.0 else 1.0, endless=True
-            )
+    changes = condition.success is not None and condition.failure is not None
+    if condition.waits or (changes and len(branches) == 2 and all(branch.waits for branch in branches)):
+        reason = "checks its condition at every tick, so it may restart its branches without limit"
+        return without_limit(reason, *children)
+    if not changes:
         return found
     running = total(branch.running if branch.waits else ZERO for branch in branches)
-    if condition.failure is None or condition.success is None:
-        return found
     return replace(
         found,
         success=hull(found.success, running) if len(branches) == 2 else found.success,

@@ -7,7 +7,16 @@ from __future__ import annotations
 
 from math import inf
 
-from btq_lang.requirements.budget_parts import Budget, end_after, likelihood, port_count, port_of, port_seconds
+from btq_lang.requirements.budget_parts import (
+    Budget,
+    end_after,
+    likelihood,
+    mapped,
+    port_count,
+    port_of,
+    port_seconds,
+    without_limit,
+)
 from btq_lang.requirements.durations import ANY, ZERO, Range, cut, hull, plus, times, without_end
 from btq_lang.util.record import replace
 from btq_lang.workspace.resolved import ResolvedNode
@@ -47,27 +56,16 @@ def timeout(node: ResolvedNode, child: Budget) -> Budget:
     if limit is None:
         return replace(child, failure=hull(child.failure, longest))
     runs_out = Range(limit, limit, tuple(replace(term, seconds=limit) for term in longest.terms[:1]))
-    return replace(
-        child,
-        success=cut(child.success, limit),
-        failure=hull(cut(child.failure, limit), runs_out if longest.high > limit else None),
-        skip=cut(child.skip, limit),
-        endless=False,
-    )
+    found = mapped(child, lambda each: cut(each, limit))
+    failure = hull(found.failure, runs_out if longest.high > limit else None)
+    return replace(found, failure=failure, endless=False)
 
 
 def delay(node: ResolvedNode, child: Budget) -> Budget:
     seconds = port_seconds(node)
     wait = ANY if seconds is None else Range(seconds, seconds)
     reason = "" if seconds is not None else "reads from the blackboard how long it waits"
-    return replace(
-        child,
-        success=plus(wait, child.success),
-        failure=plus(wait, child.failure),
-        skip=plus(wait, child.skip),
-        waits=True,
-        reason=reason,
-    )
+    return replace(mapped(child, lambda each: plus(wait, each)), waits=True, reason=reason)
 
 
 def until_failure(node: ResolvedNode, child: Budget) -> Budget:
@@ -102,17 +100,8 @@ def precondition(node: ResolvedNode, child: Budget) -> Budget:
 def for_each(node: ResolvedNode, child: Budget) -> Budget:
     if child.running.high == 0.0:
         return Budget(ZERO, ZERO, ZERO, True, child.probability)
-    reason = "runs its child for each item of a queue of unknown length"
-    return Budget(ANY, ANY, ANY, True, 0.0 if child.probability < 1.0 else 1.0, reason, True)
+    return without_limit("runs its child for each item of a queue of unknown length", child)
 
 
 def wait_until_updated(node: ResolvedNode, child: Budget) -> Budget:
-    return replace(
-        child,
-        success=without_end(child.success),
-        failure=without_end(child.failure),
-        skip=without_end(child.skip),
-        waits=True,
-        reason="waits until an entry is written",
-        endless=True,
-    )
+    return replace(mapped(child, without_end), waits=True, reason="waits until an entry is written", endless=True)

@@ -17,8 +17,9 @@ from btq_lang.requirements.budget_parts import (
     port_count,
     port_of,
     unknown,
+    without_limit,
 )
-from btq_lang.requirements.durations import ANY, ZERO, from_zero, hull, plus, times, total
+from btq_lang.requirements.durations import ZERO, from_zero, hull, plus, times, total
 from btq_lang.syntax.tokens import BRACED
 from btq_lang.util.record import replace
 from btq_lang.workspace.node_names import wraps
@@ -38,9 +39,8 @@ def pipeline(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
 def together(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     """A child that has ended starts again as long as another one runs."""
     if sum(child.waits for child in children) > 1:
-        likely = 0.0 if any(child.probability < 1.0 for child in children) else 1.0
         reason = "restarts children that have ended until all succeed in one tick"
-        return Budget(ANY, ANY, None, probability=likely, reason=reason, endless=True)
+        return replace(without_limit(reason, *children), skip=None)
     success = total(child.success for child in children)
     fails = any(child.failure is not None for child in children)
     return made(children, success, total(child.running for child in children) if fails else None, None)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.requirements import nodes
-from btq_lang.requirements.attach import Attached, applied_in, attached_by, claimed, uses_in
+from btq_lang.requirements.attach import applied_in, attached_by, claimed, uses_in
 from btq_lang.requirements.definitions import requirement
-from btq_lang.requirements.model import Applied, Requirement, Signal, Trace, Use
+from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, Trace, Use
+from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Problems, context, signal
 from btq_lang.syntax.tree import Apply, Tree
@@ -19,11 +20,6 @@ from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
-
-if TYPE_CHECKING:
-    from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, Trace
-    from btq_lang.requirements.nodes import Nodes
-    from btq_lang.requirements.paths import Problem
 
 
 def requirements(workspace: Workspace, path: str) -> Requirements:
@@ -41,17 +37,15 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
     of_names = (*signals.values(), *contexts.values(), *defined.values())
     problems = [problem for _, found in of_names for problem in found]
     uses: dict[str, list[Use]] = {}
-    mentioned: set[str] = set()
     for item in inputs.attaching(store, path):
         attached = store.ask(uses_in, path, *item)
-        mentioned |= attached.mentioned
         problems += attached.problems
         for use in attached.found:
             uses.setdefault(use.requirement, []).append(use)
     applied: list[Applied] = []
     traces: list[Trace] = []
     for name in defined:
-        held: Attached = attached_by(store, path, name, uses.get(name, ()))
+        held = attached_by(store, path, name, uses.get(name, ()))
         applied += (*store.ask(claimed, path, name), *held.applied)
         traces += held.traces
         problems += held.problems
@@ -63,7 +57,6 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
         {name: found for name, (found, _) in defined.items() if found is not None},
         tuple(applied),
         tuple(traces),
-        frozenset(mentioned),
         tuple(problems),
         store.ask(nodes.nodes, path),
         store.ask(nodes.mission, path),
@@ -103,7 +96,6 @@ class Requirements(Record):
         all: every requirement by name, in the order of their definitions, with parameters.
         applied: what applies to what, with arguments.
         traces: `satisfies` at nodes, for requirements whose claims name their own subjects.
-        attached: names of requirements that a node or an `apply` refers to.
         problems: all that was not understood.
         nodes: the written nodes.
         mission: the main tree's root; None if it is unknown which tree runs.
@@ -116,14 +108,9 @@ class Requirements(Record):
     all: dict[str, Requirement]
     applied: tuple[Applied, ...]
     traces: tuple[Trace, ...]
-    attached: frozenset[str]
     problems: tuple[Problem, ...]
     nodes: Nodes
     mission: ResolvedNode | None
-
-    def of(self, node: ResolvedNode) -> tuple[Applied, ...]:
-        """What applies to a node."""
-        return tuple(each for each in self.applied if each.node is node)
 
     def about_no_node(self) -> tuple[tuple[Requirement, Claim], ...]:
         """The claims that apply to nothing, of requirements whose other claims apply to something; a requirement that

@@ -242,7 +242,6 @@ def said(workspace: Workspace, found: Requirements) -> Iterator[object]:
         arguments = [(each.name, each.value.text) for each in applied.arguments]
         yield applied.requirement.name, claims, arguments, [*map(named, applied.nodes)], at(applied.place), applied.how
     yield [(trace.requirement, named(trace.node)) for trace in found.traces]
-    yield found.attached
     yield [(at(each.place), each.diagnostic.rule, each.diagnostic.message) for each in found.problems]
     yield [[at(related.place) for related in each.diagnostic.related] for each in found.problems]
     budgets = Budgets(found.store, found.viewpoint)
