@@ -75,7 +75,6 @@ _OF_PORTS: tuple[Check, ...] = (
     ports.duplicate_port,
     ports.misspelt_type,
     literals.invalid_literal,
-    literals.quantity_on_unitless_port,
 )
 _OF_MODELS: tuple[Check, ...] = (
     kinds.duplicate_definition,
@@ -92,11 +91,6 @@ _OF_CLAUSES: tuple[Check, ...] = (
     clauses.unused_parameter,
     bounds.impossible_bound,
     bounds.uses_of_gauge,
-)
-_OF_QUALITIES: tuple[Check, ...] = (
-    qualities.unknown_quality,
-    qualities.old_quality_name,
-    qualities.ambiguous_quality,
 )
 # The checks of each type of item: most items are small, and most checks do not concern most of them.
 CHECKS: dict[type, tuple[Check, ...]] = {
@@ -150,7 +144,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         *_OF_CLAUSES,
         repeated.named_twice,
         empty.empty_text,
-        *_OF_QUALITIES,
+        qualities.quality_name,
         prose.prose_constraint,
         reactive.reactive_multiple_async,
         reactive.explicit_in_reactive,
@@ -188,15 +182,15 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         requirements.unused_requirement,
         *_OF_CLAUSES,
         empty.empty_text,
-        *_OF_QUALITIES,
+        qualities.quality_name,
         prose.prose_constraint,
         measures.unresolved,
         measures.requirement_without_subject,
         demands.demands,
     ),
     syntax.Apply: (requirements.unknown_requirement, repeated.named_twice, measures.unresolved, demands.demands),
-    syntax.Qualities: (qualities.unknown_quality,),
-    syntax.QualityDecl: (kinds.duplicate_definition, empty.empty_text, *_OF_QUALITIES),
+    syntax.Qualities: (qualities.quality_name,),
+    syntax.QualityDecl: (kinds.duplicate_definition, empty.empty_text, qualities.quality_name),
 }
 
 

@@ -13,18 +13,9 @@ from btq_lang.catalog.units import Dimension, parse_unit
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import NUMBER, QUANTITY
-from btq_lang.syntax.tree import (
-    Amount,
-    Claim,
-    Mission,
-    Requirement,
-    Scope,
-    Signal,
-    Word,
-    walk,
-)
 from btq_lang.util.text import Span
 
 
@@ -35,14 +26,14 @@ def impossible_bound(view: View) -> Iterator[Diagnostic]:
         bound, verb = claim.bound, claim.verb.raw
         operand = VERBS[verb].operand
         is_count = operand in _COUNTED
-        if is_count and isinstance(claim.subject, Mission):
+        if is_count and isinstance(claim.subject, syntax.Mission):
             span = Span(claim.start, claim.end)
             message = f"a mission starts only once in a run, so `{verb}` does not apply to it"
             notes = ("name the node whose starts to count: `MoveBase tries at most 3`",)
             yield Diagnostic("impossible-bound", span, message, notes=notes)
         elif bound is not None:
-            for amount in walk(bound):
-                if not isinstance(amount, Amount):
+            for amount in syntax.walk(bound):
+                if not isinstance(amount, syntax.Amount):
                     continue
                 number, what = _value(amount)
                 is_lower = bound.relation in (">=", ">") or (bound.relation == "between" and amount is bound.value)
@@ -58,11 +49,12 @@ def impossible_bound(view: View) -> Iterator[Diagnostic]:
 def uses_of_gauge(view: View) -> Iterator[Diagnostic]:
     """`uses … of` a signal that is neither a counter nor a level, so that its use is undefined."""
     for _, claim in _claims(view):
-        declaration = view.declaration(Kind.SIGNAL, claim.resource.text) if claim.resource is not None else None
-        signal = declaration.symbol.target if declaration is not None else None
-        if claim.resource is None or declaration is None or not isinstance(signal, Signal) or signal.unit is None:
+        if claim.resource is None or (declaration := view.declaration(Kind.SIGNAL, claim.resource.text)) is None:
             continue
-        if signal.unit.text in ("bool", "text") or (signal.behaviour and signal.behaviour.raw != "gauge"):
+        signal = declaration.symbol.target
+        if not isinstance(signal, syntax.Signal) or signal.unit is None or signal.unit.text in ("bool", "text"):
+            continue
+        if signal.behaviour and signal.behaviour.raw != "gauge":
             continue
         at = signal.behaviour.span if signal.behaviour else Span(*[(signal.source or signal.unit).end] * 2)
         place = Place(at, declaration.path, declaration.owner.item)
@@ -80,14 +72,14 @@ def uses_of_gauge(view: View) -> Iterator[Diagnostic]:
         )
 
 
-def _claims(view: View) -> Iterator[tuple[Requirement, Claim]]:
+def _claims(view: View) -> Iterator[tuple[syntax.Requirement, syntax.Claim]]:
     for _, requirement in view.requirements:
         for clause in requirement.clauses:
-            if isinstance(clause, Claim):
+            if isinstance(clause, syntax.Claim):
                 yield requirement, clause
 
 
-def _value(amount: Amount) -> tuple[float, str]:
+def _value(amount: syntax.Amount) -> tuple[float, str]:
     """A value, if it is a count or a time; others are reported elsewhere or are a parameter's."""
     word = amount.word
     number, what = 0.0, ""
@@ -99,14 +91,14 @@ def _value(amount: Amount) -> tuple[float, str]:
 
 
 def _count(
-    requirement: Requirement, claim: Claim, amount: Amount, number: float, is_lower: bool
+    requirement: syntax.Requirement, claim: syntax.Claim, amount: syntax.Amount, number: float, is_lower: bool
 ) -> Iterator[Diagnostic]:
     what = "attempts" if VERBS[claim.verb.raw].operand == "count" else "starts"
-    has_scope = any(isinstance(clause, Scope) for clause in requirement.clauses)
+    has_scope = any(isinstance(clause, syntax.Scope) for clause in requirement.clauses)
     notes: tuple[str, ...] = ()
     if number < 0 or number != int(number):
         message = f"expected a whole number of {what}, found `{_shown(amount)}`"
-        if isinstance(claim.per, Word) and number > 0:
+        if isinstance(claim.per, syntax.Word) and number > 0:
             notes = ("write a whole number and a longer time: `runs at least 1 per 2 s`",)
     elif what == "attempts" and not is_lower and number < 1 and not has_scope:
         message = "a node that starts makes at least one attempt, so only a node that never starts keeps this bound"
@@ -115,22 +107,22 @@ def _count(
         return
     fixes: tuple[Fix, ...] = ()
     whole = max(1, ceil(number) if is_lower else floor(number))
-    if amount.word.kind == NUMBER and not amount.negative and not isinstance(claim.per, Word):
+    if amount.word.kind == NUMBER and not amount.negative and not isinstance(claim.per, syntax.Word):
         fixes = (replace_fix(f"Write `{whole}`", amount.word.span, str(whole)),)
     yield Diagnostic("impossible-bound", amount.word.span, message, notes=notes, fixes=fixes)
 
 
-def _time(amount: Amount, number: float, is_lower: bool) -> Iterator[Diagnostic]:
+def _time(amount: syntax.Amount, number: float, is_lower: bool) -> Iterator[Diagnostic]:
     if number < 0 or (number == 0 and not is_lower):
         message = f"a duration must be longer than zero, found `{_shown(amount)}`"
         yield Diagnostic("impossible-bound", amount.word.span, message)
 
 
-def _shown(amount: Amount) -> str:
+def _shown(amount: syntax.Amount) -> str:
     return f"-{amount.word.raw}" if amount.negative else amount.word.raw
 
 
-def _is_enforceable(view: View, written: Requirement) -> bool:
+def _is_enforceable(view: View, written: syntax.Requirement) -> bool:
     """Whether the engine is to enforce its times, which are then reported as limit-too-small."""
     from btq_lang.requirements.definitions import requirement  # few files have claims about times
 

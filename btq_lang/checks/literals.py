@@ -67,13 +67,13 @@ def old_entry(view: View) -> Iterator[Diagnostic]:
 
 
 def invalid_literal(view: View) -> Iterator[Diagnostic]:
-    """A literal that the port's type refuses, or whose end the engine drops."""
+    """A literal that the port's type refuses, or whose end the engine drops; a quantity whose unit does not fit."""
     version = view.target
     for target, value in _values(view):
         if target.is_output:
             continue
         if value.kind == QUANTITY:
-            yield from _converted(target, value, version)
+            yield from _quantity(target, value, version)
             continue
         text = value.text
         if OLD_ENTRY.fullmatch(text):
@@ -104,31 +104,6 @@ def invalid_literal(view: View) -> Iterator[Diagnostic]:
             )
 
 
-def quantity_on_unitless_port(view: View) -> Iterator[Diagnostic]:
-    """A quantity where the port's unit is unknown or of another dimension."""
-    for target, value in _values(view, QUANTITY):
-        quantity = parse_quantity(value.raw)
-        if quantity is None or target.is_output:
-            continue  # an unknown unit, or a value for an output: both are reported
-        unit = quantity[1]
-        wanted = parse_unit(target.unit) if target.unit is not None else None
-        if wanted is None:
-            as_text = check_literal(target.type, value.raw, view.target) is None
-            # No fix: without its unit the number may mean something else, and not every node reads the text.
-            yield Diagnostic(
-                "quantity-on-unitless-port",
-                value.span,
-                f"unknown unit of the port `{target.port}`",
-                notes=(
-                    "write the number in the unit that the node expects, and state that unit in the port's description",
-                    *([f"if the node reads the unit itself, use quotes: `{quote(value.raw)}`"] * as_text),
-                ),
-            )
-        elif unit.dimension != wanted.dimension:
-            message = f"expected {a_dimension(wanted)} for `{target.port}`, found `{value.raw}` ({a_dimension(unit)})"
-            yield Diagnostic("quantity-on-unitless-port", value.span, message)
-
-
 def number_for_text(view: View) -> Iterator[Diagnostic]:
     """A number that a SubTree passes to a port, or that is a port's default, where a node below expects a text."""
     if not TYPED_CONSTANTS.holds(view.target):
@@ -147,13 +122,31 @@ def number_for_text(view: View) -> Iterator[Diagnostic]:
             yield _number_for_text(port.default, met, Severity.WARNING)
 
 
-def _converted(target: _Target, value: Word, version: str) -> Iterator[Diagnostic]:
-    """A quantity that is not a number of the port's type in the port's unit."""
+def _quantity(target: _Target, value: Word, version: str) -> Iterator[Diagnostic]:
+    """A quantity where the port's unit is unknown or of another dimension, or the number in that unit does not fit."""
     quantity = parse_quantity(value.raw)
+    if quantity is None:
+        return  # an unknown unit, which is reported
     wanted = parse_unit(target.unit) if target.unit is not None else None
-    if quantity is None or wanted is None or quantity[1].dimension != wanted.dimension:
-        return  # reported by others
-    number = convert(quantity[0], quantity[1], wanted)
+    if wanted is None:
+        as_text = check_literal(target.type, value.raw, version) is None
+        # No fix: without its unit the number may mean something else, and not every node reads the text.
+        yield Diagnostic(
+            "quantity-on-unitless-port",
+            value.span,
+            f"unknown unit of the port `{target.port}`",
+            notes=(
+                "write the number in the unit that the node expects, and state that unit in the port's description",
+                *([f"if the node reads the unit itself, use quotes: `{quote(value.raw)}`"] * as_text),
+            ),
+        )
+        return
+    unit = quantity[1]
+    if unit.dimension != wanted.dimension:
+        message = f"expected {a_dimension(wanted)} for `{target.port}`, found `{value.raw}` ({a_dimension(unit)})"
+        yield Diagnostic("quantity-on-unitless-port", value.span, message)
+        return
+    number = convert(quantity[0], unit, wanted)
     notes = (f"`{target.port}` has the type {target.type} and the unit {target.unit}",)
     if not isfinite(number):
         message = f"`{value.raw}` exceeds the range of numbers"
@@ -168,22 +161,18 @@ def _converted(target: _Target, value: Word, version: str) -> Iterator[Diagnosti
     yield Diagnostic("invalid-literal", value.span, message, notes=notes)
 
 
-def _values(view: View, kind: int | None = None) -> Iterator[tuple[_Target, Word]]:
-    """Each literal (of one kind) that is assigned to a port with a type or a unit, with that target."""
+def _values(view: View) -> Iterator[tuple[_Target, Word]]:
+    """Each literal that is assigned to a port with a type or a unit, with that target."""
     for port in _declared_ports(view):
         value = port.default
-        if value is None or value.kind == BRACED or kind not in (None, value.kind) or not value.text:
-            continue
-        if (target := _declared(port, False)) is not None:
+        if value is not None and value.kind != BRACED and value.text and (target := _declared(port, False)) is not None:
             yield target, value
     for seen in view.seen.given:
         if seen.is_placeholder:
             continue
         for pair in seen.node.attributes:
             value = pair.value
-            if value is None or kind not in (None, value.kind):
-                continue
-            if value.kind == BRACED and pair.key.text != "_autoremap":
+            if value is None or (value.kind == BRACED and pair.key.text != "_autoremap"):
                 continue
             if (target := _target(view, seen, pair, value)) is not None:
                 yield target, value

@@ -29,9 +29,8 @@ def literal_for_output(view: View) -> Iterator[Diagnostic]:
     """
     if not OUTPUT_IN_BRACES.holds(view.target):
         return
-    for seen, pair, type_ in outputs(view):
-        value = pair.value
-        if value is None or not _is_literal(value) or OLD_ENTRY.fullmatch(value.text):
+    for seen, pair, value, type_ in _outputs(view, view.seen.given):
+        if not _is_literal(value) or OLD_ENTRY.fullmatch(value.text):
             continue  # `${key}` is one mistake, which old_entry reports
         problem = check_literal(type_, value.text, view.target)
         is_refused = problem is not None and problem.kind == "refused"
@@ -57,21 +56,16 @@ def literal_for_output(view: View) -> Iterator[Diagnostic]:
         )
 
 
-def outputs(view: View) -> Iterator[tuple[ResolvedNode, Pair, str]]:
-    """The values for the outputs of a tree's nodes, and the outputs' types; empty for a tree's, which keep whatever
-    they are given."""
-    return _outputs_in(view, view.seen.given)
-
-
-def _outputs_in(view: View, nodes: Iterable[ResolvedNode]) -> Iterator[tuple[ResolvedNode, Pair, str]]:
-    """nodes: those with attributes."""
-    for seen in nodes:
+def _outputs(view: View, given: Iterable[ResolvedNode]) -> Iterator[tuple[ResolvedNode, Pair, Word, str]]:
+    """The values for the outputs of nodes with attributes, and the outputs' types; empty for a tree's, which keep
+    whatever they are given."""
+    for seen in given:
         if seen.is_placeholder:
             continue
         types = _types(view, seen)
         for pair in seen.node.attributes if types else ():
-            if (type_ := types.get(pair.key.text)) is not None:
-                yield seen, pair, type_
+            if pair.value is not None and (type_ := types.get(pair.key.text)) is not None:
+                yield seen, pair, pair.value, type_
 
 
 def _is_custom(store: Store[Workspace], viewpoint: str) -> bool:
@@ -83,7 +77,7 @@ def _is_custom(store: Store[Workspace], viewpoint: str) -> bool:
 
 def _is_first_value(view: View, pair: Pair) -> bool:
     """Whether no output of the file before this one has a value."""
-    values = (each for _, each, _ in outputs(view) if each.value is not None and _is_literal(each.value))
+    values = (each for _, each, value, _ in _outputs(view, view.seen.given) if _is_literal(value))
     return view.ask(_first_with_value) is view.facts and next(values, None) is pair
 
 
@@ -96,7 +90,7 @@ def _counts(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[int, 
     """The number of a tree's assigned outputs, and of those with a value."""
     view = View(store, viewpoint)
     nodes = view.seen_in(viewpoint, tree).given
-    given = [pair.value for _, pair, _ in _outputs_in(view, nodes) if pair.value is not None]
+    given = [value for _, _, value, _ in _outputs(view, nodes)]
     return len(given), sum(map(_is_literal, given))
 
 
@@ -110,8 +104,8 @@ def _types(view: View, seen: ResolvedNode) -> dict[str, str]:
     if seen.kind is not None:
         return _outputs_of(seen.kind.tag)
     if seen.is_subtree:
-        return dict.fromkeys(_outputs(subtree_ports(view, seen)), "")
-    types = _outputs(view.model_ports(seen))
+        return dict.fromkeys(_declared(subtree_ports(view, seen)), "")
+    types = _declared(view.model_ports(seen))
     index = seen.behavior.port_for("index") if seen.behavior is not None else None
     return types if index is None else {**types, index.name: index.type}
 
@@ -121,7 +115,7 @@ def _outputs_of(tag: str) -> dict[str, str]:
     return {port.name: port.type for port in BUILTINS[tag].ports if port.direction == "output"}
 
 
-def _outputs(ports: tuple[Port, ...]) -> dict[str, str]:
+def _declared(ports: tuple[Port, ...]) -> dict[str, str]:
     return {
         port.name.text: port.type.text if port.type is not None else ""
         for port in ports

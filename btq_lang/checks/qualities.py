@@ -16,80 +16,79 @@ from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Use
 
 
-def unknown_quality(view: View) -> Iterator[Diagnostic]:
-    """A name that is neither the standard's nor declared in a file, and an unknown edition."""
+def quality_name(view: View) -> Iterator[Diagnostic]:
+    """An unknown edition; and of the qualities that no file in scope declares, those that are neither the standard's,
+    or only an alias or of another edition, or have several meanings."""
     if isinstance(view.item, Qualities) and view.item.edition is not None:
         edition = view.item.edition
         if edition.text not in EDITIONS:
             message = f"unknown quality model `{edition.text}`"
             fixes = tuple(replace_fix(f"Replace it with `{name}`", edition.span, name) for name in EDITIONS)
             yield Diagnostic("unknown-quality", edition.span, message, fixes=fixes)
-    for use, match in _matches(view):
-        if match.kind != "unknown":
-            continue
-        if (meaning := view.find(Kind.REQUIREMENT, use.name)) is not None:
-            takes_arguments = isinstance(meaning.target, Requirement) and bool(meaning.target.parameters)
-            yield other_word(view, use, "unknown-quality", requirement=True, safe=not takes_arguments)
-            continue
-        own = tuple(written(name) for name in view.near(use.name, Kind.QUALITY))
-        meant = tuple(dict.fromkeys((*own, *match.near)))[:3]
-        if not meant and not view.is_complete:
-            continue  # it may be declared on a line that could not be read
-        yield Diagnostic(
-            "unknown-quality",
-            use.span,
-            f"unknown quality `{use.name}`{did_you_mean(meant)}",
-            notes=() if meant else (f"declare your own quality with a line `quality {written(_last(use))}`",),
-            fixes=tuple(replace_fix(f"Replace `{use.name}` with `{name}`", _whole(view, use), name) for name in meant),
-        )
+    for use in view.uses(Kind.QUALITY):
+        match = view.quality(use.name) if use.name else None
+        if match is not None and match.kind == "unknown":
+            yield from _unknown(view, use, match)
+        elif match is not None and match.kind in ("alias", "other-edition"):
+            yield _old(view, use, match)
+        elif match is not None and match.kind == "ambiguous":
+            yield _ambiguous(view, use, match)
 
 
-def old_quality_name(view: View) -> Iterator[Diagnostic]:
-    """An alias, or a name of another edition."""
-    for use, match in _matches(view):
-        if match.kind not in ("alias", "other-edition"):
-            continue
-        is_alias = match.kind == "alias"
-        if match.safe:
-            new = match.candidates[0].id
-            message = f"`{use.name}` is an alias of `{new}`"
-            if not is_alias:
-                message = f"`{use.name}` is called `{new}` in {view.edition}"
-        else:
-            message = f"{view.edition} does not define `{use.name}`"
+def _unknown(view: View, use: Use, match: QualityMatch) -> Iterator[Diagnostic]:
+    if (meaning := view.find(Kind.REQUIREMENT, use.name)) is not None:
+        takes_arguments = isinstance(meaning.target, Requirement) and bool(meaning.target.parameters)
+        yield other_word(view, use, "unknown-quality", requirement=True, safe=not takes_arguments)
+        return
+    own = tuple(written(name) for name in view.near(use.name, Kind.QUALITY))
+    meant = tuple(dict.fromkeys((*own, *match.near)))[:3]
+    if not meant and not view.is_complete:
+        return  # it may be declared on a line that could not be read
+    yield Diagnostic(
+        "unknown-quality",
+        use.span,
+        f"unknown quality `{use.name}`{did_you_mean(meant)}",
+        notes=() if meant else (f"declare your own quality with a line `quality {written(_last(use))}`",),
+        fixes=tuple(replace_fix(f"Replace `{use.name}` with `{name}`", _whole(view, use), name) for name in meant),
+    )
+
+
+def _old(view: View, use: Use, match: QualityMatch) -> Diagnostic:
+    is_alias = match.kind == "alias"
+    if not match.safe:
+        message = f"{view.edition} does not define `{use.name}`"
+    elif is_alias:
+        message = f"`{use.name}` is an alias of `{match.candidates[0].id}`"
+    else:
+        message = f"`{use.name}` is called `{match.candidates[0].id}` in {view.edition}"
+    return Diagnostic(
+        "old-quality-name",
+        use.span,
+        message,
         # "`x` is another word for y" adds nothing to such a message.
-        notes = (match.explanation,) if match.explanation and not (is_alias and match.safe) else ()
-        yield Diagnostic(
-            "old-quality-name",
-            use.span,
-            message,
-            notes=notes,
-            fixes=tuple(
-                replace_fix(f"Replace it with `{candidate.id}`", _whole(view, use), candidate.id, safe=match.safe)
-                for candidate in match.candidates[:3]
-            ),
-            tags=() if is_alias else (Tag.DEPRECATED,),
-        )
+        notes=(match.explanation,) if match.explanation and not (is_alias and match.safe) else (),
+        fixes=tuple(
+            replace_fix(f"Replace it with `{candidate.id}`", _whole(view, use), candidate.id, safe=match.safe)
+            for candidate in match.candidates[:3]
+        ),
+        tags=() if is_alias else (Tag.DEPRECATED,),
+    )
 
 
-def ambiguous_quality(view: View) -> Iterator[Diagnostic]:
-    """A name with several meanings."""
-    for use, match in _matches(view):
-        if match.kind != "ambiguous":
-            continue
-        # The old name of a characteristic, `usability`, is read as what the characteristic is called now.
-        usual = match.candidates[0].id if match.candidates[0].id in successors(fold(use.name)) else None
-        yield Diagnostic(
-            "ambiguous-quality",
-            use.span,
-            f"ambiguous quality name `{use.name}`" + (f"; btq reads it as `{usual}`" if usual else ""),
-            notes=(match.explanation,) if match.explanation else (),
-            fixes=tuple(
-                replace_fix(f"Replace it with `{candidate.id}`: {candidate.name}", _whole(view, use), candidate.id)
-                for candidate in match.candidates[:4]
-            ),
-            severity=Severity.INFO if usual else None,
-        )
+def _ambiguous(view: View, use: Use, match: QualityMatch) -> Diagnostic:
+    # The old name of a characteristic, `usability`, is read as what the characteristic is called now.
+    usual = match.candidates[0].id if match.candidates[0].id in successors(fold(use.name)) else None
+    return Diagnostic(
+        "ambiguous-quality",
+        use.span,
+        f"ambiguous quality name `{use.name}`" + (f"; btq reads it as `{usual}`" if usual else ""),
+        notes=(match.explanation,) if match.explanation else (),
+        fixes=tuple(
+            replace_fix(f"Replace it with `{candidate.id}`: {candidate.name}", _whole(view, use), candidate.id)
+            for candidate in match.candidates[:4]
+        ),
+        severity=Severity.INFO if usual else None,
+    )
 
 
 def other_word(view: View, use: Use, rule: str, *, requirement: bool, safe: bool = True) -> Diagnostic:
@@ -106,13 +105,6 @@ def other_word(view: View, use: Use, rule: str, *, requirement: bool, safe: bool
     message = f"`{use.name}` is a {is_}, not a {is_not}"
     notes = ("`satisfices` names qualities, `satisfies` names requirements",)
     return Diagnostic(rule, use.span, message, notes=notes, fixes=fixes)
-
-
-def _matches(view: View) -> Iterator[tuple[Use, QualityMatch]]:
-    """Each quality named in an entry, except those that the files in scope declare themselves."""
-    for use in view.uses(Kind.QUALITY):
-        if use.name and (match := view.quality(use.name)) is not None:
-            yield use, match
 
 
 def _whole(view: View, use: Use) -> Span:

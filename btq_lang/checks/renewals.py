@@ -7,6 +7,7 @@ finding is true for every run of the mission.  What the robot's program writes i
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
@@ -84,14 +85,10 @@ def _is_renewed_beside(writing: frozenset[int], carrying: frozenset[int], node: 
     Args:
         writing, carrying: the result of `_renewing` for the tree.
     """
-    below, at = node, node.parent
-    while at is not None:
-        if id(at) in writing:
+    for below, at in pairwise((node, *node.ancestors())):
+        beside = () if _runs_one_at_a_time(at) else [each for each in at.children if each is not below]
+        if id(at) in writing or any(id(each) in carrying for each in beside):
             return True
-        others = (each for each in at.children if each is not below)
-        if not _runs_one_at_a_time(at) and any(id(each) in carrying for each in others):
-            return True
-        below, at = at, at.parent
     return False
 
 
@@ -110,13 +107,9 @@ def _renewing(
     tree = store.ask(tree_nodes, viewpoint, path, facts)
     writers = [writer for writer in store.ask(_writers, viewpoint, key) if writer.facts is facts]
     trees = store.ask(_carrying, viewpoint, key)
-    carrying: set[int] = set()
-    for node in (*writers, *(node for name, node in tree.calls if name in trees)):
-        at: ResolvedNode | None = node
-        while at is not None and id(at) not in carrying:
-            carrying.add(id(at))
-            at = at.parent
-    return frozenset(map(id, writers)), frozenset(carrying)
+    inner = [*writers, *[node for name, node in tree.calls if name in trees]]
+    carrying = reached(inner, lambda node: [node.parent] if node.parent is not None else [])
+    return frozenset(map(id, writers)), frozenset(map(id, carrying))
 
 
 def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[ResolvedNode, ...]:

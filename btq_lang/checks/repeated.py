@@ -7,106 +7,85 @@ from collections.abc import Iterator
 from btq_lang.checks.clauses import with_blanks
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, Tag, replace_fix
-from btq_lang.syntax.tree import (
-    Apply,
-    NodeClause,
-    ReqRef,
-    Requirement,
-    Satisfices,
-    Satisfies,
-    Tags,
-    Tree,
-    Word,
-    shape,
-)
-from btq_lang.util.record import Record
+from btq_lang.syntax import tree as syntax
 from btq_lang.util.text import Span
-
-
-class _Named(Record):
-    """A name in a list.
-
-    Attributes:
-        says: equal for names that mean the same.
-        clause: that can be fixed; None if the user must decide.
-        beside: the places of all names of the clause, and the index of this one.
-    """
-
-    says: object
-    span: Span
-    clause: NodeClause | None = None
-    beside: tuple[tuple[Span, ...], int] = ((), 0)
 
 
 def named_twice(view: View) -> Iterator[Diagnostic]:
     """The second of two places that attach the same requirement, quality or tag to a node."""
     item = view.item
-    if isinstance(item, Apply):
+    if isinstance(item, syntax.Apply):
         for elements in (item.uses, item.targets, item.exceptions):
-            spans = [part.name.span if isinstance(part, ReqRef) else Span(part.start, part.end) for part in elements]
-            named = [_Named(shape(part), span) for part, span in zip(elements, spans, strict=True)]
-            yield from _repeated(view, named)
-    elif isinstance(item, Tree):
+            first: dict[object, Span] = {}
+            for part in elements:
+                span = part.name.span if isinstance(part, syntax.ReqRef) else Span(part.start, part.end)
+                if first.setdefault(syntax.shape(part), span) is not span:
+                    yield _repeated(view, span, first[syntax.shape(part)])
+    elif isinstance(item, syntax.Tree):
         for clauses in (item.clauses, *[seen.node.clauses for seen in view.seen.demanding]):
             if _names_several(clauses) and not view.is_torn(clauses[0].start, clauses[-1].end):
-                yield from _repeated(view, [named for clause in clauses for named in _of_clause(view, clause)])
+                yield from _in_clauses(view, clauses)
 
 
-def _names_several(clauses: tuple[NodeClause, ...]) -> bool:
+def _names_several(clauses: tuple[syntax.NodeClause, ...]) -> bool:
     """Whether there is more than one name, which is rare."""
     if len(clauses) != 1:
         return len(clauses) > 1
     clause = clauses[0]
-    if isinstance(clause, Satisfices):
+    if isinstance(clause, syntax.Satisfices):
         return len(clause.qualities) > 1 or any(quality.requirements for quality in clause.qualities)
-    return len(clause.names if isinstance(clause, Tags) else clause.uses) > 1
+    return len(clause.names if isinstance(clause, syntax.Tags) else clause.uses) > 1
 
 
-def _repeated(view: View, names: list[_Named]) -> Iterator[Diagnostic]:
+def _in_clauses(view: View, clauses: tuple[syntax.NodeClause, ...]) -> Iterator[Diagnostic]:
     first: dict[object, Span] = {}
-    for named in names:
-        if first.setdefault(named.says, named.span) is named.span:
-            continue
-        text = view.text
-        yield Diagnostic(
-            "named-twice",
-            named.span,
-            f"duplicate `{text[named.span.start : named.span.end]}` has no effect",
-            related=(Related(Place(first[named.says]), "first one"),),
-            fixes=(_removal(named.clause, *named.beside, text),) if named.clause is not None else (),
-            tags=(Tag.UNNECESSARY,),
-        )
+    for clause in clauses:
+        names = [*_names(view, clause)]
+        for index, (says, span, is_plain) in enumerate(names):
+            if first.setdefault(says, span) is not span:
+                fixes = (_removal(clause, [place for _, place, _ in names], index, view.text),) if is_plain else ()
+                yield _repeated(view, span, first[says], fixes)
 
 
-def _of_clause(view: View, clause: NodeClause) -> Iterator[_Named]:
-    words: list[tuple[object, Word | None, Span]] = []
-    if isinstance(clause, Tags):
-        words = [(("tag", name.text), name, name.span) for name in clause.names]
-    elif isinstance(clause, Satisfies):
-        words = [_of_requirement(use) for use in clause.uses if use.name is not None]
-    elif isinstance(clause, Satisfices):
+def _repeated(view: View, span: Span, first: Span, fixes: tuple[Fix, ...] = ()) -> Diagnostic:
+    return Diagnostic(
+        "named-twice",
+        span,
+        f"duplicate `{view.text[span.start : span.end]}` has no effect",
+        related=(Related(Place(first), "first one"),),
+        fixes=fixes,
+        tags=(Tag.UNNECESSARY,),
+    )
+
+
+def _names(view: View, clause: syntax.NodeClause) -> Iterator[tuple[object, Span, bool]]:
+    """The names in a clause: what is equal for those that mean the same, the place, and whether it can be removed; if
+    not, the user must decide."""
+    if isinstance(clause, syntax.Tags):
+        yield from ((("tag", name.text), name.span, True) for name in clause.names)
+    elif isinstance(clause, syntax.Satisfices):
         for quality in clause.qualities:
             name = quality.path.text
             match = view.quality(name)
             same = match.quality.id if match is not None and match.quality is not None else name
             # A quality that encloses requirements may be here for their sake.
-            says: object = ("quality", same, bool(quality.requirements) and quality.path.span)
-            words.append((says, None if quality.requirements else quality.path.names[-1], quality.path.span))
-            words += [_of_requirement(use) for use in quality.requirements if use.name is not None]
-    places = tuple([span for _, _, span in words])
-    for index, (says, word, span) in enumerate(words):
-        yield _Named(says, span, clause if word is not None else None, (places, index))
+            says = "quality", same, bool(quality.requirements) and quality.path.span
+            yield says, quality.path.span, not quality.requirements
+            yield from _requirements(quality.requirements)
+    else:
+        yield from _requirements(clause.uses)
 
 
-def _of_requirement(use: ReqRef | Requirement) -> tuple[object, Word | None, Span]:
-    """A name without arguments can be removed; if it is defined in place, or has some, the user must decide."""
-    assert use.name is not None, "the caller has looked"
-    arguments = use.arguments if isinstance(use, ReqRef) else ()
-    is_plain = isinstance(use, ReqRef) and not arguments
-    return ("requirement", use.name.text, shape(arguments)), use.name if is_plain else None, use.name.span
+def _requirements(uses: tuple[syntax.ReqRef | syntax.Requirement, ...]) -> Iterator[tuple[object, Span, bool]]:
+    """Requirements, of which a definition, or a name with arguments, cannot be removed."""
+    for use in uses:
+        arguments = use.arguments if isinstance(use, syntax.ReqRef) else ()
+        if use.name is not None:
+            is_plain = isinstance(use, syntax.ReqRef) and not arguments
+            yield ("requirement", use.name.text, syntax.shape(arguments)), use.name.span, is_plain
 
 
-def _removal(clause: NodeClause, places: tuple[Span, ...], index: int, text: str) -> Fix:
+def _removal(clause: syntax.NodeClause, places: list[Span], index: int, text: str) -> Fix:
     """The fix that removes one of a clause's names, or the clause if it is the only one."""
     span = places[index]
     if len(places) == 1:
