@@ -45,18 +45,6 @@ from btq_lang.workspace.workspace import Workspace
 T = TypeVar("T")
 
 
-class Uses(Record):
-    """What a tree or an `apply` attaches.
-
-    Attributes:
-        mentioned: all requirements, also those in attachments that could not be understood.
-    """
-
-    found: tuple[Use, ...]
-    mentioned: frozenset[str]
-    problems: Problems
-
-
 class Attached(Record):
     """What applies to nodes by attachment.
 
@@ -72,27 +60,21 @@ class Attached(Record):
 # ---- what an item attaches ----
 
 
-def uses_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Uses:
-    """What a tree or an `apply` attaches to which nodes."""
+def uses_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> tuple[tuple[Use, ...], Problems]:
+    """What a tree or an `apply` attaches to which nodes, and what is wrong with that."""
     reader = Reader(store, viewpoint, path, facts)
-    uses: list[Use] = []
-    mentioned: set[str] = set()
-    if isinstance(facts.item, syntax.Tree):
-        _at_nodes(reader, facts.item, uses, mentioned)
-    elif isinstance(facts.item, syntax.Apply):
-        _applies(reader, facts.item, uses, mentioned)
-    return Uses(tuple(uses), frozenset(mentioned), reader.problems)
-
-
-def mentioned_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> frozenset[str]:
-    """The requirements that a tree or an `apply` attaches."""
-    return store.ask(uses_in, viewpoint, path, facts).mentioned
+    item = facts.item
+    found = _at_nodes(reader, item) if isinstance(item, syntax.Tree) else ()
+    return tuple(_applied_by(reader, item) if isinstance(item, syntax.Apply) else found), reader.problems
 
 
 def attached_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
-    """The requirements that anything in scope attaches."""
-    items = inputs.attaching(store, viewpoint)
-    return frozenset().union(*[store.ask(mentioned_in, viewpoint, *each) for each in items])
+    """The names of the requirements that anything in scope attaches, understood or not."""
+    found: set[str] = set()
+    for _, facts in inputs.attaching(store, viewpoint):
+        found.update(facts.used.get(Kind.REQUIREMENT, ()))
+        found.update([symbol.name for symbol in facts.summary.symbols if symbol.kind is Kind.REQUIREMENT])
+    return frozenset(found)
 
 
 # ---- what applies to the nodes of a tree ----
@@ -140,7 +122,7 @@ def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequen
 
 def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Iterable[Use]:
     """The attachments to nodes of a tree, in the order of the items that make them."""
-    own = store.ask(uses_in, viewpoint, path, facts).found
+    own, _ = store.ask(uses_in, viewpoint, path, facts)
     given = store.ask(_given_to, viewpoint, facts) if inputs.applies(store, viewpoint) else ()
     if not own or not given:
         return own or given
@@ -154,7 +136,7 @@ def _given_to(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[Us
 
 
 def _given(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[Use, ...]]:
-    uses = [use for each in inputs.applies(store, viewpoint) for use in store.ask(uses_in, viewpoint, *each).found]
+    uses = [use for each in inputs.applies(store, viewpoint) for use in store.ask(uses_in, viewpoint, *each)[0]]
     return _by_tree((use.target.node.facts, use) for use in uses)
 
 
@@ -213,7 +195,8 @@ def _with(
     which: tuple[int, ...],
     arguments: tuple[Argument, ...],
 ) -> Requirement:
-    """A requirement with some of its claims and with arguments; cached, for most nodes get the same one."""
+    """A requirement with some of its claims, and with arguments in place of its parameters; cached, for most nodes get
+    the same one."""
     if not arguments and len(which) == len(of_name.claims):
         return of_name
     return store.ask(_filled, viewpoint, of_name.name, which, arguments)
@@ -225,15 +208,7 @@ def _filled(
     of_name, _ = store.ask(requirement, viewpoint, name)
     assert of_name is not None, "whoever asks has seen it"
     claims = tuple([of_name.claims[at] for at in which if at < len(of_name.claims)])
-    return fill(replace(of_name, claims=claims), arguments)
-
-
-def fill(of_name: Requirement, arguments: tuple[Argument, ...]) -> Requirement:
-    """A requirement with arguments in place of its parameters."""
-    if not arguments:
-        return of_name
-    values = {argument.name: argument.value for argument in arguments}
-    filled = _filled_part(of_name, values)
+    filled = _filled_part(replace(of_name, claims=claims), {each.name: each.value for each in arguments})
     assert isinstance(filled, Requirement), "a part is filled with a part of its kind"
     return replace(filled, parameters=of_name.parameters)
 
@@ -278,7 +253,7 @@ def _by_subject(store: Store[Workspace], viewpoint: str, of_name: Requirement) -
         yield Applied(made, subject, arguments, place, "subject")  # type: ignore[arg-type]  # no Every is left
 
 
-def _at_nodes(reader: Reader, tree: syntax.Tree, uses: list[Use], mentioned: set[str]) -> None:
+def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[Use]:
     of_tree = reader.store.ask(tree_nodes, reader.viewpoint, reader.path, reader.facts)
     places: list[tuple[ResolvedNode | None, tuple[syntax.NodeClause, ...]]] = [(of_tree.root, tree.clauses)]
     places += [(node, node.node.clauses) for node in of_tree.all if node.node.clauses]
@@ -288,28 +263,23 @@ def _at_nodes(reader: Reader, tree: syntax.Tree, uses: list[Use], mentioned: set
             of_name = _requirement(reader, word.text) if word is not None else None
             if word is None or of_name is None:
                 continue
-            mentioned.add(of_name.name)
             arguments = _arguments(reader, of_name, written, word.span)
             if arguments is not None and node is not None:
-                place = reader.place(word.span)
-                uses.append(Use(of_name.name, Target(node), arguments, _AT_NODE, "satisfies", place))
+                yield Use(of_name.name, Target(node), arguments, _AT_NODE, "satisfies", reader.place(word.span))
 
 
-def _applies(reader: Reader, apply: syntax.Apply, uses: list[Use], mentioned: set[str]) -> None:
+def _applied_by(reader: Reader, apply: syntax.Apply) -> Iterator[Use]:
     targets = [found for selector in apply.targets for found in _selected(reader, selector)]
     excepted = _excepted(reader, apply, {id(target.node) for target, _ in targets})
     for reference in apply.uses:
         of_name = _requirement(reader, reference.name.text)
-        if of_name is None:
-            continue
-        mentioned.add(of_name.name)
-        arguments = _arguments(reader, of_name, reference, reference.name.span)
-        if arguments is None:
+        arguments = _arguments(reader, of_name, reference, reference.name.span) if of_name is not None else None
+        if of_name is None or arguments is None:
             continue
         place = reader.place(reference.name.span)
         for target, rank in targets:
             if id(target.node) not in excepted:
-                uses.append(Use(of_name.name, target, arguments, rank, "apply", place))
+                yield Use(of_name.name, target, arguments, rank, "apply", place)
 
 
 def _requirement(reader: Reader, name: str) -> Requirement | None:

@@ -38,9 +38,9 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
     problems = [problem for _, found in of_names for problem in found]
     uses: dict[str, list[Use]] = {}
     for item in inputs.attaching(store, path):
-        attached = store.ask(uses_in, path, *item)
-        problems += attached.problems
-        for use in attached.found:
+        attached, found = store.ask(uses_in, path, *item)
+        problems += found
+        for use in attached:
             uses.setdefault(use.requirement, []).append(use)
     applied: list[Applied] = []
     traces: list[Trace] = []
@@ -71,9 +71,9 @@ def problems_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts
         if kind in _DEFINING and inputs.definition(store, viewpoint, kind, name) == (path, facts):
             found += store.ask(_DEFINING[kind], viewpoint, name)[1]
     if isinstance(facts.item, Tree | Apply):
-        uses = store.ask(uses_in, viewpoint, path, facts)
-        found += uses.problems
-        trees = dict.fromkeys((use.target.node.path, use.target.node.facts) for use in uses.found)
+        uses, problems = store.ask(uses_in, viewpoint, path, facts)
+        found += problems
+        trees = dict.fromkeys((use.target.node.path, use.target.node.facts) for use in uses)
         ambiguous = [problem for tree in trees for problem in store.ask(applied_in, viewpoint, *tree).problems]
         found += [problem for problem in ambiguous if problem.place.anchor is facts.item]
     return tuple(found)
