@@ -10,6 +10,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.syntax.tree import Include, quote
+from btq_lang.util.spelling import near
 from btq_lang.util.text import Span, counted
 from btq_lang.workspace.file import is_of_package
 from btq_lang.workspace.queries import Store
@@ -52,7 +53,7 @@ def cyclic_include(view: View) -> Iterator[Diagnostic]:
     if not isinstance(include, Include) or include.path is None:
         return
     target = view.look_up(lookups.included, view.facts)
-    if target is None or view.path not in _closure(view, target):
+    if target is None or view.path not in lookups.closure(view.store, target):
         return
     how = "itself" if target == view.path else f"`{include.path.text}`, which includes this file again"
     yield Diagnostic(
@@ -73,7 +74,7 @@ def include_with_errors(view: View, errors_in: ErrorsIn) -> Iterator[Diagnostic]
     target = view.look_up(lookups.included, view.facts)
     if target is None or not isinstance(include, Include) or include.path is None:
         return
-    for path in reversed(_closure(view, target)):
+    for path in reversed(lookups.closure(view.store, target)):
         errors = view.store.ask(errors_in, path) if path != view.path else ()
         if not errors:
             continue
@@ -98,10 +99,6 @@ def is_reported_beside(diagnostic: Diagnostic, checked: Container[str]) -> bool:
     return diagnostic.rule == "include-with-errors" and diagnostic.related[0].place.path in checked
 
 
-def _closure(view: View, path: str) -> tuple[str, ...]:
-    return lookups.closure(view.store, path)
-
-
 def include_fix(view: View, path: str) -> Fix:
     """The fix that includes another file, after the existing includes."""
     at, line = include_line(view.look_up(lookups.head), view.path, path)
@@ -121,5 +118,5 @@ def include_line(head: tuple[int, str], path: str, other: str) -> tuple[int, str
 
 def _meant(view: View, path: str) -> tuple[str, ...]:
     name = posixpath.basename(path)
-    same_name = [other for other in view.look_up(lookups.other_files) if posixpath.basename(other) == name]
-    return tuple(same_name[:3]) or view.near(path, None)
+    others = view.look_up(lookups.other_files)
+    return tuple([other for other in others if posixpath.basename(other) == name][:3]) or near(path, others)

@@ -247,6 +247,10 @@ def uses_of_tree(workspace: Workspace, viewpoint: str, name: str) -> tuple[Place
 # ---- the file ----
 
 
+edition = of_viewpoint(Workspace.edition)
+closure = of_viewpoint(Workspace.closure)
+
+
 @of_viewpoint
 def items(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
     """The file's items, in order."""
@@ -257,13 +261,6 @@ def items(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
 def first_tree(workspace: Workspace, viewpoint: str) -> Facts | None:
     """The file's first tree."""
     return next((each for each in workspace.files[viewpoint].facts.values() if isinstance(each.item, Tree)), None)
-
-
-@of_viewpoint
-def has_neighbours(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether the engine reads more in the file than one tree."""
-    items = [each.item for each in workspace.files[viewpoint].facts.values()]
-    return len([item for item in items if isinstance(item, Tree | Model | Models | Include)]) > 1
 
 
 @of_viewpoint
@@ -342,10 +339,10 @@ def has_root_of_tree(workspace: Workspace, viewpoint: str) -> bool:
 
 
 @of_viewpoint
-def root(workspace: Workspace, viewpoint: str) -> tuple[int, str] | None:
+def root(workspace: Workspace, viewpoint: str) -> int | None:
     """Where a name may be inserted after the word Root, if there is one: an offset in the file."""
-    first = next((each for each in workspace.files[viewpoint].parsed.entries if isinstance(each.item, Root)), None)
-    return (first.start + first.item.start + len("Root"), "") if first is not None else None
+    file = workspace.files[viewpoint]
+    return next((file.start_of(each) + each.start + len("Root") for each in file.of_type(Root)), None)
 
 
 @of_viewpoint
@@ -427,12 +424,6 @@ def is_crowded(workspace: Workspace, viewpoint: str, kind: Kind) -> bool:
 
 
 @of_viewpoint
-def edition(workspace: Workspace, viewpoint: str) -> str:
-    """The edition of the quality model that holds for the file."""
-    return workspace.edition(viewpoint)
-
-
-@of_viewpoint
 def is_read(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the whole file could be read."""
     return all(problem.effective_severity is not Severity.ERROR for problem in workspace.files[viewpoint].problems)
@@ -478,14 +469,12 @@ def syntax_errors(workspace: Workspace, viewpoint: str) -> tuple[tuple[Place, st
 def head(workspace: Workspace, viewpoint: str) -> tuple[int, str]:
     """Where a line may be inserted into the head of the file, after its includes, and its indentation: an offset in the
     file."""
-    text = workspace.files[viewpoint].text
-    includes = [entry for entry in workspace.files[viewpoint].parsed.entries if isinstance(entry.item, Include)]
-    if includes:
-        last = includes[-1]
-        at = text.find("\n", last.start + last.item.end) + 1
-        if at:
-            return at, text[last.start : last.start + last.item.start]
-    return (1 if text.startswith("\ufeff") else 0), ""
+    file = workspace.files[viewpoint]
+    for last in file.includes[-1:]:
+        start = file.start_of(last)
+        if at := file.text.find("\n", start + last.end) + 1:
+            return at, file.text[start : start + last.start]
+    return (1 if file.text.startswith("\ufeff") else 0), ""
 
 
 # ---- the project ----
@@ -495,12 +484,6 @@ def head(workspace: Workspace, viewpoint: str) -> tuple[int, str]:
 def included(workspace: Workspace, viewpoint: str, include: Facts) -> str | None:
     """The file that an include refers to, if it is there."""
     return workspace.included_by(viewpoint, include.item) if isinstance(include.item, Include) else None
-
-
-@of_viewpoint
-def closure(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
-    """A file and all that it includes, included ones first."""
-    return workspace.closure(viewpoint)
 
 
 @of_name

@@ -12,7 +12,7 @@ from btq_lang.checks.kinds import likely_category
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Tree, Word, is_name, models_in, written
+from btq_lang.syntax.tree import Include, Model, Models, Tree, Word, is_name, models_in, written
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 from btq_lang.workspace.resolved import ResolvedNode
@@ -101,9 +101,8 @@ def _of_instance(view: View, seen: ResolvedNode, label: Word, version: str) -> I
 
 def _nameless(view: View, tree: Tree) -> Iterator[Diagnostic]:
     """A tree without an ID: the engine accepts it only if it is alone."""
-    if view.look_up(lookups.has_neighbours) and not any(
-        problem.span.start <= tree.end for problem in view.entry.diagnostics
-    ):
+    read = [each for each in view.look_up(lookups.items) if isinstance(each.item, Tree | Model | Models | Include)]
+    if len(read) > 1 and not any(problem.span.start <= tree.end for problem in view.entry.diagnostics):
         span = Span(tree.start, tree.start + len("BehaviorTree"))
         note = "the engine accepts a tree without an ID only as the only tree of a file"
         yield Diagnostic("forbidden-name", span, "missing ID of this tree: write `BehaviorTree <ID>`", notes=(note,))

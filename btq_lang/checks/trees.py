@@ -296,11 +296,11 @@ def _as_node(use: Use) -> tuple[Fix, ...]:
 
 def _main_tree_fix(view: View, name: str) -> Fix:
     """The fix that names the main tree: in the existing Root, or in a line of its own after the includes."""
-    root = view.look_up(lookups.root)
-    at, margin = root or view.look_up(lookups.head)
-    text = f" {written(name)}" if root else f"{margin}Root {written(name)}\n"
-    change = Change(Place(Span(at, at), view.path), text)
-    return Fix(f"Make `{name}` the main tree", (change,))
+    at, margin = view.look_up(lookups.head)
+    text = f"{margin}Root {written(name)}\n"
+    if (root := view.look_up(lookups.root)) is not None:
+        at, text = root, f" {written(name)}"
+    return Fix(f"Make `{name}` the main tree", (Change(Place(Span(at, at), view.path), text),))
 
 
 def _is_subtree_model(meaning: Meaning) -> bool:

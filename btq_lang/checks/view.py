@@ -205,13 +205,10 @@ class View:
         found = self.look_up(lookups.clashes)
         return [(first, second) for at, first, second in found if at is self.facts and second.symbol.kind in kinds]
 
-    def near(self, word: str, kind: Kind | None) -> tuple[str, ...]:
+    def near(self, word: str, kind: Kind) -> tuple[str, ...]:
         """The names of a kind that are similar to an unknown word; a node may have a built-in's name too.
 
         In a file with hundreds of unknown names suggestions are of no use, so above a limit the result is empty.
-
-        Args:
-            kind: None for the project's other files, as an include names them.
         """
         return self.ask(_near_names, kind, word)
 
@@ -397,10 +394,8 @@ def _own_qualities(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
     return frozenset(map(fold, View(store, viewpoint).names(Kind.QUALITY)))
 
 
-def _near_names(store: Store[Workspace], viewpoint: str, kind: Kind | None, word: str) -> tuple[str, ...]:
+def _near_names(store: Store[Workspace], viewpoint: str, kind: Kind, word: str) -> tuple[str, ...]:
     view = View(store, viewpoint)
-    if kind is None:
-        return near(word, view.look_up(lookups.other_files))
     if view.look_up(lookups.is_crowded, kind):
         return ()
     names = view.names(kind)
