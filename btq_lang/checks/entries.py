@@ -15,8 +15,8 @@ from btq_lang.checks.calls import callers
 from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.scripts import is_script
 from btq_lang.checks.strings import in_source
-from btq_lang.checks.view import View
-from btq_lang.syntax.tree import Pair, Signal, Tree, port_named
+from btq_lang.checks.view import View, port_of
+from btq_lang.syntax.tree import Pair, Signal, Tree
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.item_index import Facts
@@ -219,17 +219,10 @@ def _signal_entries(store: Store[Workspace], viewpoint: str) -> frozenset[Name]:
 
 def _use(view: View, seen: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
     """Whether a port reads, writes and creates the entry that it is given."""
-    key = pair.key.text
     if seen.is_subtree:
         unknown = seen.node.id is None or not view.defines(Kind.TREE, seen.node.id.text)
         return unknown, unknown, unknown
-    direction: str | None = None
-    if seen.kind is not None:
-        builtin = seen.kind.port(key)
-        direction = builtin.direction if builtin is not None else None
-    elif seen.is_defined:
-        declared = port_named(view.model_ports(seen), key)
-        direction = declared.direction.raw if declared is not None else None
+    direction, _ = port_of(view, seen, pair.key.text) or ("", "")
     return direction != "output", direction != "input", True
 
 

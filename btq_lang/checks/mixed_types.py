@@ -13,16 +13,16 @@ from typing import Final, TypeAlias
 
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import port_type
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
 from btq_lang.checks.pointers import passed_on, pointed_at
-from btq_lang.checks.view import View
+from btq_lang.checks.view import View, port_of
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Pair
+from btq_lang.util.reach import reached
 from btq_lang.util.record import Record
-from btq_lang.workspace.port_types import declared_type, is_text
+from btq_lang.workspace.port_types import is_text
 from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
@@ -96,7 +96,8 @@ def _types(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
         for index, pair in enumerate(seen.node.attributes):
             value = pair.value
             if value is not None and "{" in value.raw and (entry := pointed_at(pair.key.text, value.text)) is not None:
-                type_ = _port_type(view, seen, pair.key.text)
+                _, type_ = port_of(view, seen, pair.key.text) or ("", "")
+                type_ = plain_type(type_) if type_ not in _ANYTHING else ""
                 _add(found, entry, _Meeting(type_, number, index, _Port(tree, number, index)))
     return found
 
@@ -115,30 +116,22 @@ def _handed_on(view: View, seen: ResolvedNode) -> Iterator[tuple[str, int | None
 
 def _is_first(view: View, tree: str, key: str) -> bool:
     """Whether on some way into a tree the first of its ports creates the entry, or is of a type that does."""
-    seen = {(tree, key)}
-    waiting = [(tree, key)]
-    while waiting:
-        name, entry = waiting.pop()
-        above = view.ask(callers, name)
-        if not above:
-            return True
-        for caller in above:
-            for given in _given(view, caller, name, entry):
-                if given is None:
-                    return True
-                meetings = view.ask(_types, caller).get(given, ())
-                if given and meetings and _is_strong(meetings[0].type) and (caller, given) not in seen:
-                    seen.add((caller, given))
-                    waiting.append((caller, given))
-    return False
 
+    def given(place: tuple[str, str | None]) -> Iterator[tuple[str, str | None]]:
+        """The entry in the trees that run a tree, where the first port creates it; None: it is that tree's own."""
+        name, entry = place
+        if entry is None:
+            return
+        for caller in view.ask(callers, name):
+            for seen in _nodes(view, caller):
+                if seen.is_subtree and seen.node.id is not None and seen.node.id.text == name:
+                    passed = passed_on(seen, entry)
+                    meetings = view.ask(_types, caller).get(passed, ()) if passed else ()
+                    if passed is None or (meetings and _is_strong(meetings[0].type)):
+                        yield caller, passed
 
-def _given(view: View, caller: str, tree: str, key: str) -> Iterator[str | None]:
-    """The names of an entry of another tree in the SubTree nodes of one tree; None: it is that tree's own; an empty
-    text: a value."""
-    for seen in _nodes(view, caller):
-        if seen.is_subtree and seen.node.id is not None and seen.node.id.text == tree:
-            yield passed_on(seen, key)
+    start: tuple[str, str | None] = tree, key
+    return any(entry is None or not view.ask(callers, name) for name, entry in reached([start], given))
 
 
 def _nodes(view: View, tree: str) -> tuple[ResolvedNode, ...]:
@@ -213,15 +206,6 @@ def _add(found: dict[str, list[_Meeting]], key: str, meeting: _Meeting) -> None:
     known = found.setdefault(key, [])
     if all(each.type != meeting.type for each in known):
         known.append(meeting)
-
-
-def _port_type(view: View, seen: ResolvedNode, port: str) -> str:
-    if seen.kind is not None:
-        builtin = seen.kind.port(port)
-        type_ = port_type(builtin, view.target) if builtin is not None else ""
-    else:
-        type_ = declared_type(view.model_ports(seen), port)
-    return plain_type(type_) if type_ not in _ANYTHING else ""
 
 
 _VECTOR: Final = re.compile(r"std::vector<.*>").fullmatch

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import words
 from btq_lang.checks.demanded import Demanded, Found, Guard, found_at
-from btq_lang.checks.view import View
-from btq_lang.checks.writers import all_entries, declared_port, isolated, written_keys
+from btq_lang.checks.view import View, port_of
+from btq_lang.checks.writers import all_entries, isolated, written_keys
 from btq_lang.diagnostics.model import Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements import reader
@@ -101,8 +101,8 @@ def _of_text(view: View, here: list[Signal]) -> Iterator[Found]:
         for node, pair, is_of_root in (pointer for each in entries for pointer in each.pointers.get(key, ())):
             if not is_of_root and (main is None or node.tree != main.tree):
                 continue
-            port = declared_port(view, node, pair.key.text)
-            if port is None or port.type is None or port.direction.raw == "input" or not is_text(port.type.text):
+            direction, type_ = (port_of(view, node, pair.key.text) if node.kind is None else None) or ("", "")
+            if direction == "input" or not is_text(type_):
                 continue
             port_of_node = f"the port `{pair.key.text}` of `{node.node.head.text}`"
             message = f"the signal `{signal.name}` is a number, but {port_of_node} writes a string"

@@ -12,7 +12,7 @@ from functools import cache, partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS, lookup, spellings
+from btq_lang.catalog.nodes import BUILTINS, lookup, port_type, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.checks import lookups
@@ -21,7 +21,7 @@ from btq_lang.checks.lookups import Declaration, Meaning
 from btq_lang.checks.sorted_nodes import NO_NODES, SortedNodes, sorted_nodes
 from btq_lang.diagnostics.model import Related
 from btq_lang.grammar.attributes import meant_clause
-from btq_lang.syntax.tree import Entry, Include, Item, Node, Port, Requirement, Tree, Word, is_name
+from btq_lang.syntax.tree import Entry, Include, Item, Node, Port, Requirement, Tree, Word, is_name, port_named
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
@@ -348,6 +348,15 @@ def declared_ports(view: View, name: str) -> tuple[Port, ...]:
         if meaning is not None and meaning.ports:
             return meaning.ports
     return ()
+
+
+def port_of(view: View, seen: ResolvedNode, name: str) -> tuple[str, str] | None:
+    """The direction and the type of a node's port; None if nothing declares it."""
+    if seen.kind is not None:
+        builtin = seen.kind.port(name)
+        return (builtin.direction, port_type(builtin, view.target)) if builtin is not None else None
+    port = port_named(subtree_ports(view, seen) if seen.is_subtree else view.model_ports(seen), name)
+    return (port.direction.raw, port.type.text if port.type is not None else "") if port is not None else None
 
 
 def misspelt_clause(node: Node) -> str | None:

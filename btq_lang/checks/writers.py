@@ -13,9 +13,9 @@ from btq_lang.catalog.kinds import PortKind
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks import lookups
 from btq_lang.checks.pointers import remaps_all
-from btq_lang.checks.view import View, declared_ports
+from btq_lang.checks.view import View, port_of
 from btq_lang.requirements import nodes
-from btq_lang.syntax.tree import Pair, Port, Verbatim, port_named
+from btq_lang.syntax.tree import Pair, Verbatim
 from btq_lang.util.reach import reached
 from btq_lang.util.record import Record
 from btq_lang.workspace import inputs
@@ -122,13 +122,6 @@ def isolated(view: View, writes: Sequence[tuple[ResolvedNode, str]], key: str) -
     return writers[0]
 
 
-def declared_port(view: View, node: ResolvedNode, port: str) -> Port | None:
-    """The port as the node's model, or the tree of a SubTree, declares it."""
-    name = node.node.id
-    ports = declared_ports(view, name.text) if name is not None else ()
-    return port_named(ports, port)
-
-
 def _is_script(node: ResolvedNode, key: str) -> bool:
     attribute = RESERVED_ATTRIBUTES.get(key)
     port = node.kind.port(key) if node.kind is not None else None
@@ -152,11 +145,8 @@ def _assigned(script: str) -> Iterator[str]:
 
 def _writes(view: View, node: ResolvedNode, port: str) -> bool | None:
     """Whether a port is written, which it is unless it is an input; None if it is not declared."""
-    if node.kind is not None:
-        builtin = node.kind.port(port)
-        return builtin is not None and builtin.direction != "input"
-    declared = declared_port(view, node, port)
-    return declared.direction.raw != "input" if declared is not None else None
+    declared = port_of(view, node, port)
+    return (False if node.kind is not None else None) if declared is None else declared[0] != "input"
 
 
 def _passed_on(node: ResolvedNode, name: str) -> Iterator[str]:
