@@ -416,14 +416,15 @@ def test_logs_are_judged_as_a_bound_is_typed_and_a_run_is_stepped_through_in_the
     code.write("robot/main.btq", "QualityReq quick : safety\n    Move takes at most 30 ms\n" + MAIN)
     code.open("robot/main.btq")
     code.see(".codelens-decoration:has-text('violated in 1 of 2 activations · worst 40 ms')")
-    (problem,) = code.problems("`quick` is violated: 1 of 2 activations, worst 40 ms in run 2")
-    assert "btq requirement-violated [Ln 6, Col 16] Move::2: took 40 ms, bound 30 ms" in problem
+    (problem,) = [row for row in code.problems_of("main.btq", 1) if "`quick` is violated" in row]
+    assert "1 of 2 activations, worst 40 ms in run 2 btq requirement-violated [Ln 6, Col 16] Move::2:" in problem
+    assert "took 40 ms, bound 30 ms" in problem
     code.focus()
     code.cursor(2, 24)
     code.keys("Delete")
     code.type("4")
     code.see(".codelens-decoration:has-text('held in 2 of 2 activations · worst 40 ms')")
-    code.problems()
+    code.no_problems_of("main.btq")
     code.focus()
     code.cursor(2, 25)
     code.keys("Backspace")
@@ -704,14 +705,14 @@ def test_without_a_python_it_says_so_and_offers_help(code: Workbench) -> None:
 
 
 def walkthrough(code: Workbench, tmp_path: Path) -> None:
-    (code.folder / "robot").mkdir()
+    (code.folder / "new").mkdir()
     code.command("Welcome: Open Walkthrough...")
     code.choose("A checked mission in five minutes")
     code.see(".getting-started-step:has-text('Create a project')").click()
     code.see(".getting-started-step .monaco-button:has-text('New Project')").click()
-    code.choose_empty(code.folder / "robot")
+    code.choose_empty(code.folder / "new")
     code.see(".tab.active:has-text('mission.btq')")
-    assert {path.name for path in (code.folder / "robot").iterdir()} == {"btq.toml", "mission.btq", "skills.btq"}
+    assert {path.name for path in (code.folder / "new").iterdir()} == {"btq.toml", "mission.btq", "skills.btq"}
     code.focus()
     code.command("Welcome: Open Walkthrough...")
     code.choose("A checked mission in five minutes")
