@@ -96,9 +96,11 @@ driver() {
     cd "$root"
     local python=.venv/bin/python
     [ -x "$python" ] || python3 -m venv .venv
-    # In CI with what the tests need: while apt and npm work, and by one pip, for two would write the same packages.
+    # In CI with what the tests need: while apt and npm work, and by one pip, for two would write the same packages.  pip
+    # would compile them on one core, with all of their tests; a file of theirs that is no valid Python does no harm.
     "$python" -c 'import playwright' 2>/dev/null ||
-        "$python" -m pip install -q 'playwright>=1.49,<2' ${BTQ_CI:+'.[test]'}
+        "$python" -m pip install -q ${BTQ_CI:+--no-compile} 'playwright>=1.49,<2' ${BTQ_CI:+'.[test]'}
+    [ -z "${BTQ_CI:-}" ] || "$python" -W ignore -m compileall -q -j 0 -x /tests/ .venv/lib || true
 }
 
 neovim() { # suite: its packages are unpacked, and run with the C library that comes with them
