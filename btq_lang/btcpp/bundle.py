@@ -92,7 +92,7 @@ def _twice(workspace: Workspace, paths: tuple[str, ...]) -> list[Remark]:
     known: set[str] = set()
     found = []
     for path in paths:
-        for definition in workspace.defined_in(path):
+        for definition in workspace.files[path].defined:
             if definition.symbol.kind is Kind.TREE:
                 name = definition.symbol.name
                 if name in known:

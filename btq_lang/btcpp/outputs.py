@@ -140,7 +140,7 @@ def missions(workspace: Workspace, given: Sequence[str]) -> tuple[str, ...]:
 def without_tree(workspace: Workspace, given: Sequence[str]) -> Iterator[str]:
     """The given files that have no tree and declare nothing that another file could use."""
     for path in given:
-        if path in workspace.included_files or not is_mission(workspace, path) or workspace.defined_in(path):
+        if path in workspace.included_files or not is_mission(workspace, path) or workspace.files[path].defined:
             continue
         entries = (entry for each in workspace.closure(path) for entry in workspace.files[each].parsed.entries)
         if not any(isinstance(entry.item, Tree) for entry in entries):  # a single tree needs no name

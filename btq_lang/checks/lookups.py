@@ -216,7 +216,7 @@ def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declarat
         target = workspace.included_by(viewpoint, include)
         brought = workspace.closure(target) if target is not None else ()
         for path in brought if before else ():
-            for second in workspace.defined_in(path) if path not in before else ():
+            for second in workspace.files[path].defined if path not in before else ():
                 first = workspace.scope(viewpoint).find(second.symbol.kind, second.symbol.name)
                 if first is not None and first.path in before and first.path not in brought:
                     both = _declaration(workspace, first), _declaration(workspace, second)
@@ -239,9 +239,18 @@ def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tu
 @of_viewpoint
 def uses_of_tree(workspace: Workspace, viewpoint: str, name: str) -> tuple[Place, ...]:
     """Where the tree of a name is referred to, in whatever file."""
-    found = workspace.scope(viewpoint).find(Kind.TREE, name)
-    uses = workspace.references(found) if found is not None else ()
-    return tuple([Place(each.use.span, each.path, each.entry.item) for each in uses])
+    meant = workspace.scope(viewpoint).find(Kind.TREE, name)
+    if meant is None:
+        return ()
+    return tuple(
+        [
+            Place(use.span, path, entry.item)
+            for path in workspace.linked(meant.path)
+            if workspace.scope(path).find(Kind.TREE, name) == meant
+            for entry, use in workspace.files[path].uses
+            if (use.kind, use.name) == (Kind.TREE, name)
+        ]
+    )
 
 
 # ---- the file ----

@@ -74,7 +74,7 @@ def called(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
 
 def _tree_of(workspace: Workspace, found: Found) -> Definition | None:
     """The tree in which a reference is."""
-    for place in workspace.defined_in(found.path):
+    for place in workspace.files[found.path].defined:
         if place.symbol.kind is Kind.TREE and place.entry is found.entry:
             return place
     return None

@@ -83,7 +83,7 @@ def code_lenses(
     uses; the `Root` that names the main tree does not call it.
     """
     found: list[Lens] = []
-    for place in workspace.defined_in(path):
+    for place in workspace.files[path].defined:
         kind = place.symbol.kind
         if kind not in _COUNTED or workspace.scope(path).find(kind, place.symbol.name) != place:
             continue

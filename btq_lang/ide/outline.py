@@ -71,7 +71,7 @@ def workspace_symbols(workspace: Workspace, query: str, limit: int = 500) -> tup
     wanted = query.casefold()
     found: list[tuple[tuple[bool, int, str, str, int], Match]] = []
     for path in workspace.files:
-        for definition in workspace.defined_in(path):
+        for definition in workspace.files[path].defined:
             symbol = definition.symbol
             folded = symbol.name.casefold()
             if not _contains(folded, wanted):

@@ -361,7 +361,7 @@ def defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Defin
         new = set(names) - seen
         if not _clashes(workspace, path, other):
             seen |= new
-            found_there = (one for one in workspace.defined_in(other) if one.symbol.kind is kind)
+            found_there = (one for one in workspace.files[other].defined if one.symbol.kind is kind)
             yield from ((one, other) for one in found_there if one.symbol.name in new)
 
 

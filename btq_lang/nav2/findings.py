@@ -192,14 +192,15 @@ def _strangers(workspace: Workspace) -> dict[str, Place]:
     """The nodes in registered files that are not the engine's, each with the place where it is first used."""
     found: dict[str, Place] = {}
     for path in workspace.registered:
+        file = workspace.files[path]
         names = {
             name
-            for name in workspace.files[path].said(Kind.MODEL)
+            for name in file.said(Kind.MODEL)
             if name not in BUILTINS and name not in KNOWN_WORDS and not _defines(workspace, name)
         }
-        for reference in workspace.uses_in(path) if names else ():
-            if reference.use.kind is Kind.MODEL and reference.use.name in names:
-                found.setdefault(reference.use.name, Place(workspace.files[path].on_disk(reference.span), path))
+        for entry, use in file.uses if names else ():
+            if use.kind is Kind.MODEL and use.name in names:
+                found.setdefault(use.name, Place(file.on_disk(use.span.shifted(entry.start)), path))
     return found
 
 

@@ -256,14 +256,13 @@ def goals_in(workspace: Workspace) -> Iterator[tuple[str, Place]]:
     its place; what an entry names is not known, nor what scripts and other programs send."""
     for path in workspace.registered:
         file = workspace.files[path]
-        for reference in workspace.uses_in(path) if TREE_OF_GOAL in file.text else ():
-            use = reference.use
+        for entry, use in file.uses if TREE_OF_GOAL in file.text else ():
             if use.kind is not Kind.MODEL or use.node is None or TREE_OF_GOAL not in (ports_of(use.name) or ()):
                 continue
             for pair in use.node.attributes:
                 name = pair.value.text if pair.key.text == TREE_OF_GOAL and pair.value is not None else ""
                 if name and "{" not in name and pair.value is not None:
-                    span = pair.value.span.shifted(reference.entry.start)
+                    span = pair.value.span.shifted(entry.start)
                     yield name, Place(file.on_disk(span), path)
 
 

@@ -19,7 +19,7 @@ from btq_lang.syntax.tree import Entry, Include, Item
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Placed, Span, changed
 from btq_lang.workspace.item_index import Facts, Name, Names, Said, Tally
-from btq_lang.workspace.symbols import Summary, Symbol
+from btq_lang.workspace.symbols import Summary, Symbol, Use
 
 if TYPE_CHECKING:
     from btq_lang.cpp.model import CppNode
@@ -178,6 +178,11 @@ class File:
             for symbol in summary.symbols
         )
 
+    @property
+    def uses(self) -> Iterator[tuple[Entry, Use]]:
+        """What the file refers to, each with the entry that does, in the order of its text."""
+        return ((entry, use) for entry in self.parsed.entries for use in self.facts[id(entry.item)].summary.uses)
+
     def of_type(self, kind: type[Kept]) -> tuple[Kept, ...]:
         """The file's items of a type, in the order of the text."""
         if kind not in self._of_type:
@@ -333,7 +338,7 @@ class File:
 
     @cached_property
     def used_names(self) -> frozenset[Name]:
-        return frozenset((use.kind, use.name) for summary in self.summaries for use in summary.uses)
+        return frozenset((use.kind, use.name) for _, use in self.uses)
 
     def __reduce__(self) -> tuple[type[File], tuple[str, str, Origin | None]]:
         return File, (self.path, self.text, self.origin)

@@ -19,14 +19,13 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import ENGINES, FILES, ports_of
-from btq_lang.syntax.tree import Entry, Include, Model, Qualities, Root
-from btq_lang.util.record import Record, replace
-from btq_lang.util.text import Span
+from btq_lang.syntax.tree import Include, Model, Qualities, Root
+from btq_lang.util.record import replace
 from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import Definition, File, Origin, is_of_package
 from btq_lang.workspace.item_index import Name, Names
 from btq_lang.workspace.queries import Store
-from btq_lang.workspace.symbols import Use, has_ports_of, interface
+from btq_lang.workspace.symbols import has_ports_of, interface
 
 if TYPE_CHECKING:
     from btq_lang.workspace.factories import Factory
@@ -48,7 +47,6 @@ class Workspace:
         self._scopes: dict[str, Scope] = {}
         self._everywhere: dict[Name, tuple[Definition, ...]] = {}
         self._closures: dict[str, tuple[str, ...]] = {}
-        self._referred: dict[str, dict[Span, tuple[Reference, ...]]] = {}
 
     @classmethod
     def of(cls, texts: Mapping[str, str], project: Project | None = None) -> Workspace:
@@ -103,11 +101,10 @@ class Workspace:
                 self.files[path].let_go()
         self._scopes = {path: scope for path, scope in self._scopes.items() if gone.isdisjoint(scope.paths)}
         self._everywhere.clear()
-        self._referred.clear()
 
     def _take_over(self, before: Workspace, edited: str) -> None:
         """Copy what is known of includes, and of the names in files that do not see the edited one."""
-        for known in ("included_files", "missions", "_users"):
+        for known in ("included_files", "missions"):
             if known in before.__dict__:
                 self.__dict__[known] = before.__dict__[known]
         self._closures = before._closures
@@ -259,11 +256,7 @@ class Workspace:
         missions = {self.missions[path] for path in paths}
         return [other for other, of in self.missions.items() if of in missions]
 
-    # ---- definitions and references ----
-
-    def defined_in(self, path: str) -> tuple[Definition, ...]:
-        """What a file itself defines, in the order of its text."""
-        return self.files[path].defined
+    # ---- definitions ----
 
     def files_defining(self, kind: Kind, name: str) -> tuple[str, ...]:
         """The files of the project that define a name, to suggest where it could come from; this is known even if a
@@ -316,40 +309,6 @@ class Workspace:
         folder = posixpath.dirname(path)
         near = [each for each in found if posixpath.dirname(each.path) == folder and each.path in self.origins]
         return tuple((near or found) if kind is Kind.TREE else found)
-
-    def uses_in(self, path: str) -> Iterator[Reference]:
-        """The references in a file, in the order of its text."""
-        file = self.files[path]
-        for entry, summary in zip(file.parsed.entries, file.summaries, strict=True):
-            for use in summary.uses:
-                yield Reference(path, entry, use)
-
-    def references(self, definition: Definition) -> tuple[Reference, ...]:
-        """Every use, in every file, of the name that `definition` defines."""
-        return self._references_to(definition.path).get(definition.span, ())
-
-    def _references_to(self, path: str) -> dict[Span, tuple[Reference, ...]]:
-        """The uses of what a file defines, by the place of the definition."""
-        if path not in self._referred:
-            found: dict[Span, list[Reference]] = {}
-            for user in self._users[path]:
-                scope = self.scope(user)
-                for reference in self.uses_in(user):
-                    definition = scope.find(reference.use.kind, reference.use.name)
-                    if definition is not None and definition.path == path:
-                        found.setdefault(definition.span, []).append(reference)
-            self._referred[path] = {span: tuple(references) for span, references in found.items()}
-        return self._referred[path]
-
-    @cached_property
-    def _users(self) -> dict[str, list[str]]:
-        """For each file, those that can use what it defines: itself, and all that include it."""
-        users: dict[str, list[str]] = {path: [] for path in self.files}
-        for path in self.files:
-            scope = self.scope(path)
-            for used in (*scope.paths, *scope.node_paths):
-                users[used].append(path)
-        return users
 
     # ---- missions ----
 
@@ -487,16 +446,3 @@ def _repeated(files: list[Names]) -> frozenset[Name]:
         found |= seen & names.all
         seen |= names.all
     return frozenset(found)
-
-
-class Reference(Record):
-    """A use and its file."""
-
-    path: str
-    entry: Entry
-    use: Use
-
-    @property
-    def span(self) -> Span:
-        """The name, counted from the start of the file."""
-        return self.use.span.shifted(self.entry.start)

@@ -28,7 +28,7 @@ def test_its_trees_requirements_and_qualities_are_found(workspace: Workspace) ->
     main = workspace.main_tree(PATH)
     assert main is not None
     assert main.symbol.name == "mainTree"
-    uses = [(reference.use.kind, reference.use.name) for reference in workspace.uses_in(PATH)]
+    uses = [(use.kind, use.name) for _, use in workspace.files[PATH].uses]
     assert (Kind.QUALITY, "performance") in uses
     assert uses.count((Kind.TREE, "PickPlace")) == 2
 

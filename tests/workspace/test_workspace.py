@@ -61,18 +61,13 @@ def test_includes_in_a_circle_end() -> None:
     assert files.closure("/b") == ("/a", "/c", "/b")
 
 
-def test_references_across_files() -> None:
-    files = workspace()
-    model = files.scope("/p/main.btq").find(Kind.MODEL, "MoveBase")
-    assert model is not None
-    text = files.files["/p/main.btq"].text
-    assert [(reference.path, reference.span.start) for reference in files.references(model)] == [
-        ("/p/main.btq", text.index("MoveBase satisfies")),
-        ("/p/main.btq", text.index("MoveBase (station")),
+def test_uses_are_in_the_order_of_the_text() -> None:
+    file = workspace().files["/p/main.btq"]
+    models = [use.span.shifted(entry.start) for entry, use in file.uses if use.name == "MoveBase"]
+    assert [span.start for span in models] == [
+        file.text.index("MoveBase satisfies"),
+        file.text.index("MoveBase (station"),
     ]
-    quality = files.scope("/p/main.btq").find(Kind.QUALITY, "gentleness")
-    assert quality is not None
-    assert len(files.references(quality)) == 1
 
 
 def test_repeated_classic_requirements_are_one_and_the_first_place_defines() -> None:
@@ -86,7 +81,7 @@ def test_repeated_classic_requirements_are_one_and_the_first_place_defines() -> 
     files = Workspace.of({"/f": text})
     first, second = files.scope("/f").all(Kind.REQUIREMENT, "rq")
     assert first.span.start == text.index('"rq"')
-    assert [reference.span.start for reference in files.references(first)] == [
+    assert [entry.start + use.span.start for entry, use in files.files["/f"].uses if use.name == "rq"] == [
         text.index("rq\n"),
         text.index('"rq")\n', text.index("D (")),
     ]
