@@ -230,25 +230,13 @@ class AttributeParser(RequirementParser):
         if word == "satisfies":
             uses = self.satisfies()
             return Satisfies(start, self.last_end(), uses)
-        names: list[Word] = []
-        while name := self.name("a tag"):
-            names.append(name)
-            if not self.list_goes_on():
-                break
-        return Tags(start, self.last_end(), tuple(names))
+        names = self.listed(lambda: self.name("a tag"), self.list_goes_on)
+        return Tags(start, self.last_end(), names)
 
     def satisfices(self) -> tuple[Quality, ...]:
         """Quality { "," Quality };  classic files omit the commas"""
-        found: list[Quality] = []
         self.skip_sign(":")
-        while True:
-            quality = self.quality()
-            if quality is None:
-                break
-            found.append(quality)
-            if not (self.at_quality() or self.list_goes_on(qualities=True)):
-                break
-        return tuple(found)
+        return self.listed(self.quality, lambda: self.at_quality() or self.list_goes_on(qualities=True))
 
     def at_quality(self) -> bool:
         return self.kind == NAME and self.raw == "Quality" and self.is_operator(self.index + 1, "=")
@@ -291,17 +279,12 @@ class AttributeParser(RequirementParser):
 
     def satisfies(self) -> tuple[Requirement | ReqRef, ...]:
         """ReqUse { "," ReqUse };  classic files omit the commas"""
-        found: list[Requirement | ReqRef] = []
         self.skip_sign(":", "=")
         if self.at_word("by") and self.kinds[self.index + 1] in (NAME, STRING):
             self.advance()  # `satisfied by r`, reported at its first word
         if not self.group:
             self.skip_brackets("requirements of a node need no brackets")
-        while (use := self.req_use()) is not None:
-            found.append(use)
-            if not (self.at_word("QualityReq") or self.list_goes_on()):
-                break
-        return tuple(found)
+        return self.listed(self.req_use, lambda: self.at_word("QualityReq") or self.list_goes_on())
 
     def req_use(self) -> Requirement | ReqRef | None:
         """ReqUse = Requirement | ReqRef"""

@@ -205,14 +205,10 @@ class ClaimParser(ConditionParser):
             last = self.event() if self.expect_word("to") else None
             return Between(start, self.last_end(), first, last)
         if self.accept_word("sum"):
-            paths: list[Path] = []
             if not self.expect_word("of"):
                 return None
-            while path := self.path("a node"):
-                paths.append(path)
-                if not (self.accept_and() or self.accept(",")):
-                    break
-            return Sum(start, self.last_end(), tuple(paths))
+            paths = self.listed(lambda: self.path("a node"), lambda: self.accept_and() or self.accept(","))
+            return Sum(start, self.last_end(), paths)
         return self.path("a node")
 
     def event(self) -> Event | None:

@@ -8,8 +8,8 @@ lexer has reported a mistake.
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterable
-from typing import Final
+from collections.abc import Callable, Iterable
+from typing import Final, TypeVar
 
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.lexer import Lexer
@@ -19,6 +19,8 @@ from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NEWLINE, NUMBER, OPEN, O
 from btq_lang.syntax.tree import Word
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
+
+T = TypeVar("T")
 
 
 class Cursor:
@@ -246,6 +248,15 @@ class Cursor:
         """Report that a word is missing; returns None."""
         self.expected(what)
         return None
+
+    def listed(self, element: Callable[[], T | None], goes_on: Callable[[], bool] | None = None) -> tuple[T, ...]:
+        """Element { "," Element }; `goes_on`: skips what separates them, if another follows"""
+        found: list[T] = []
+        while (each := element()) is not None:
+            found.append(each)
+            if not (goes_on() if goes_on is not None else self.accept(",")):
+                break
+        return tuple(found)
 
     # ---- places ----
 

@@ -175,23 +175,15 @@ class ItemParser(NodeParser):
     def apply(self) -> Apply:
         """ "apply" ReqRef { "," ReqRef } "to" Selector { "," Selector } [ "except" Selector { "," Selector } ] NL"""
         start = self.take().start
-        uses: list[ReqRef] = []
-        while name := self.missing_word("a requirement") if self.at_word("to") else self.name("a requirement"):
-            uses.append(self.req_ref(name))
-            if not self.accept(","):
-                break
-        targets = self.selectors() if self.expect_word("to", ("on", "for", "at")) else ()
-        exceptions = self.selectors() if self.accept_word("except") else ()
-        return Apply(start, self.end_line(), tuple(uses), targets, exceptions)
+        uses = self.listed(self.applied)
+        targets = self.listed(self.selector) if self.expect_word("to", ("on", "for", "at")) else ()
+        exceptions = self.listed(self.selector) if self.accept_word("except") else ()
+        return Apply(start, self.end_line(), uses, targets, exceptions)
 
-    def selectors(self) -> tuple[Selector, ...]:
-        """Selector { "," Selector }"""
-        found: list[Selector] = []
-        while selector := self.selector():
-            found.append(selector)
-            if not self.accept(","):
-                break
-        return tuple(found)
+    def applied(self) -> ReqRef | None:
+        """ReqRef"""
+        name = self.missing_word("a requirement") if self.at_word("to") else self.name("a requirement")
+        return self.req_ref(name) if name is not None else None
 
     def selector(self) -> Selector | None:
         """ "every" Name [ "under" Path ] | "every" "node" "tagged" NAME | Path"""

@@ -219,13 +219,9 @@ class RequirementParser(ClauseParser):
         """Params = "(" Param { "," Param } ")\""""
         self.advance()
         self.group += 1
-        found: list[Parameter] = []
-        while (parameter := self.param()) is not None:
-            found.append(parameter)
-            if not self.accept(","):
-                break
+        found = self.listed(self.param)
         self.close_group("`,` or `)`")
-        return tuple(found)
+        return found
 
     def param(self) -> Parameter | None:
         """Param = NAME ":" UNIT [ "=" Bounded ]"""
@@ -247,21 +243,19 @@ class RequirementParser(ClauseParser):
             return ReqRef(name)
         self.advance()
         self.group += 1
-        found: list[Argument] = []
-        while key := self.argument_name():
-            value = self.bounded() if self.expect("=") else None
-            found.append(Argument(key, value))
-            if not self.accept(","):
-                break
+        found = self.listed(self.argument)
         self.close_group("`,` or `)`")
-        return ReqRef(name, tuple(found))
+        return ReqRef(name, found)
 
-    def argument_name(self) -> Word | None:
-        """NAME"""
+    def argument(self) -> Argument | None:
+        """NAME "=" Bounded"""
         if self.kind in (NUMBER, QUANTITY):
             self.expected("a parameter's name", (f"a value goes after the name of its parameter: `x = {self.raw}`",))
             return None
-        return self.plain_name("a parameter's name")
+        name = self.plain_name("a parameter's name")
+        if name is None:
+            return None
+        return Argument(name, self.bounded() if self.expect("=") else None)
 
     def quality_path(self) -> QualityPath | None:
         """QualityPath = Name [ "<" Name ">" ] { "." Name }"""
