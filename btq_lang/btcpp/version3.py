@@ -9,8 +9,9 @@ Sources: BehaviorTree.CPP 3.8, xml_parsing.cpp; 4.x, migration guide and convert
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Final
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Final, TypeAlias
 
 from btq_lang.btcpp.document import Attribute, Element
 from btq_lang.catalog.attributes import OF_VERSION_4
@@ -20,6 +21,9 @@ from btq_lang.catalog.versions import VERSION_3
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
+
+# What becomes of an attribute: the message about that, its name, and its value; without a name it is left out.
+Rewritten: TypeAlias = tuple[str, str, str]
 
 
 class Change(Record):
@@ -52,12 +56,11 @@ def translated(root: Element, changes: list[Change]) -> None:
     root.attributes = (Attribute("BTCPP_format", "4"), *kept)
     outputs = dict(_outputs(root))
     for element in root.walk():
-        translator = _Translator(element, changes)
         if element.tag != "SubTree":  # whose attributes name entries without any sign
             name = element.get("ID") if element.tag in CATEGORIES else element.tag
-            translator.entries(outputs.get(name, frozenset()))
+            _rewrite(element, changes, partial(_entry, outputs=outputs.get(name, frozenset())))
         if element.tag in _MAY_BE_OLD:
-            translator.translate()
+            _translate(element, changes)
 
 
 def _outputs(root: Element) -> Iterator[tuple[str | None, frozenset[str | None]]]:
@@ -67,114 +70,87 @@ def _outputs(root: Element) -> Iterator[tuple[str | None, frozenset[str | None]]
             yield model.get("ID"), frozenset(each.get("name") for each in model.elements if each.tag == "output_port")
 
 
-class _Translator:
-    """Translates one element."""
-
-    def __init__(self, element: Element, changes: list[Change]) -> None:
-        self.element: Final = element
-        self.changes: Final = changes
-
-    def translate(self) -> None:
-        element = self.element
-        is_explicit = element.tag in ("Action", "Condition", "Control", "Decorator")
-        identity = element.get("ID") if is_explicit else element.tag
-        if identity in ("SubTree", "SubTreePlus"):
-            if not any(child.tag.endswith("_port") for child in element.elements):
-                self.subtree(identity == "SubTreePlus")
-            else:
-                self.subtree_model()
+def _translate(element: Element, changes: list[Change]) -> None:
+    is_explicit = element.tag in ("Action", "Condition", "Control", "Decorator")
+    identity = element.get("ID") if is_explicit else element.tag
+    if identity in ("SubTree", "SubTreePlus"):
+        if any(child.tag.endswith("_port") for child in element.elements):
+            _remove_ports(element, changes)
             return
-        known = KNOWN_WORDS.get(identity or "")
-        if known is not None and known.replacement is not None:
-            self.rename(is_explicit, known.replacement)
-            identity = known.replacement
-        elif known is not None and known.until == VERSION_3:
-            self.report(f"{known.why}: kept unchanged")
-        for attribute in element.attributes:
-            port = OLD_PORTS.get((identity or "", attribute.name))
-            if port is not None:
-                self.report(f"{attribute.name} of {identity} is now {port}", attribute)
-                self.replace(attribute, self.changed(attribute, name=port))
-
-    def entries(self, outputs: frozenset[str | None]) -> None:
-        """Put braces round the entries that version 3 knows without: `${key}`, and `key` for an output."""
-        for attribute in self.element.attributes:
-            raw = attribute.raw
-            if attribute.name in ("ID", "name"):
-                continue
-            if OLD_ENTRY.fullmatch(raw):
-                self.report(f'{attribute.name}="{raw}" names an entry: now "{raw[1:]}"', attribute)
-                self.replace(attribute, self.changed(attribute, raw=raw[1:]))
-            elif attribute.name in outputs and raw not in ("", "=") and not is_pointer(attribute.value):
-                self.report(f'{attribute.name}="{raw}" names the entry of an output: now "{{{raw}}}"', attribute)
-                self.replace(attribute, self.changed(attribute, raw=f"{{{raw}}}"))
-
-    def rename(self, is_explicit: bool, new: str) -> None:
-        element = self.element
-        if is_explicit:
-            for attribute in element.attributes:
-                if attribute.name == "ID":
-                    self.report(f"{attribute.raw} is now {new}", attribute)
-                    self.replace(attribute, self.changed(attribute, raw=new))
-        else:
-            self.report(f"{element.tag} is now {new}")
-            element.tag = new
-
-    def subtree(self, is_plus: bool) -> None:
-        """Translate a SubTree, which maps keys to keys, or a SubTreePlus, which maps keys to values as SubTree does
-        now."""
-        element = self.element
-        if is_plus:
-            self.report("SubTreePlus is now SubTree")
+        if identity == "SubTreePlus":
+            changes.append(Change(element.tag_span, "SubTreePlus is now SubTree"))
             element.tag = "SubTree"
-        found: list[Attribute] = []
-        for attribute in element.attributes:
-            key, said = attribute.name, attribute.value
-            if key == "__shared_blackboard":
-                if said.strip().lower() in ("true", "1"):
-                    self.report('__shared_blackboard is now _autoremap="true"', attribute)
-                    found.append(self.changed(attribute, "_autoremap", "true"))
-                else:
-                    self.report("__shared_blackboard is left out: version 4 shares only what is mapped", attribute)
-            elif key == "__autoremap":
-                self.report("__autoremap is now _autoremap", attribute)
-                found.append(self.changed(attribute, "_autoremap"))
-            elif is_plus or key in ("ID", "name") or key.startswith("_") or said.startswith("{"):
-                found.append(attribute)
-            elif said == "":
-                self.report(f"`{key}` of a SubTree names no entry: kept unchanged", attribute)
-                found.append(attribute)
-            else:
-                self.report(
-                    f'{key}="{attribute.raw}" of a SubTree names an entry: now "{{{attribute.raw}}}"', attribute
-                )
-                found.append(self.changed(attribute, raw=f"{{{attribute.raw}}}"))
-        element.attributes = tuple(found)
+        _rewrite(element, changes, partial(_argument, is_plus=identity == "SubTreePlus"))
+        return
+    known = KNOWN_WORDS.get(identity or "")
+    new = known.replacement if known is not None else None
+    if new is not None and is_explicit:
+        _rewrite(element, changes, lambda each: (f"{each.raw} is now {new}", "ID", new) if each.name == "ID" else None)
+    elif new is not None:
+        changes.append(Change(element.tag_span, f"{element.tag} is now {new}"))
+        element.tag = new
+    elif known is not None and known.until == VERSION_3:
+        changes.append(Change(element.tag_span, f"{known.why}: kept unchanged"))
+    _rewrite(element, changes, partial(_port, tag=new or identity or ""))
 
-    def subtree_model(self) -> None:
-        """Remove two ports from the model of a SubTree: version 4 would require them at each use."""
-        element = self.element
-        for child in list(element.elements):
-            if child.get("name") in ("__shared_blackboard", "__autoremap"):
-                message = f"the port {child.get('name')} of a SubTree's model is left out: version 4 would require it"
-                self.changes.append(Change(Span(child.start, child.end), message))
-                element.children.remove(child)
 
-    def replace(self, attribute: Attribute, other: Attribute) -> None:
-        self.element.attributes = tuple(other if each is attribute else each for each in self.element.attributes)
+def _rewrite(element: Element, changes: list[Change], rewritten: Callable[[Attribute], Rewritten | None]) -> None:
+    """Rewrite the attributes of an element, and report each that changes."""
+    kept: list[Attribute] = []
+    for attribute in element.attributes:
+        found = rewritten(attribute)
+        if found is None:
+            kept.append(attribute)
+            continue
+        message, name, raw = found
+        start, value_start = element.place(attribute)
+        changes.append(Change(Span(start, value_start + len(attribute.raw) + 1), message))
+        if name:
+            kept.append(Attribute(name, raw, (start, value_start)))
+    element.attributes = tuple(kept)
 
-    def changed(self, attribute: Attribute, name: str | None = None, raw: str | None = None) -> Attribute:
-        """An attribute with another name or value, in its place."""
-        place = self.element.place(attribute)
-        return Attribute(attribute.name if name is None else name, attribute.raw if raw is None else raw, place)
 
-    def report(self, message: str, attribute: Attribute | None = None) -> None:
-        """Report a change of an attribute, or of the element's tag."""
-        if attribute is None:
-            self.changes.append(Change(self.element.tag_span, message))
-        else:
-            start, value_start = self.element.place(attribute)
-            self.changes.append(Change(Span(start, value_start + len(attribute.raw) + 1), message))
+def _entry(attribute: Attribute, outputs: frozenset[str | None]) -> Rewritten | None:
+    """Put braces round the entries that version 3 knows without: `${key}`, and `key` for an output."""
+    name, raw = attribute.name, attribute.raw
+    if name in ("ID", "name"):
+        return None
+    if OLD_ENTRY.fullmatch(raw):
+        return f'{name}="{raw}" names an entry: now "{raw[1:]}"', name, raw[1:]
+    if name in outputs and raw not in ("", "=") and not is_pointer(attribute.value):
+        return f'{name}="{raw}" names the entry of an output: now "{{{raw}}}"', name, f"{{{raw}}}"
+    return None
+
+
+def _port(attribute: Attribute, tag: str) -> Rewritten | None:
+    port = OLD_PORTS.get((tag, attribute.name))
+    return None if port is None else (f"{attribute.name} of {tag} is now {port}", port, attribute.raw)
+
+
+def _argument(attribute: Attribute, is_plus: bool) -> Rewritten | None:
+    """Translate an attribute of a SubTree, which maps keys to keys, or of a SubTreePlus, which maps keys to values as
+    SubTree does now."""
+    key, said, raw = attribute.name, attribute.value, attribute.raw
+    if key == "__shared_blackboard":
+        if said.strip().lower() in ("true", "1"):
+            return '__shared_blackboard is now _autoremap="true"', "_autoremap", "true"
+        return "__shared_blackboard is left out: version 4 shares only what is mapped", "", ""
+    if key == "__autoremap":
+        return "__autoremap is now _autoremap", "_autoremap", raw
+    if is_plus or key in ("ID", "name") or key.startswith("_") or said.startswith("{"):
+        return None
+    if said == "":
+        return f"`{key}` of a SubTree names no entry: kept unchanged", key, raw
+    return f'{key}="{raw}" of a SubTree names an entry: now "{{{raw}}}"', key, f"{{{raw}}}"
+
+
+def _remove_ports(model: Element, changes: list[Change]) -> None:
+    """Remove two ports from the model of a SubTree: version 4 would require them at each use."""
+    for port in list(model.elements):
+        if port.get("name") in ("__shared_blackboard", "__autoremap"):
+            message = f"the port {port.get('name')} of a SubTree's model is left out: version 4 would require it"
+            changes.append(Change(Span(port.start, port.end), message))
+            model.children.remove(port)
 
 
 def _is_new(element: Element) -> bool:
