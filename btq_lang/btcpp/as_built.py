@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.manual_edits import ManualEdit
 from btq_lang.btcpp.marks import is_generated
-from btq_lang.btcpp.restoring import restored
+from btq_lang.btcpp.restoring import Restored, restored
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import Include
@@ -60,23 +60,20 @@ def as_built(path: str, source: Source, called: Callable[[str], str] = shown) ->
     if path == side or not path.endswith(".xml") or not source.is_file(side):
         return None
     made = _made(path, source)
-    if made is None or made.source == path:
+    if made is None or made[-1] == path:
         return None
     target = f"{os.path.splitext(path)[0]}.btq"
     known: dict[str, str] = {}
     sources: dict[str, str] = {}
     manual_edits: list[tuple[str, ManualEdit]] = []
     waiting = [(made, path, target)]
-    for made, xml, place in waiting:
+    for (mission, includes, said_in), xml, place in waiting:
         folder = os.path.dirname(xml)
-        manual_edits += ((xml, each) for each in made.manual_edits)
-        for name, text in (
-            (place, made.text),
-            *((absolute(os.path.join(folder, each)), it) for each, it in made.others),
-        ):
-            known[name] = text
-            sources[name] = made.source
-        for built, included in _missing(made, xml, place, source):
+        manual_edits += ((xml, each) for each in mission.manual_edits)
+        others = {absolute(os.path.join(folder, each)): text for each, text in mission.others}
+        known |= {place: mission.text, **others}
+        sources |= dict.fromkeys((place, *others), said_in)
+        for built, included in _missing(mission.text, includes, xml, place, source):
             below = _made(built, source) if included not in known else None
             if below is not None:
                 waiting.append((below, built, included))
@@ -92,26 +89,9 @@ def as_built(path: str, source: Source, called: Callable[[str], str] = shown) ->
     )
 
 
-class _Made(Record):
-    """What an XML file was made of.
-
-    Attributes:
-        text: the mission.
-        others: of a bundle, the paths (relative to the mission) and texts of the files it includes.
-        includes: paths that the XML includes, in order.
-        source: the file that all this was read from: the side file, or the XML.
-        manual_edits: the manual edits of generated nodes.
-    """
-
-    text: str
-    others: tuple[tuple[str, str], ...]
-    includes: tuple[str | None, ...]
-    source: str
-    manual_edits: tuple[ManualEdit, ...] = ()
-
-
-def _made(path: str, source: Source) -> _Made | None:
-    """What an XML file was made of, read from its side file or, if it needs none, from the XML itself."""
+def _made(path: str, source: Source) -> tuple[Restored, tuple[str | None, ...], str] | None:
+    """What an XML file was made of, the paths that it includes, and the file that says this: its side file or, if it
+    needs none, the XML itself."""
     side = side_path(path)
     xml = source.text(path)
     said = source.text(side) if source.is_file(side) else None
@@ -123,17 +103,19 @@ def _made(path: str, source: Source) -> _Made | None:
     includes = tuple(_includes(done.text))
     mission = restored(xml, done.text, said) if said is not None else None
     if mission is not None:
-        return _Made(mission.text, mission.others, includes, side, mission.manual_edits)
-    return _Made(done.text if is_generated(xml) else xml, (), includes, path)
+        return mission, includes, side
+    return Restored(done.text if is_generated(xml) else xml, True, path), includes, path
 
 
-def _missing(made: _Made, xml: str, place: str, source: Source) -> Iterator[tuple[str, str]]:
+def _missing(
+    text: str, of_xml: tuple[str | None, ...], xml: str, place: str, source: Source
+) -> Iterator[tuple[str, str]]:
     """The included XML files that are missing because they were built elsewhere, with their expected paths."""
-    includes = tuple(_includes(made.text)) if place.endswith(".btq") else ()
-    if len(includes) != len(made.includes):
+    includes = tuple(_includes(text)) if place.endswith(".btq") else ()
+    if len(includes) != len(of_xml):
         return
     project = find_project(place).project
-    for said, named in zip(includes, made.includes, strict=True):
+    for said, named in zip(includes, of_xml, strict=True):
         if said is None or named is None:
             continue
         places = include_candidates(project, place, said)
