@@ -14,6 +14,7 @@ from btq_lang.checks.measures import is_measured
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
@@ -36,12 +37,12 @@ def _in_item(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[
 
 def _by_item(store: Store[Workspace], viewpoint: str) -> ByItem:
     """The findings in the file, by item."""
-    from btq_lang.workspace import inputs  # few files need it
-
     found: list[Found] = []
     for tree in inputs.trees(store, viewpoint):
         found += store.ask(_of_tree, viewpoint, *tree)[0]
-    found += (*store.ask(_of_requirements, viewpoint), *store.ask(_of_signals, viewpoint))
+    for name in inputs.names(store, viewpoint, Kind.REQUIREMENT):
+        found += store.ask(_of_requirement, viewpoint, name)
+    found += store.ask(_of_signals, viewpoint)
     # Each once, for a claim may apply to nodes of many trees.  They are compared, for hashing one would hash the whole
     # items that its places are in.
     known: dict[tuple[int, str, Span, str], list[Diagnostic]] = {}
@@ -59,7 +60,7 @@ def _of_tree(
     store: Store[Workspace], viewpoint: str, path: str, facts: Facts
 ) -> tuple[tuple[Found, ...], tuple[Guard, ...]]:
     """The findings about the nodes of a tree, and the claims about them for which the engine reads signals."""
-    from btq_lang.checks import budgets, limits, renewals, signals, swallowing, unenforced  # as above
+    from btq_lang.checks import budgets, limits, renewals, signals, swallowing, unenforced  # few files need them
     from btq_lang.checks.demanded import Demanded
 
     demanded = Demanded(View(store, viewpoint), path, facts)
@@ -81,13 +82,6 @@ def _of_tree(
     return _here(viewpoint, found), tuple(signals.guards(demanded))
 
 
-def _of_requirements(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
-    from btq_lang.workspace import inputs  # as above
-
-    names = inputs.names(store, viewpoint, Kind.REQUIREMENT)
-    return tuple([each for name in names for each in store.ask(_of_requirement, viewpoint, name)])
-
-
 def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Found, ...]:
     """What is wrong with a requirement, whatever it applies to."""
     from btq_lang.checks import budgets, limits, unenforced  # as above
@@ -106,7 +100,6 @@ def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple
 def _of_signals(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
     """What is wrong with signals, and with the guards that read them."""
     from btq_lang.checks.signals import of_signals  # as above
-    from btq_lang.workspace import inputs
 
     trees = inputs.trees(store, viewpoint)
     guards = [guard for tree in trees for guard in store.ask(_of_tree, viewpoint, *tree)[1]]

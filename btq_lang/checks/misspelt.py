@@ -7,6 +7,7 @@ from it as only misspellings do.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
@@ -32,9 +33,7 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
     if any(isinstance(child, Verbatim) for node in view.nodes for child in node.node.children):
         return  # unchecked XML may name any entry
     yield from _misspelt_booleans(mentions, view, tree.name.text)
-    counts: dict[str, int] = {}
-    for mention in mentions:
-        counts[mention.name] = counts.get(mention.name, 0) + 1
+    counts = Counter(mention.name for mention in mentions)
     if min(counts.values()) > 1:
         return
     others = dict.fromkeys((*counts, *(port.name.text for port in tree.ports if port.name is not None)))

@@ -53,10 +53,7 @@ def while_skip_is_success(view: View) -> Iterator[Diagnostic]:
         pair = next((pair for pair in seen.node.attributes if pair.key.text == "_while"), None)
         if pair is None or not result(view, seen.node).ever & RUNNING:
             continue
-        step = seen
-        while step.parent is not None and step.parent.flow in _PASS_SKIPPED_ON:
-            step = step.parent
-        parent = step.parent
+        step, parent = _skipped(seen)
         if parent is None or not _takes_for_success(parent, step) or _is_choice(parent, step):
             continue
         yield Diagnostic(
@@ -79,10 +76,7 @@ def skipped_condition(view: View) -> Iterator[Diagnostic]:
         pair = next((pair for pair in seen.node.attributes if pair.key.text in ("_skipIf", "_while")), None)
         if pair is None:
             continue
-        condition = seen
-        while condition.parent is not None and condition.parent.flow in _PASS_SKIPPED_ON:
-            condition = condition.parent
-        parent = condition.parent
+        condition, parent = _skipped(seen)
         if parent is None or not (parent.flow == "together" or (parent.flow == "choice" and not condition.index)):
             continue
         yield Diagnostic(
@@ -91,6 +85,13 @@ def skipped_condition(view: View) -> Iterator[Diagnostic]:
             f"if `{pair.key.text}` skips {seen.shown_kind}, {parent.shown_kind} throws and the mission ends",
             notes=(f"move `{pair.key.text}` to {parent.shown_kind}, or check it in a ScriptCondition",),
         )
+
+
+def _skipped(seen: ResolvedNode) -> tuple[ResolvedNode, ResolvedNode | None]:
+    """The node that is skipped with one, and its parent, which must do something about it."""
+    while seen.parent is not None and seen.parent.flow in _PASS_SKIPPED_ON:
+        seen = seen.parent
+    return seen, seen.parent
 
 
 def _takes_for_success(parent: ResolvedNode, step: ResolvedNode) -> bool:

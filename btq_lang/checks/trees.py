@@ -241,11 +241,7 @@ def tree_root_count(view: View) -> Iterator[Diagnostic]:
         extra,
         f"a tree must have one node at its top, found {len(tree.children)}",
         related=(Related(Place(first), "first one"),),
-        notes=(
-            "put them below one node, such as a Sequence"
-            if view.is_xml
-            else "put them below one node, such as a Sequence `->`",
-        ),
+        notes=(f"put them below one node, such as a Sequence{'' if view.is_xml else ' `->`'}",),
     )
 
 

@@ -313,7 +313,7 @@ def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[Targe
         rank = _EVERY
         if selector.path is not None:
             top = reader.target(selector.path)
-            below = _under(reader, selector.every.text, top) if top is not None else ()
+            below = reader.store.ask(nodes.every_under, reader.viewpoint, selector.every.text, top) if top else ()
             if found and top is not None and not below and reader.knows_all_nodes:
                 shown = "/".join(name.text for name in selector.path.names)
                 message = f"no node matches `every {selector.every.raw}` below `{shown}`"
@@ -324,10 +324,6 @@ def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[Targe
         target = reader.target(selector.path)
         if target is not None:
             yield target, _PATH
-
-
-def _under(reader: Reader, name: str, top: Target) -> tuple[ResolvedNode, ...]:
-    return reader.store.ask(nodes.every_under, reader.viewpoint, name, top)
 
 
 def _arguments(

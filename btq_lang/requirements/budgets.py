@@ -226,20 +226,15 @@ class TreeBudgets:
 
     def _work_out(self, top: ResolvedNode) -> None:
         """Compose a node, after those that it depends on."""
-        waiting = [top] if id(top) not in self._held else []
-        while waiting:
-            node = waiting[-1]
-            missing = [child for child in node.children if id(child) not in self._held]
-            if missing:
-                waiting += missing
-                continue
-            waiting.pop()
-            if id(node) not in self._held:
-                composed = self._composed[id(node)] = self._compose(node)
-                claims = self._claims.get(id(node), [])
-                held = _with_claims(composed, claims) if claims or composed.probability < 1.0 else composed
-                self._held[id(node)] = _with_attributes(node, held) if node.node.attributes else held
-                self._successes[id(node)] = self._succeeding(node)
+        missing = [top] if id(top) not in self._held else []
+        for node in missing:  # each before the nodes below it
+            missing += [child for child in node.children if id(child) not in self._held]
+        for node in reversed(missing):
+            composed = self._composed[id(node)] = self._compose(node)
+            claims = self._claims.get(id(node), [])
+            held = _with_claims(composed, claims) if claims or composed.probability < 1.0 else composed
+            self._held[id(node)] = _with_attributes(node, held) if node.node.attributes else held
+            self._successes[id(node)] = self._succeeding(node)
 
     def _outcome_of(self, node: ResolvedNode) -> Outcome:
         """The outcome of the tree that a SubTree node runs."""
