@@ -21,7 +21,6 @@ from btq_lang.util.text import Span
 
 def impossible_bound(view: View) -> Iterator[Diagnostic]:
     """A fractional number of attempts, a negative time, and attempts of a mission, which starts once."""
-    limits: dict[int, bool] = {}  # by the `id` of the requirement, which may have thousands of claims
     for requirement, claim in _claims(view):
         bound, verb = claim.bound, claim.verb.raw
         operand = VERBS[verb].operand
@@ -39,11 +38,11 @@ def impossible_bound(view: View) -> Iterator[Diagnostic]:
                 is_lower = bound.relation in (">=", ">") or (bound.relation == "between" and amount is bound.value)
                 if what == "count" and is_count and not claim.every:
                     yield from _count(requirement, claim, amount, number, is_lower)
-                elif what == "time" and operand in _TIMED:
-                    if id(requirement) not in limits:
-                        limits[id(requirement)] = _is_enforceable(view, requirement)
-                    if not (limits[id(requirement)] and VERBS[verb].limits):
-                        yield from _time(amount, number, is_lower)
+                    continue
+                is_never = what == "time" and operand in _TIMED and (number < 0 or (number == 0 and not is_lower))
+                if is_never and not (VERBS[verb].limits and _is_enforceable(view, requirement)):
+                    message = f"a duration must be longer than zero, found `{_shown(amount)}`"
+                    yield Diagnostic("impossible-bound", amount.word.span, message)
 
 
 def uses_of_gauge(view: View) -> Iterator[Diagnostic]:
@@ -110,12 +109,6 @@ def _count(
     if amount.word.kind == NUMBER and not amount.negative and not isinstance(claim.per, syntax.Word):
         fixes = (replace_fix(f"Write `{whole}`", amount.word.span, str(whole)),)
     yield Diagnostic("impossible-bound", amount.word.span, message, notes=notes, fixes=fixes)
-
-
-def _time(amount: syntax.Amount, number: float, is_lower: bool) -> Iterator[Diagnostic]:
-    if number < 0 or (number == 0 and not is_lower):
-        message = f"a duration must be longer than zero, found `{_shown(amount)}`"
-        yield Diagnostic("impossible-bound", amount.word.span, message)
 
 
 def _shown(amount: syntax.Amount) -> str:

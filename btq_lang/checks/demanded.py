@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from math import inf
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -44,25 +43,19 @@ class Demanded:
         self.view: Final = view
         self.tree: Final = view.ask(tree_nodes, path, facts)
         self.budgets: Final = Budgets(view.store, view.path)
-        applied = view.ask(applied_in, path, facts).applied
-        self.claims: Final = tuple(_claims(view, applied, self.budgets))
-        self.hard: Final = tuple(_hard_claims(view, applied, self.budgets))
-
-
-def _hard_claims(
-    view: View, in_tree: Iterable[Applied], budgets: Budgets
-) -> Iterator[tuple[Applied, Claim, ResolvedNode, Place | None, str | None]]:
-    held = [applied for applied in in_tree if applied.requirement.demands_enforcement]
-    if not held:
-        return
-    judge = judge_of(view)
-    for applied in held:
-        for claim in applied.requirement.claims:
-            node = _node(applied, claim, budgets) or applied.nodes[0]
-            place = reported_at(view, applied, claim)
-            if place is None and node.path == view.path:
-                place = node.place
-            yield applied, claim, node, place, judge.why_not(applied, claim)
+        self.claims: Final[list[tuple[Applied, Claim, ResolvedNode, Place]]] = []
+        self.hard: Final[list[tuple[Applied, Claim, ResolvedNode, Place | None, str | None]]] = []
+        judge: Judge | None = None
+        for applied in view.ask(applied_in, path, facts).applied:
+            for claim in applied.requirement.claims:
+                node, place = _node(applied, claim, self.budgets), reported_at(view, applied, claim)
+                if node is not None and place is not None:
+                    self.claims.append((applied, claim, node, place))
+                if applied.requirement.demands_enforcement:
+                    judge = judge or judge_of(view)
+                    node = node or applied.nodes[0]
+                    shown = node.place if place is None and node.path == view.path else place
+                    self.hard.append((applied, claim, node, shown, judge.why_not(applied, claim)))
 
 
 def judge_of(view: View) -> Judge:
@@ -70,17 +63,6 @@ def judge_of(view: View) -> Judge:
     from btq_lang.btcpp.enforceability import Judge  # few missions have a claim that is to be enforced
 
     return Judge(view.store, view.path, lambda: view.ask(mission), files=None, is_shared=view.is_included)
-
-
-def _claims(
-    view: View, held: Iterable[Applied], budgets: Budgets
-) -> Iterator[tuple[Applied, Claim, ResolvedNode, Place]]:
-    for applied in held:
-        for claim in applied.requirement.claims:
-            node = _node(applied, claim, budgets)
-            place = reported_at(view, applied, claim) if node is not None else None
-            if node is not None and place is not None:
-                yield applied, claim, node, place
 
 
 def _node(applied: Applied, claim: Claim, budgets: Budgets) -> ResolvedNode | None:

@@ -197,10 +197,7 @@ def duplicate_definition(view: View) -> Iterator[Diagnostic]:
     """A second signal, context or quality of one name, or a second model with another interface."""
     for first, second in view.clashes(*_DEFINED_ONCE):
         if not _is_same_model(first.symbol, second.symbol):
-            both = (
-                Related(first.place, COUNTS),
-                Related(second.place, "second definition"),
-            )
+            both = Related(first.place, COUNTS), Related(second.place, "second definition")
             yield _second(second.symbol, view.head, both, "this file includes a second definition of")
     for symbol in view.facts.summary.symbols:
         if symbol.kind not in _DEFINED_ONCE or not view.is_repeated(symbol.kind, symbol.name):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import inf
+from math import inf, prod
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension
@@ -135,9 +135,7 @@ def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
         loops = _loops(node, claim.per.node)
         if not loops:
             continue
-        count = 1
-        for _, times in loops:
-            count *= times
+        count = prod(times for _, times in loops)
         related = tuple(Related(loop.place, f"{times} times") for loop, times in loops)
         allowed = int(most[0])
         if count > allowed:
@@ -213,8 +211,7 @@ def _tightest_timeout(node: ResolvedNode) -> tuple[ResolvedNode, float] | None:
 def _loops(node: ResolvedNode, top: ResolvedNode) -> list[tuple[ResolvedNode, int]]:
     """The loops between a node and one above it in the same tree, with their counts; empty if one is unknown."""
     found: list[tuple[ResolvedNode, int]] = []
-    at: ResolvedNode | None = node.parent if node is not top else None
-    while at is not None:
+    for at in node.ancestors() if node is not top else ():
         if at.flow in ("retry", "repeat"):
             count = port_count(at, "count")
             if count is None or count < 1:
@@ -222,7 +219,6 @@ def _loops(node: ResolvedNode, top: ResolvedNode) -> list[tuple[ResolvedNode, in
             found.append((at, count))
         if at is top:
             return found
-        at = at.parent
     return []
 
 

@@ -84,17 +84,13 @@ def condition_without_recheck(view: View) -> Iterator[Diagnostic]:
     choices = [seen for seen in view.seen.of_flow("fallback") if not _begins_again(seen)]
     if not choices or not view.is_main:
         return
-    nodes = {id(seen.node): seen for seen in view.nodes}
-    for seen in choices:
-        if not _is_at_the_top(seen):
-            continue
+    for seen in filter(_is_at_the_top, choices):
         guard: ResolvedNode | None = None
-        for child in seen.node.nodes:
-            if guard is not None and result(view, child).usual & RUNNING:
-                fixable = _can_be_asked_again(view, nodes, seen)
-                yield _not_asked_again(view, seen, guard, child, fixable=fixable)
+        for child in seen.children:
+            if guard is not None and result(view, child.node).usual & RUNNING:
+                yield _not_asked_again(view, seen, guard, child.node, fixable=_can_be_asked_again(view, seen))
                 break
-            guard = guard or _guard(nodes, nodes[id(child)])
+            guard = guard or _guard(child)
 
 
 def _second_async_sequence(seen: ResolvedNode, version: str) -> Diagnostic | None:
@@ -148,7 +144,7 @@ def _begins_again(seen: ResolvedNode) -> bool:
     return seen.kind is not None and seen.kind.reactive and seen.kind.flow in GOES_ON
 
 
-def _guard(nodes: dict[int, ResolvedNode], branch: ResolvedNode) -> ResolvedNode | None:
+def _guard(branch: ResolvedNode) -> ResolvedNode | None:
     """The condition that begins a branch `-> [condition, …]`; a condition alone is not a branch: what follows it in the
     Fallback achieves it. One in `R->` guards what runs beside it: it is evaluated all the while."""
     if not _is_resuming_sequence(branch) or len(branch.node.children) < 2:
@@ -156,8 +152,7 @@ def _guard(nodes: dict[int, ResolvedNode], branch: ResolvedNode) -> ResolvedNode
     seen: ResolvedNode | None = branch
     while seen is not None and seen.category != "Condition":
         inside = _is_resuming_sequence(seen) or seen.flow == "invert"
-        first = seen.node.children[0] if inside and seen.node.children else None
-        seen = nodes.get(id(first))
+        seen = next((child for child in seen.children if inside and child.index == 0), None)
     return seen
 
 
@@ -165,13 +160,10 @@ def _is_resuming_sequence(seen: ResolvedNode) -> bool:
     return seen.flow == "sequence" and not _begins_again(seen)
 
 
-def _can_be_asked_again(view: View, nodes: dict[int, ResolvedNode], seen: ResolvedNode) -> bool:
+def _can_be_asked_again(view: View, seen: ResolvedNode) -> bool:
     """Whether `R?` would restart only what its condition is for: any other child that takes time and fails would
     restart at the next tick, and halt what was to follow it."""
-    return all(
-        _guard(nodes, nodes[id(child)]) is not None or not result(view, child).ever & RUNNING
-        for child in seen.node.nodes[:-1]
-    )
+    return all(_guard(child) is not None or not result(view, child.node).ever & RUNNING for child in seen.children[:-1])
 
 
 def _not_asked_again(view: View, seen: ResolvedNode, guard: ResolvedNode, branch: Node, *, fixable: bool) -> Diagnostic:

@@ -341,11 +341,9 @@ class Reader(PathReader):
 
     def _has_unknown_unit(self, term: Term) -> bool:
         """Whether the word after a number is reported as an unknown unit: `45 sek`."""
-        from bisect import bisect_left  # few numbers lack a unit
-
         starts = inputs.unknown_units(self.store, self.path, self.facts)
-        at = bisect_left(starts, term.span.end)
-        return at < len(starts) and not self.text(term.span.end, starts[at]).strip()
+        after = next((start for start in starts if start >= term.span.end), None)
+        return after is not None and not self.text(term.span.end, after).strip()
 
     # ---- conditions ----
 
