@@ -14,27 +14,12 @@ from btq_lang.diagnostics.model import Diagnostic, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements import model, nodes
 from btq_lang.requirements.definitions import requirement
-from btq_lang.requirements.model import (
-    Applied,
-    Argument,
-    Bounded,
-    Every,
-    InContext,
-    Mission,
-    Parameter,
-    Requirement,
-    Span,
-    Subject,
-    Target,
-    Trace,
-    Use,
-)
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Problems, Reader
 from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import Record, fields_of, replace
 from btq_lang.util.spelling import did_you_mean, near
-from btq_lang.util.text import Span as TextSpan
+from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
@@ -52,15 +37,15 @@ class Attached(Record):
         traces: `satisfies` at nodes, for requirements whose claims all name their own subjects.
     """
 
-    applied: tuple[Applied, ...] = ()
-    traces: tuple[Trace, ...] = ()
+    applied: tuple[model.Applied, ...] = ()
+    traces: tuple[model.Trace, ...] = ()
     problems: Problems = ()
 
 
 # ---- what an item attaches ----
 
 
-def uses_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> tuple[tuple[Use, ...], Problems]:
+def uses_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> tuple[tuple[model.Use, ...], Problems]:
     """What a tree or an `apply` attaches to which nodes, and what is wrong with that."""
     reader = Reader(store, viewpoint, path, facts)
     item = facts.item
@@ -82,7 +67,7 @@ def attached_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
 
 def applied_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Attached:
     """What applies to nodes of a tree, in the order of the requirements; a span by the node that it begins at."""
-    by_name: dict[str, tuple[list[Applied], list[Use]]] = {}
+    by_name: dict[str, tuple[list[model.Applied], list[model.Use]]] = {}
     for applied in store.ask(_claimed_in, viewpoint, facts):
         by_name.setdefault(applied.requirement.name, ([], []))[0].append(applied)
     for use in uses_of_nodes(store, viewpoint, path, facts):
@@ -92,8 +77,8 @@ def applied_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts)
     names = [*by_name]
     if len(names) > 1:
         names.sort(key=store.ask(_order, viewpoint).__getitem__)
-    found: list[Applied] = []
-    traces: list[Trace] = []
+    found: list[model.Applied] = []
+    traces: list[model.Trace] = []
     problems: list[Problem] = []
     for name in names:
         claimed, uses = by_name[name]
@@ -104,7 +89,7 @@ def applied_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts)
     return Attached(tuple(found), tuple(traces), tuple(problems))
 
 
-def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequence[Use]) -> Attached:
+def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequence[model.Use]) -> Attached:
     """What a requirement applies to by some of its attachments: all of those to certain nodes."""
     of_name, _ = store.ask(requirement, viewpoint, name)
     if not uses or of_name is None:
@@ -112,15 +97,17 @@ def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequen
     which = tuple([at for at, claim in enumerate(of_name.claims) if claim.subject is None])
     counting, problems = _most_specific(of_name, uses)
     if of_name.claims and not which:
-        return Attached(traces=tuple([Trace(name, use.target.node) for use in counting]), problems=problems)
+        return Attached(traces=tuple([model.Trace(name, use.target.node) for use in counting]), problems=problems)
     applied = [
-        Applied(_with(store, viewpoint, of_name, which, use.arguments), use.target, use.arguments, use.place, use.how)
+        model.Applied(
+            _with(store, viewpoint, of_name, which, use.arguments), use.target, use.arguments, use.place, use.how
+        )
         for use in counting
     ]
     return Attached(tuple(applied), problems=problems)
 
 
-def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Iterable[Use]:
+def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Iterable[model.Use]:
     """The attachments to nodes of a tree, in the order of the items that make them."""
     own, _ = store.ask(uses_in, viewpoint, path, facts)
     given = store.ask(_given_to, viewpoint, facts) if inputs.applies(store, viewpoint) else ()
@@ -130,12 +117,12 @@ def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Fac
     return sorted((*own, *given), key=lambda use: order[id(use.place.anchor)])
 
 
-def _given_to(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[Use, ...]:
+def _given_to(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[model.Use, ...]:
     """What `apply` items attach to nodes of a tree."""
     return store.ask(_given, viewpoint).get(facts, ())
 
 
-def _given(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[Use, ...]]:
+def _given(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[model.Use, ...]]:
     uses = [use for each in inputs.applies(store, viewpoint) for use in store.ask(uses_in, viewpoint, *each)[0]]
     return _by_tree((use.target.node.facts, use) for use in uses)
 
@@ -143,7 +130,7 @@ def _given(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[Use, ..
 # ---- claims with a subject of their own ----
 
 
-def claimed(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Applied, ...]:
+def claimed(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Applied, ...]:
     """What the claims of a requirement with subjects of their own apply to."""
     if name not in inputs.claiming(store, viewpoint):
         return ()
@@ -151,16 +138,16 @@ def claimed(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Applied
     return tuple(_by_subject(store, viewpoint, of_name)) if of_name is not None else ()
 
 
-def claimed_of_no_tree(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Applied, ...]:
+def claimed_of_no_tree(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Applied, ...]:
     """Those of them whose subject is in no tree: sums, and spans that do not begin with a node."""
     return tuple([each for each in store.ask(claimed, viewpoint, name) if _home(each) is None])
 
 
-def _claimed_in(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[Applied, ...]:
+def _claimed_in(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[model.Applied, ...]:
     return store.ask(_claimed_by_tree, viewpoint).get(facts, ())
 
 
-def _claimed_by_tree(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[Applied, ...]]:
+def _claimed_by_tree(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[model.Applied, ...]]:
     names = inputs.claiming(store, viewpoint)
     found = [(_home(each), each) for name in names for each in store.ask(claimed, viewpoint, name)]
     return _by_tree((home, each) for home, each in found if home is not None)
@@ -173,10 +160,10 @@ def _by_tree(found: Iterable[tuple[Facts, T]]) -> dict[Facts, tuple[T, ...]]:
     return {facts: tuple(each) for facts, each in lists.items()}
 
 
-def _home(applied: Applied) -> Facts | None:
+def _home(applied: model.Applied) -> Facts | None:
     """The tree that a subject is in, or that a span begins in."""
-    subject = applied.subject.first.subject if isinstance(applied.subject, Span) else applied.subject
-    node = subject.node if isinstance(subject, Target | Mission) else None
+    subject = applied.subject.first.subject if isinstance(applied.subject, model.Span) else applied.subject
+    node = subject.node if isinstance(subject, model.Target | model.Mission) else None
     return node.facts if node is not None else None
 
 
@@ -191,10 +178,10 @@ def _order(store: Store[Workspace], viewpoint: str) -> dict[str, int]:
 def _with(
     store: Store[Workspace],
     viewpoint: str,
-    of_name: Requirement,
+    of_name: model.Requirement,
     which: tuple[int, ...],
-    arguments: tuple[Argument, ...],
-) -> Requirement:
+    arguments: tuple[model.Argument, ...],
+) -> model.Requirement:
     """A requirement with some of its claims, and with arguments in place of its parameters; cached, for most nodes get
     the same one."""
     if not arguments and len(which) == len(of_name.claims):
@@ -203,22 +190,22 @@ def _with(
 
 
 def _filled(
-    store: Store[Workspace], viewpoint: str, name: str, which: tuple[int, ...], arguments: tuple[Argument, ...]
-) -> Requirement:
+    store: Store[Workspace], viewpoint: str, name: str, which: tuple[int, ...], arguments: tuple[model.Argument, ...]
+) -> model.Requirement:
     of_name, _ = store.ask(requirement, viewpoint, name)
     assert of_name is not None, "whoever asks has seen it"
     claims = tuple([of_name.claims[at] for at in which if at < len(of_name.claims)])
     filled = _filled_part(replace(of_name, claims=claims), {each.name: each.value for each in arguments})
-    assert isinstance(filled, Requirement), "a part is filled with a part of its kind"
+    assert isinstance(filled, model.Requirement), "a part is filled with a part of its kind"
     return replace(filled, parameters=of_name.parameters)
 
 
-def _filled_part(part: object, values: dict[str, Bounded]) -> object:
-    if isinstance(part, Parameter):
+def _filled_part(part: object, values: dict[str, model.Bounded]) -> object:
+    if isinstance(part, model.Parameter):
         return values.get(part.name, part)
     if isinstance(part, tuple):
         return tuple([_filled_part(each, values) for each in part])
-    if type(part).__module__ != model.__name__ or isinstance(part, InContext):
+    if type(part).__module__ != model.__name__ or isinstance(part, model.InContext):
         return part  # a context has no parameters
     fields = fields_of(part)
     if "signal" in fields and "verb" not in fields:
@@ -232,28 +219,30 @@ def _filled_part(part: object, values: dict[str, Bounded]) -> object:
     return replace(part, **changes) if changes else part
 
 
-def _by_subject(store: Store[Workspace], viewpoint: str, of_name: Requirement) -> Iterator[Applied]:
+def _by_subject(store: Store[Workspace], viewpoint: str, of_name: model.Requirement) -> Iterator[model.Applied]:
     """A claim's own subject takes precedence over what the requirement is attached to."""
-    arguments = tuple(Argument(each.name, each.default) for each in of_name.parameters if each.default is not None)
+    arguments = tuple(
+        model.Argument(each.name, each.default) for each in of_name.parameters if each.default is not None
+    )
     if len(arguments) < len(of_name.parameters):
         return
-    groups: dict[object, tuple[Subject, list[int]]] = {}
+    groups: dict[object, tuple[model.Subject, list[int]]] = {}
     for at, claim in enumerate(of_name.claims):
         subject = claim.subject
-        if isinstance(subject, Every):
+        if isinstance(subject, model.Every):
             for node in store.ask(nodes.every, viewpoint, subject.name):
-                groups.setdefault(id(node), (Target(node), []))[1].append(at)
-        elif isinstance(subject, Target) and not subject.through:
+                groups.setdefault(id(node), (model.Target(node), []))[1].append(at)
+        elif isinstance(subject, model.Target) and not subject.through:
             groups.setdefault(id(subject.node), (subject, []))[1].append(at)
         elif subject is not None:
             groups.setdefault(subject, (subject, []))[1].append(at)
     for subject, which in groups.values():
         made = _with(store, viewpoint, of_name, tuple(which), arguments)
         place = of_name.claims[which[0]].place
-        yield Applied(made, subject, arguments, place, "subject")  # type: ignore[arg-type]  # no Every is left
+        yield model.Applied(made, subject, arguments, place, "subject")  # type: ignore[arg-type]  # no Every is left
 
 
-def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[Use]:
+def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[model.Use]:
     of_tree = reader.store.ask(tree_nodes, reader.viewpoint, reader.path, reader.facts)
     places: list[tuple[ResolvedNode | None, tuple[syntax.NodeClause, ...]]] = [(of_tree.root, tree.clauses)]
     places += [(node, node.node.clauses) for node in of_tree.all if node.node.clauses]
@@ -265,10 +254,12 @@ def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[Use]:
                 continue
             arguments = _arguments(reader, of_name, written, word.span)
             if arguments is not None and node is not None:
-                yield Use(of_name.name, Target(node), arguments, _AT_NODE, "satisfies", reader.place(word.span))
+                yield model.Use(
+                    of_name.name, model.Target(node), arguments, _AT_NODE, "satisfies", reader.place(word.span)
+                )
 
 
-def _applied_by(reader: Reader, apply: syntax.Apply) -> Iterator[Use]:
+def _applied_by(reader: Reader, apply: syntax.Apply) -> Iterator[model.Use]:
     targets = [found for selector in apply.targets for found in _selected(reader, selector)]
     excepted = _excepted(reader, apply, {id(target.node) for target, _ in targets})
     for reference in apply.uses:
@@ -279,10 +270,10 @@ def _applied_by(reader: Reader, apply: syntax.Apply) -> Iterator[Use]:
         place = reader.place(reference.name.span)
         for target, rank in targets:
             if id(target.node) not in excepted:
-                yield Use(of_name.name, target, arguments, rank, "apply", place)
+                yield model.Use(of_name.name, target, arguments, rank, "apply", place)
 
 
-def _requirement(reader: Reader, name: str) -> Requirement | None:
+def _requirement(reader: Reader, name: str) -> model.Requirement | None:
     return reader.store.ask(requirement, reader.viewpoint, name)[0]
 
 
@@ -293,19 +284,19 @@ def _excepted(reader: Reader, apply: syntax.Apply, applied_to: set[int]) -> set[
         named = {id(target.node) for target, _ in _selected(reader, selector)}
         if named and applied_to and named.isdisjoint(applied_to) and reader.knows_all_nodes:
             message = "`except` has no effect: the selector does not match any of these nodes"
-            span = TextSpan(selector.start, selector.end)
+            span = Span(selector.start, selector.end)
             reader.complain("unmatched-path", span, message, severity=Severity.WARNING)
         excepted |= named
     return excepted
 
 
-def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[Target, int]]:
+def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[model.Target, int]]:
     """The nodes of a selector, and how specific it is."""
     if selector.tag is not None:
         found = reader.store.ask(nodes.tagged, reader.viewpoint, selector.tag.text)
         if not found:
             reader.no_tag(selector.tag)
-        yield from ((Target(node), _EVERY) for node in found)
+        yield from ((model.Target(node), _EVERY) for node in found)
     elif selector.every is not None:
         found = reader.store.ask(nodes.every, reader.viewpoint, selector.every.text)
         if not found:
@@ -319,7 +310,7 @@ def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[Targe
                 message = f"no node matches `every {selector.every.raw}` below `{shown}`"
                 reader.complain("unmatched-path", selector.every.span, message)
             found, rank = below, _EVERY_UNDER
-        yield from ((Target(node), rank) for node in found)
+        yield from ((model.Target(node), rank) for node in found)
     elif selector.path is not None:
         target = reader.target(selector.path)
         if target is not None:
@@ -327,10 +318,10 @@ def _selected(reader: Reader, selector: syntax.Selector) -> Iterator[tuple[Targe
 
 
 def _arguments(
-    reader: Reader, of_name: Requirement, written: syntax.Requirement | syntax.ReqRef, span: TextSpan
-) -> tuple[Argument, ...] | None:
+    reader: Reader, of_name: model.Requirement, written: syntax.Requirement | syntax.ReqRef, span: Span
+) -> tuple[model.Argument, ...] | None:
     """The values of the parameters; None if one is missing or wrong, which is reported."""
-    given: dict[str, Bounded] = {}
+    given: dict[str, model.Bounded] = {}
     complete = True
     parameters = {parameter.name: parameter for parameter in of_name.parameters}
     for argument in written.arguments if isinstance(written, syntax.ReqRef) else ():
@@ -357,10 +348,10 @@ def _arguments(
     if missing or not complete:
         return None
     values = ((each.name, given.get(each.name, each.default)) for each in of_name.parameters)
-    return tuple(Argument(name, value) for name, value in values if value is not None)
+    return tuple(model.Argument(name, value) for name, value in values if value is not None)
 
 
-def _no_parameter(reader: Reader, of_name: Requirement, argument: syntax.Argument) -> None:
+def _no_parameter(reader: Reader, of_name: model.Requirement, argument: syntax.Argument) -> None:
     word: syntax.Word = argument.name
     known = [parameter.name for parameter in of_name.parameters]
     likely = [name for name in near(word.text, known) if syntax.is_name(name)]
@@ -376,12 +367,12 @@ def _no_parameter(reader: Reader, of_name: Requirement, argument: syntax.Argumen
     )
 
 
-def _most_specific(of_name: Requirement, uses: Sequence[Use]) -> tuple[list[Use], Problems]:
+def _most_specific(of_name: model.Requirement, uses: Sequence[model.Use]) -> tuple[list[model.Use], Problems]:
     """One use for each node, or for each way that a path leads to it; and the problems where equally specific ones
     differ."""
-    found: list[Use] = []
+    found: list[model.Use] = []
     problems: list[Problem] = []
-    of_node: dict[tuple[int, tuple[str, ...]], list[Use]] = {}
+    of_node: dict[tuple[int, tuple[str, ...]], list[model.Use]] = {}
     for use in uses:
         of_node.setdefault((id(use.target.node), use.target.through), []).append(use)
     for same in of_node.values():
@@ -405,12 +396,12 @@ def _most_specific(of_name: Requirement, uses: Sequence[Use]) -> tuple[list[Use]
     return found, tuple(problems)
 
 
-def _values(use: Use) -> tuple[object, ...]:
+def _values(use: model.Use) -> tuple[object, ...]:
     """Equal for arguments that mean the same, however they are written."""
     return tuple(getattr(argument.value, "si", argument.value) for argument in use.arguments)
 
 
-def _said(use: Use) -> str:
+def _said(use: model.Use) -> str:
     return ", ".join(f"{argument.name} = {argument.value.text}" for argument in use.arguments)
 
 

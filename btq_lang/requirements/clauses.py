@@ -12,37 +12,20 @@ from typing import Final
 
 from btq_lang.catalog.units import Dimension, a_dimension
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.requirements import nodes
-from btq_lang.requirements.model import (
-    NO_DIMENSION,
-    Claim,
-    Event,
-    Every,
-    Limit,
-    Mission,
-    Odds,
-    Parameter,
-    Requirement,
-    Scope,
-    Signal,
-    Span,
-    Subject,
-    Target,
-    Total,
-    Value,
-    Window,
-)
+from btq_lang.requirements import model, nodes
 from btq_lang.requirements.reader import Reader
 from btq_lang.requirements.terms import COUNT, DURATION, PERCENT, SORTS, TIME, Wanted, sort_of
 from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import replace
-from btq_lang.util.text import Span as TextSpan
+from btq_lang.util.text import Span
 
 
-def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[syntax.Clause, ...]) -> Requirement:
+def with_clauses(
+    reader: Reader, requirement: model.Requirement, clauses: tuple[syntax.Clause, ...]
+) -> model.Requirement:
     """A requirement with these clauses resolved; of clauses that may occur once, the first counts."""
-    claims: list[Claim] = []
-    scopes: list[Scope] = []
+    claims: list[model.Claim] = []
+    scopes: list[model.Scope] = []
     once: dict[str, object] = {}
     reasons: list[str] = []
     goals: list[syntax.Goal] = []
@@ -55,7 +38,7 @@ def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[syntax
             condition = reader.condition(clause.condition)
             if condition is not None:
                 word = "while" if clause.word.raw == "while" else "when"
-                scopes.append(Scope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
+                scopes.append(model.Scope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
         elif isinstance(clause, syntax.Odds):
             found["odds"] = _odds(reader, clause)
         elif isinstance(clause, syntax.Confidence):
@@ -84,9 +67,9 @@ def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[syntax
     )
 
 
-def claim_of(reader: Reader, written: syntax.Claim) -> Claim | None:
+def claim_of(reader: Reader, written: syntax.Claim) -> model.Claim | None:
     """What a claim demands; None if a part of it was not understood."""
-    subject: Subject | None = None
+    subject: model.Subject | None = None
     if written.subject is not None:
         subject = _subject(reader, written.subject)
         if subject is None:
@@ -97,9 +80,9 @@ def claim_of(reader: Reader, written: syntax.Claim) -> Claim | None:
     return found if found is None or subject is None else replace(found, subject=subject)
 
 
-def _verb(reader: Reader, written: syntax.Claim) -> Claim | None:
-    place = reader.place(TextSpan(written.start, written.end))
-    claim = Claim(written.verb.raw, reader.text(written.start, written.end), place)
+def _verb(reader: Reader, written: syntax.Claim) -> model.Claim | None:
+    place = reader.place(Span(written.start, written.end))
+    claim = model.Claim(written.verb.raw, reader.text(written.start, written.end), place)
     operand = VERBS[claim.verb].operand
     if operand == "condition":
         condition = reader.condition(written.condition)
@@ -109,7 +92,7 @@ def _verb(reader: Reader, written: syntax.Claim) -> Claim | None:
         return replace(claim, event=event) if event is not None else None
     if operand == "deadline" and written.bound is None:
         return claim
-    signal: Signal | None = None
+    signal: model.Signal | None = None
     wanted: Wanted | None = DURATION if operand in _TIMED or written.every else _COUNTED
     if operand == "use":
         signal, wanted = _resource(reader, written.resource)
@@ -126,7 +109,7 @@ def _verb(reader: Reader, written: syntax.Claim) -> Claim | None:
     return claim if per is None else replace(claim, per=per)
 
 
-def _resource(reader: Reader, word: syntax.Word | None) -> tuple[Signal | None, Wanted | None]:
+def _resource(reader: Reader, word: syntax.Word | None) -> tuple[model.Signal | None, Wanted | None]:
     """The signal that is used up, and the kind of its difference over an activation."""
     if word is None:
         return None, None
@@ -142,57 +125,57 @@ def _resource(reader: Reader, word: syntax.Word | None) -> tuple[Signal | None, 
     if signal.unit is None:
         return None, None
     unit = "K" if signal.unit.offset else signal.unit.symbol
-    plain = signal.unit.dimension == NO_DIMENSION
+    plain = signal.unit.dimension == model.NO_DIMENSION
     what = f"{a_dimension(signal.unit)} (the dimension of `{signal.name}`)"
     return signal, Wanted(what, (signal.unit.dimension,), None if plain else unit, "difference")
 
 
-def _limit(reader: Reader, written: syntax.Bound | None, wanted: Wanted) -> Limit | None:
+def _limit(reader: Reader, written: syntax.Bound | None, wanted: Wanted) -> model.Limit | None:
     if written is None:
         return None
     value = reader.bounded(written.value, wanted)
     upper = reader.bounded(written.upper, wanted)
     if value is None or (written.relation == "between" and upper is None):
         return None
-    return Limit(written.relation, value, upper)  # type: ignore[arg-type]  # the parser's relations
+    return model.Limit(written.relation, value, upper)  # type: ignore[arg-type]  # the parser's relations
 
 
-def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> Target | Value | None:
+def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> model.Target | model.Value | None:
     if isinstance(written, syntax.Path):
         return reader.target(written)
     return reader.quantity(written, DURATION) if written is not None else None
 
 
-def _event(reader: Reader, written: syntax.Event | None) -> Event | None:
+def _event(reader: Reader, written: syntax.Event | None) -> model.Event | None:
     if written is None:
         return None
     if written.happening == "when":
         condition = reader.condition(written.condition)
-        return Event("when", None, condition) if condition is not None else None
-    subject = reader.target(written.path) if written.path is not None else Mission(reader.mission)
-    return Event(written.happening, subject) if subject is not None else None  # type: ignore[arg-type]  # the parser's words
+        return model.Event("when", None, condition) if condition is not None else None
+    subject = reader.target(written.path) if written.path is not None else model.Mission(reader.mission)
+    return model.Event(written.happening, subject) if subject is not None else None  # type: ignore[arg-type]  # the parser's words
 
 
-def _subject(reader: Reader, written: syntax.Subject) -> Subject | None:
+def _subject(reader: Reader, written: syntax.Subject) -> model.Subject | None:
     if isinstance(written, syntax.Path):
         return reader.target(written)
     if isinstance(written, syntax.Mission):
-        return Mission(reader.mission)
+        return model.Mission(reader.mission)
     if isinstance(written, syntax.Every):
         if not reader.store.ask(nodes.has_any, reader.viewpoint, written.name.text):
             reader.none_of(written.name)
             return None
-        return Every(written.name.text)
+        return model.Every(written.name.text)
     if isinstance(written, syntax.Between):
         first, last = _event(reader, written.first), _event(reader, written.last)
-        return Span(first, last) if first is not None and last is not None else None
+        return model.Span(first, last) if first is not None and last is not None else None
     assert isinstance(written, syntax.Sum), "the last kind of subject"
     targets = [reader.target(path) for path in written.paths]
     found = tuple(target for target in targets if target is not None)
-    return Total(found) if len(found) == len(targets) else None
+    return model.Total(found) if len(found) == len(targets) else None
 
 
-def _odds(reader: Reader, written: syntax.Odds) -> Odds | None:
+def _odds(reader: Reader, written: syntax.Odds) -> model.Odds | None:
     share = reader.quantity(written.value, _SHARE)
     if share is None or written.value is None:
         return None
@@ -205,8 +188,8 @@ def _odds(reader: Reader, written: syntax.Odds) -> Odds | None:
         return None
     of_runs = written.experiments is not None and written.experiments.raw == "runs"
     text = reader.text(written.start, written.end)
-    place = reader.place(TextSpan(written.start, written.end))
-    return Odds(written.relation, share.si, "runs" if of_runs else "activations", text, place)
+    place = reader.place(Span(written.start, written.end))
+    return model.Odds(written.relation, share.si, "runs" if of_runs else "activations", text, place)
 
 
 def _confidence(reader: Reader, written: syntax.Confidence) -> float | None:
@@ -220,11 +203,11 @@ def _confidence(reader: Reader, written: syntax.Confidence) -> float | None:
     return share.si
 
 
-def _window(reader: Reader, written: syntax.Window) -> Window | None:
+def _window(reader: Reader, written: syntax.Window) -> model.Window | None:
     if written.size is None:
         return None
     text = reader.text(written.start, written.end)
-    place = reader.place(TextSpan(written.start, written.end))
+    place = reader.place(Span(written.start, written.end))
     if written.experiments is not None:
         count = float(written.size.raw)
         if not 1 <= count < inf or count != int(count):
@@ -233,12 +216,12 @@ def _window(reader: Reader, written: syntax.Window) -> Window | None:
             )
             return None
         of_runs = written.experiments.raw == "runs"
-        return Window(int(count), "runs" if of_runs else "activations", None, text, place)
+        return model.Window(int(count), "runs" if of_runs else "activations", None, text, place)
     duration = reader.quantity(written.size, DURATION)
-    return Window(None, "activations", duration.si, text, place) if duration is not None else None
+    return model.Window(None, "activations", duration.si, text, place) if duration is not None else None
 
 
-def _of_goal(claims: list[Claim], has_odds: bool) -> Wanted | None:
+def _of_goal(claims: list[model.Claim], has_odds: bool) -> Wanted | None:
     """What a goal measures: the same as the bounds, with odds perhaps a probability; None: anything."""
     dimensions: dict[Dimension, str | None] = {PERCENT: "%"} if has_odds else {}
     for claim in claims:
@@ -249,15 +232,15 @@ def _of_goal(claims: list[Claim], has_odds: bool) -> Wanted | None:
         elif claim.signal is not None and claim.signal.unit is not None:
             dimensions[claim.signal.unit.dimension] = claim.signal.unit.symbol
         else:
-            dimensions |= {NO_DIMENSION: None, COUNT: None}
+            dimensions |= {model.NO_DIMENSION: None, COUNT: None}
     unit = next(iter(dimensions.values())) if len(dimensions) == 1 else None
     return Wanted("a goal of the same dimension as the bound", tuple(dimensions), unit) if claims else None
 
 
-def parameter_of(reader: Reader, written: syntax.Parameter) -> Parameter:
+def parameter_of(reader: Reader, written: syntax.Parameter) -> model.Parameter:
     """A parameter with its default."""
     sort, unit = sort_of(written.unit)
-    parameter = Parameter(written.name.text, sort, unit, None)
+    parameter = model.Parameter(written.name.text, sort, unit, None)
     default = reader.argument(parameter, written.default) if written.default is not None else None
     return replace(parameter, default=default)
 
@@ -265,7 +248,7 @@ def parameter_of(reader: Reader, written: syntax.Parameter) -> Parameter:
 _TIMED: Final = ("duration", "deadline", "reaction")
 
 
-_COUNTED: Final = Wanted("a number", (NO_DIMENSION, COUNT), None)
+_COUNTED: Final = Wanted("a number", (model.NO_DIMENSION, COUNT), None)
 
 
 _SHARE: Final = Wanted("a percentage", (PERCENT,), "%")

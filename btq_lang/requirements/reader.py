@@ -13,28 +13,7 @@ from typing import Final, TypeAlias
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import a_dimension, to_si
 from btq_lang.diagnostics.model import Fix, replace_fix
-from btq_lang.requirements.model import (
-    NO_DIMENSION,
-    Aggregate,
-    All,
-    Any,
-    Arithmetic,
-    Bounded,
-    Case,
-    Compare,
-    Condition,
-    Flag,
-    InContext,
-    Minus,
-    Not,
-    Parameter,
-    Read,
-    Running,
-    Signal,
-    Table,
-    Text,
-    Value,
-)
+from btq_lang.requirements import model
 from btq_lang.requirements.paths import PathReader, Problem
 from btq_lang.requirements.terms import (
     DURATION,
@@ -70,7 +49,7 @@ Problems: TypeAlias = tuple[Problem, ...]
 # ---- what names mean, each with the problems of its definition ----
 
 
-def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Signal | None, Problems]:
+def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Signal | None, Problems]:
     """The signal with a name; None if it is not declared."""
     found = inputs.definition(store, viewpoint, Kind.SIGNAL, name)
     if found is None:
@@ -87,8 +66,8 @@ def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Signal |
     place = reader.place(symbol.span)
     initially = None
     if item.initially is not None:
-        initially = reader.argument(Parameter(name, sort, unit, None), item.initially)
-    read = Signal(
+        initially = reader.argument(model.Parameter(name, sort, unit, None), item.initially)
+    read = model.Signal(
         name,
         sort,
         unit,
@@ -101,7 +80,7 @@ def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Signal |
     return read, reader.problems
 
 
-def context(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Condition | None, Problems]:
+def context(store: Store[Workspace], viewpoint: str, name: str) -> tuple[model.Condition | None, Problems]:
     """The condition of a context; None if it cannot be understood."""
     found = inputs.definition(store, viewpoint, Kind.CONTEXT, name)
     if found is None:
@@ -153,7 +132,7 @@ class Reader(PathReader):
 
     # ---- look-ups ----
 
-    def signal(self, name: str) -> Signal | None:
+    def signal(self, name: str) -> model.Signal | None:
         """The signal with a name."""
         if self._known is not None and name not in self._known:
             return None
@@ -167,7 +146,7 @@ class Reader(PathReader):
 
     # ---- values ----
 
-    def bounded(self, written: syntax.Bounded | None, wanted: Wanted | None) -> Bounded | None:
+    def bounded(self, written: syntax.Bounded | None, wanted: Wanted | None) -> model.Bounded | None:
         """A value, or a table of values, of the wanted kind; None: any."""
         if written is None:
             return None
@@ -179,21 +158,21 @@ class Reader(PathReader):
         for case in written.cases:
             value = self.bounded(case.value, wanted)
             condition = self.condition(case.condition) if case.condition is not None else None
-            if value is None or isinstance(value, Table) or condition is None:
+            if value is None or isinstance(value, model.Table) or condition is None:
                 return None
-            cases.append(Case(value, condition))
+            cases.append(model.Case(value, condition))
         otherwise = self.bounded(written.otherwise, wanted)
-        if otherwise is None or isinstance(otherwise, Table):
+        if otherwise is None or isinstance(otherwise, model.Table):
             return None
-        return Table((*cases, Case(otherwise, None)))
+        return model.Table((*cases, model.Case(otherwise, None)))
 
-    def argument(self, parameter: Parameter, written: syntax.Bounded) -> Bounded | None:
+    def argument(self, parameter: model.Parameter, written: syntax.Bounded) -> model.Bounded | None:
         """The argument for a parameter, or the first value of a signal."""
         if parameter.sort == "number":
             unit = parameter.unit
             if unit is None:
                 return self.bounded(written, None)
-            plain = unit.dimension == NO_DIMENSION
+            plain = unit.dimension == model.NO_DIMENSION
             return self.bounded(written, Wanted(a_dimension(unit), (unit.dimension,), None if plain else unit.symbol))
         found = self.bounded(written, None)
         for value, place in amounts(found, written):
@@ -203,12 +182,12 @@ class Reader(PathReader):
                 return None
         return found
 
-    def quantity(self, word: syntax.Word | None, wanted: Wanted) -> Value | None:
+    def quantity(self, word: syntax.Word | None, wanted: Wanted) -> model.Value | None:
         """A quantity or a number by itself."""
         term = self._number(word, False) if word is not None else None
         if term is None or not self._fits(term, wanted):
             return None
-        return term.value if isinstance(term.value, Value) else None
+        return term.value if isinstance(term.value, model.Value) else None
 
     def _amount(self, amount: syntax.Amount, wanted: Wanted | None) -> Term | None:
         if amount.word.kind in (NUMBER, QUANTITY):
@@ -218,7 +197,7 @@ class Reader(PathReader):
     def _number(self, word: syntax.Word, negative: bool) -> Term | None:
         raw = f"-{word.raw}" if negative else word.raw
         if word.kind == NUMBER:
-            term = Term(Value(raw, float(raw), ONE), "number", NO_DIMENSION, None, word.span, word=word)
+            term = Term(model.Value(raw, float(raw), ONE), "number", model.NO_DIMENSION, None, word.span, word=word)
             return term if self._is_finite(float(raw), word) else None
         found = parse_quantity(raw)
         if found is None:
@@ -228,7 +207,7 @@ class Reader(PathReader):
         if not self._is_finite(value, word):
             return None
         level: Level = "level" if unit.offset else "either"
-        return Term(Value(raw, value, unit), "number", unit.dimension, unit_text, word.span, level, word)
+        return Term(model.Value(raw, value, unit), "number", unit.dimension, unit_text, word.span, level, word)
 
     def _is_finite(self, value: float, word: syntax.Word) -> bool:
         if not isfinite(value):
@@ -247,13 +226,13 @@ class Reader(PathReader):
         """
         name = word.text
         if word.kind == STRING:
-            return Term(Text(name), "text", None, None, word.span)
+            return Term(model.Text(name), "text", None, None, word.span)
         if name in ("true", "false"):
-            return Term(Flag(name == "true"), "bool", None, None, word.span)
+            return Term(model.Flag(name == "true"), "bool", None, None, word.span)
         if name in self.parameters:
             return term_of(self.parameters[name], word)
         if (signal := self.signal(name)) is not None:
-            return term_of(Read(signal), word)
+            return term_of(model.Read(signal), word)
         if self.is_context(name):
             self.complain("unit-mismatch", word.span, f"`{name}` is a context, not a value")
         elif in_bound or not self._is_subtraction(word):
@@ -347,7 +326,7 @@ class Reader(PathReader):
 
     # ---- conditions ----
 
-    def condition(self, written: syntax.Condition | None) -> Condition | None:
+    def condition(self, written: syntax.Condition | None) -> model.Condition | None:
         """A condition; None if a part of it was not understood."""
         if isinstance(written, syntax.Operand):
             return self._lone(written.word)
@@ -355,7 +334,7 @@ class Reader(PathReader):
             return self._running(written.path)
         if isinstance(written, syntax.Not):
             operand = self.condition(written.operand)
-            return Not(operand) if operand is not None else None
+            return model.Not(operand) if operand is not None else None
         if isinstance(written, syntax.Binary) and written.operator in ("and", "or"):
             return self._joined(written)
         if isinstance(written, syntax.Comparison):
@@ -368,11 +347,11 @@ class Reader(PathReader):
                 self._no_condition(term)
         return None
 
-    def _running(self, path: syntax.Path) -> Condition | None:
+    def _running(self, path: syntax.Path) -> model.Condition | None:
         target = self.target(path)
-        return Running(target) if target is not None else None
+        return model.Running(target) if target is not None else None
 
-    def _joined(self, written: syntax.Binary) -> Condition | None:
+    def _joined(self, written: syntax.Binary) -> model.Condition | None:
         parts: list[syntax.Condition] = []
         at: syntax.Condition = written
         while isinstance(at, syntax.Binary) and at.operator == written.operator:
@@ -382,9 +361,9 @@ class Reader(PathReader):
         found = tuple(condition for condition in conditions if condition is not None)
         if len(found) < len(conditions):
             return None
-        return All(found) if written.operator == "and" else Any(found)
+        return model.All(found) if written.operator == "and" else model.Any(found)
 
-    def _lone(self, word: syntax.Word) -> Condition | None:
+    def _lone(self, word: syntax.Word) -> model.Condition | None:
         """A context, a bool signal or parameter, `true` or `false`, or else a running node."""
         name = word.text
         if word.kind in (NUMBER, QUANTITY):
@@ -396,12 +375,12 @@ class Reader(PathReader):
             is_value = self._is_value(name)
             if not is_value and self.is_context(name):
                 condition, _ = self.store.ask(context, self.viewpoint, name)
-                return InContext(name, condition) if condition is not None else None
+                return model.InContext(name, condition) if condition is not None else None
             if name in ("true", "false"):
-                return Flag(name == "true")
+                return model.Flag(name == "true")
             if is_value:
                 term = self._named(word)
-                if term is not None and term.sort == "bool" and isinstance(term.value, Read | Parameter):
+                if term is not None and term.sort == "bool" and isinstance(term.value, model.Read | model.Parameter):
                     return term.value
                 if term is not None:
                     self._no_condition(term)
@@ -431,7 +410,7 @@ class Reader(PathReader):
             return syntax.Path(tuple(reversed(words)))
         return None
 
-    def _compare(self, written: syntax.Comparison) -> Condition | None:
+    def _compare(self, written: syntax.Comparison) -> model.Condition | None:
         terms: list[Term | None] = [None] * len(written.operands)
         # An undeclared name may get the unit of what it is compared with, so names come last.
         for at, operand in sorted(enumerate(written.operands), key=lambda each: self._is_unknown(each[1])):
@@ -446,7 +425,7 @@ class Reader(PathReader):
         ok = True
         for operator, left, right in zip(written.operators, found, found[1:], strict=False):
             ok = self._comparable(left, right, operator) and ok
-        return Compare(written.operators, tuple(term.value for term in found)) if ok else None
+        return model.Compare(written.operators, tuple(term.value for term in found)) if ok else None
 
     def _is_unknown(self, written: syntax.Condition) -> bool:
         if not isinstance(written, syntax.Operand) or written.word.kind != NAME:
@@ -503,7 +482,7 @@ class Reader(PathReader):
             if isinstance(inner, syntax.Operand) and inner.word.kind in (NUMBER, QUANTITY):
                 return self._number(inner.word, True)
             term = self._expression(inner)
-            return term and Term(Minus(term.value), term.sort, term.dimension, term.unit, term.span, term.level)
+            return term and Term(model.Minus(term.value), term.sort, term.dimension, term.unit, term.span, term.level)
         if isinstance(written, syntax.Call):
             return self._call(written)
         if isinstance(written, syntax.Binary) and written.operator in "+-*/":
@@ -523,9 +502,9 @@ class Reader(PathReader):
             return None
         span = Span(written.start, written.end)
         function = written.function.text
-        value = Aggregate(function, signal)
+        value = model.Aggregate(function, signal)
         if function == "count":
-            return Term(value, "number", NO_DIMENSION, None, span)
+            return Term(value, "number", model.NO_DIMENSION, None, span)
         if signal.sort != "number":
             message = f"`{function}` requires a number, but `{signal.name}` is {SORTS[signal.sort]}"
             self.complain("unit-mismatch", span, message)
@@ -548,7 +527,7 @@ class Reader(PathReader):
                 message = f"`{written.operator}` requires numbers, found `{self._at(term.span)}` ({in_words(term)})"
                 self.complain("unit-mismatch", span, message)
                 return None
-        value = Arithmetic(written.operator, left.value, right.value)
+        value = model.Arithmetic(written.operator, left.value, right.value)
         if left.dimension is None or right.dimension is None:
             return Term(value, "number", None, None, span)
         if written.operator in "*/":
@@ -563,7 +542,7 @@ class Reader(PathReader):
         unit = left.unit if level != "difference" or left.level != "level" else "K"
         return Term(value, "number", left.dimension, unit, span, level)
 
-    def _product(self, value: Arithmetic, left: Term, right: Term, span: Span) -> Term | None:
+    def _product(self, value: model.Arithmetic, left: Term, right: Term, span: Span) -> Term | None:
         assert left.dimension is not None, "the caller has looked"
         assert right.dimension is not None, "the caller has looked"
         for term in (left, right):
@@ -576,7 +555,7 @@ class Reader(PathReader):
         dimension = tuple([a + sign * b for a, b in pairs])
         unit = (
             left.unit
-            if right.dimension == NO_DIMENSION
+            if right.dimension == model.NO_DIMENSION
             else right.unit
             if sign == 1 and not any(left.dimension)
             else None

@@ -8,20 +8,7 @@ from __future__ import annotations
 from typing import Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import Dimension, Unit, a_dimension, parse_unit
-from btq_lang.requirements.model import (
-    NO_DIMENSION,
-    Aggregate,
-    Bounded,
-    Flag,
-    Number,
-    Parameter,
-    Read,
-    Simple,
-    Sort,
-    Table,
-    Text,
-    Value,
-)
+from btq_lang.requirements import model
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.tokens import NUMBER
 from btq_lang.util.record import Record
@@ -56,8 +43,8 @@ class Term(Record):
         word: if it is a literal.
     """
 
-    value: Number
-    sort: Sort
+    value: model.Number
+    sort: model.Sort
     dimension: Dimension | None
     unit: str | None
     span: Span
@@ -70,33 +57,33 @@ class Term(Record):
         return self.word is not None and self.word.kind == NUMBER
 
 
-def amounts(found: Bounded | None, written: syntax.Bounded) -> tuple[tuple[Simple, Span], ...]:
+def amounts(found: model.Bounded | None, written: syntax.Bounded) -> tuple[tuple[model.Simple, Span], ...]:
     """Each value with its place."""
     if found is None:
         return ()
-    if isinstance(found, Table) and isinstance(written, syntax.Table):
+    if isinstance(found, model.Table) and isinstance(written, syntax.Table):
         amounts = (*(case.value for case in written.cases), written.otherwise)
         pairs = zip(found.cases, amounts, strict=True)
         return tuple((case.value, amount.word.span) for case, amount in pairs if amount is not None)
-    assert not isinstance(found, Table), "a table is read from a table"
+    assert not isinstance(found, model.Table), "a table is read from a table"
     assert isinstance(written, syntax.Amount), "a table is read from a table"
     return ((found, written.word.span),)
 
 
-def sort_of_value(value: Simple) -> Sort:
-    if isinstance(value, Read):
+def sort_of_value(value: model.Simple) -> model.Sort:
+    if isinstance(value, model.Read):
         return value.signal.sort
-    if isinstance(value, Parameter):
+    if isinstance(value, model.Parameter):
         return value.sort
-    return "number" if isinstance(value, Value) else "bool" if isinstance(value, Flag) else "text"
+    return "number" if isinstance(value, model.Value) else "bool" if isinstance(value, model.Flag) else "text"
 
 
-def simple(value: Number) -> Simple | None:
-    return value if isinstance(value, Value | Flag | Text | Read | Parameter) else None
+def simple(value: model.Number) -> model.Simple | None:
+    return value if isinstance(value, model.Value | model.Flag | model.Text | model.Read | model.Parameter) else None
 
 
-def term_of(value: Read | Parameter, word: syntax.Word) -> Term:
-    kind = value.signal if isinstance(value, Read) else value
+def term_of(value: model.Read | model.Parameter, word: syntax.Word) -> Term:
+    kind = value.signal if isinstance(value, model.Read) else value
     unit = kind.unit
     if kind.sort != "number" or unit is None:
         return Term(value, kind.sort, None, None, word.span)
@@ -112,7 +99,7 @@ def unit_beside(term: Term | None) -> str:
 
 
 def unit_symbol(unit: Unit) -> str | None:
-    return unit.symbol if unit.dimension != NO_DIMENSION else None
+    return unit.symbol if unit.dimension != model.NO_DIMENSION else None
 
 
 def sum_level(operator: str, left: Level, right: Level) -> Level | None:
@@ -126,8 +113,8 @@ def sum_level(operator: str, left: Level, right: Level) -> Level | None:
 
 def is_count_of(term: Term, other: Term) -> bool:
     """Whether it is `count(…)`, which is both a plain number and a count."""
-    is_count = isinstance(term.value, Aggregate) and term.value.function == "count"
-    return is_count and other.dimension in (NO_DIMENSION, COUNT)
+    is_count = isinstance(term.value, model.Aggregate) and term.value.function == "count"
+    return is_count and other.dimension in (model.NO_DIMENSION, COUNT)
 
 
 def in_words(term: Term) -> str:
@@ -136,7 +123,7 @@ def in_words(term: Term) -> str:
     return a_dimension(Unit("", term.dimension, 1.0)) if term.dimension is not None else "a number"
 
 
-def sort_of(written: syntax.Word | None) -> tuple[Sort, Unit | None]:
+def sort_of(written: syntax.Word | None) -> tuple[model.Sort, Unit | None]:
     """The meaning of the word after the `:` of a signal or a parameter."""
     if written is not None and written.text in ("bool", "text"):
         return ("bool" if written.text == "bool" else "text"), None
@@ -145,7 +132,7 @@ def sort_of(written: syntax.Word | None) -> tuple[Sort, Unit | None]:
 
 OF_PYTHON: Final = ("True", "False")
 SORTS: Final = {"bool": "true or false", "text": "a text"}
-ONE: Final = Unit("1", NO_DIMENSION, 1.0)
+ONE: Final = Unit("1", model.NO_DIMENSION, 1.0)
 
 
 def _dimension_of(symbol: str) -> Dimension:
