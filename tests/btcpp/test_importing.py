@@ -219,6 +219,9 @@ def test_models() -> None:
             </Action>
             <SubTree ID="S"/>
             <MetadataFields/>
+            <Action ID="Dock">
+              <MetadataFields by="hand"><Metadata color="red"/></MetadataFields>
+            </Action>
           </TreeNodesModel>
           <Unknown a="1"><b/></Unknown>
         </root>
@@ -242,6 +245,8 @@ def test_models() -> None:
                 xml "<MetadataFields/>"
             SubTree S
             xml "<MetadataFields/>"
+            Action Dock
+                xml '<MetadataFields by="hand"><Metadata color="red"/></MetadataFields>'
 
         xml '<Unknown a="1"><b/></Unknown>'
         """,
@@ -464,6 +469,17 @@ def test_a_node_that_version_3_has_already_says_nothing_new(node: str) -> None:
     change, *_ = import_xml(xml).changes
     assert change.message == 'BTCPP_format="4" is added'
     assert xml[change.span.start : change.span.end] == 'root main_tree_to_execute="T"'
+
+
+def test_what_is_translated_is_named_with_its_place() -> None:
+    node = '<SequenceStar><SubTree ID="S" __shared_blackboard="true" a="b"/></SequenceStar>'
+    xml = f'<root><BehaviorTree ID="T">{node}</BehaviorTree></root>'
+    assert [xml[change.span.start : change.span.end] for change in import_xml(xml).changes] == [
+        "root",
+        "SequenceStar",
+        '__shared_blackboard="true"',
+        'a="b"',
+    ]
 
 
 def test_version_3_is_kept_if_asked() -> None:
