@@ -1,4 +1,4 @@
-"""The semantic tokens of a stretch of a file, mostly an item: the words that its tree names, and the text between.
+"""The semantic tokens of an item: the words that its tree names, and the text between and after them.
 
 One invariant: tokens are in the order of the text, none overlaps another, none crosses a line end.  The text between
 two words of a tree is nearly always one of a few, so its tokens are cached by text.
@@ -10,6 +10,8 @@ import re
 from functools import lru_cache
 from typing import Final, TypeAlias
 
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.checks.lookups import edition
 from btq_lang.ide.appearance import (
     DEFINED,
     NEW_NODE,
@@ -28,70 +30,24 @@ from btq_lang.ide.appearance import (
 from btq_lang.ide.meaning import match_of
 from btq_lang.lexer import pieces
 from btq_lang.syntax.tokens import COMMENT, OPERATOR, SYMBOL
-from btq_lang.syntax.tree import Entry, Node, Pair, Requirement, Word
-from btq_lang.util.record import Record
+from btq_lang.syntax.tree import Node, Pair, Requirement, Word
 from btq_lang.util.text import LINE_END, Encoding, Span, width_of
+from btq_lang.workspace.inputs import definition
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.references import Listener, Mention, Owner, What, report
+from btq_lang.workspace.workspace import Workspace
 
 Token: TypeAlias = tuple[int, int, str]  # start, end and appearance
-World: TypeAlias = tuple[str, tuple[str, ...], tuple[str, ...]]
 
 
-class Known:
-    """What colouring a file needs to know of the rest of the workspace.
-
-    Attributes:
-        world: all that it may use: the edition of the quality model, the names of trees, and custom qualities.
-        asked: the names that were looked up.
-    """
-
-    def __init__(self, world: World) -> None:
-        self.world = world
-        self.asked: set[str] = set()
-        self._edition = world[0]
-        self._trees, self._qualities = frozenset(world[1]), frozenset(world[2])
-
-    def is_tree(self, name: str) -> bool:
-        self.asked.add(name)
-        return name in self._trees
-
-    def is_standard(self, name: str) -> bool:
-        """Whether a quality is a standard one, and not a custom one."""
-        self.asked.add(name)
-        return name not in self._qualities and match_of(name, self._edition).quality is not None
-
-    def answers(self, names: frozenset[str]) -> tuple[str, frozenset[str], frozenset[str]]:
-        """A value that changes when a look-up of one of these names does."""
-        return self._edition, names & self._trees, names & self._qualities
-
-
-class Stretch(Record):
-    """A part of a file that can be tokenized by itself: an item, seldom more, and the text after it."""
-
-    start: int
-    end: int
-    entries: tuple[Entry, ...]
-
-
-class Encoded(Record):
-    """The tokens of a stretch.
-
-    Attributes:
-        tokens: five integers of each, in JSON: lines and columns from the previous token or from the start of the
-            stretch, length, type, and modifiers as bits.
-        line: of the last one, counted from the start of the stretch.
-    """
-
-    tokens: list[str]
-    line: int
-
-
-def encoded(text: str, stretch: Stretch, known: Known, encoding: Encoding) -> Encoded:
-    """The tokens of a stretch with this text."""
-    words = _Words(known)
-    for entry in stretch.entries:
-        words.by = entry.start - stretch.start
-        report(entry.item, words)
+def encoded(
+    store: Store[Workspace], path: str, item: Facts | None, text: str, encoding: Encoding
+) -> tuple[list[str], int]:
+    """The tokens of a text that an item begins, or none, as `encode` returns them."""
+    words = _Words(store, path)
+    if item is not None:
+        report(item.item, words)
     words.found.sort()
     tokens: list[Token] = []
     at = 0
@@ -106,17 +62,13 @@ def encoded(text: str, stretch: Stretch, known: Known, encoding: Encoding) -> En
 
 
 class _Words(Listener):
-    """The words of a tree as tokens.
+    """The words of an item as tokens."""
 
-    Attributes:
-        by: the start of the item.
-    """
-
-    def __init__(self, known: Known) -> None:
+    def __init__(self, store: Store[Workspace], path: str) -> None:
         super().__init__()
-        self.by = 0
         self.found: list[Token] = []
-        self._known = known
+        self._store = store
+        self._path = path
 
     def word(
         self,
@@ -131,22 +83,19 @@ class _Words(Listener):
             appearance = (DEFINED if defines else USED).get(what)
             if appearance is None:
                 appearance = self._appearance(what, word, word.text, defines, owner)
-            start = word.start + self.by
-            self.found.append((start, start + len(raw), appearance))
+            self.found.append((word.start, word.start + len(raw), appearance))
 
     def words(self, what: What, words: tuple[Word, ...], span: Span, node: Node | None = None) -> None:
         appearance = self._appearance(what, words[-1], ".".join([word.text for word in words]), False, None)
         for word in words:
-            start = word.start + self.by
-            self.found.append((start, start + len(word.raw), appearance))
+            self.found.append((word.start, word.start + len(word.raw), appearance))
 
     def value(self, word: Word) -> None:
-        start = word.start + self.by
-        self.found.append((start, start + len(word.raw), PLAIN.get(word.kind, TEXT)))
+        self.found.append((word.start, word.start + len(word.raw), PLAIN.get(word.kind, TEXT)))
 
     def part(self, mention: Mention) -> None:
         """Split the word around a reference, if it was the previous one."""
-        begin, end = mention.span.start + self.by, mention.span.end + self.by
+        begin, end = mention.span
         if begin == end:
             return
         appearance = WRITTEN if mention.writes else (DEFINED if mention.defines else USED).get(mention.what)
@@ -170,12 +119,14 @@ class _Words(Listener):
         if what is What.QUALITY:
             if defines:
                 return NEW_QUALITY
-            return STANDARD_QUALITY if self._known.is_standard(name) else OWN_QUALITY
+            is_own = definition(self._store, self._path, Kind.QUALITY, name) is not None
+            is_standard = not is_own and match_of(name, edition(self._store, self._path)).quality is not None
+            return STANDARD_QUALITY if is_standard else OWN_QUALITY
         if what is What.VALUE:
             is_own = isinstance(owner, Requirement) and any(one.name.text == name for one in owner.parameters)
             return USED[What.PARAMETER] if is_own else VALUE
         assert what is What.PLACE, "a rule belongs to no item, and the appearance of all other words is known"
-        return USED[What.TREE] if self._known.is_tree(name) else OWN_NODE
+        return OWN_NODE if definition(self._store, self._path, Kind.TREE, name) is None else USED[What.TREE]
 
 
 def _between(text: str, start: int, end: int) -> list[Token]:
@@ -212,8 +163,13 @@ def _lexed(text: str) -> list[Token]:
     return found
 
 
-def encode(text: str, tokens: list[Token], encoding: Encoding) -> Encoded:
-    """The tokens, which are in the order of the text; one that crosses a line end becomes one on each line."""
+def encode(text: str, tokens: list[Token], encoding: Encoding) -> tuple[list[str], int]:
+    """The five integers of each token in JSON, and the line of the last one; lines and columns count from the previous
+    token, or from the start of the text.
+
+    Args:
+        tokens: in the order of the text; one that crosses a line end becomes one on each line.
+    """
     is_plain = encoding == "code-points" or text.isascii()
     has_returns = "\r" in text
     found: list[str] = []
@@ -237,7 +193,7 @@ def encode(text: str, tokens: list[Token], encoding: Encoding) -> Encoded:
         else:
             found.append(f"{at - line},{place},{length}{appearance}")
         line, column = at, place
-    return Encoded(found, line)
+    return found, line
 
 
 def _next_line(text: str, at: int, has_returns: bool) -> int:

@@ -23,16 +23,15 @@ from btq_lang.workspace.workspace import Workspace
 def colours_in_xml(workspace: Workspace, path: str, encoding: Encoding) -> Colours:
     """The tokens of a file's XML."""
     file = workspace.files[path]
-    made = encode(file.source, _tokens(file), encoding)
-    part = part_of(made, made.line)
-    return Colours((part,), (part.first,)) if part.size else Colours((), ())
+    part = part_of(encode(file.source, _tokens(file), encoding)[0], 0)
+    return Colours(((part.first, 0, part.others),) if part.others else ())
 
 
 def encoded_in_xml(workspace: Workspace, path: str, within: Span, encoding: Encoding) -> list[int]:
     """The tokens that touch a span of the XML."""
     file = workspace.files[path]
     tokens = [token for token in _tokens(file) if token[0] <= within.end and within.start <= token[1]]
-    data: list[int] = json.loads(f"[{','.join(encode(file.source, tokens, encoding).tokens)}]")
+    data: list[int] = json.loads(f"[{','.join(encode(file.source, tokens, encoding)[0])}]")
     return data
 
 

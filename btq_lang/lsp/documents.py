@@ -7,6 +7,7 @@ import json
 
 from lsprotocol import types
 
+from btq_lang import ide as features
 from btq_lang.lsp.editor import EMPTY_REPORT, Server
 from btq_lang.lsp.progress import checking
 from btq_lang.lsp.protocol import Json
@@ -42,7 +43,9 @@ def register(server: Server) -> None:
         if _is_cpp(path):
             return
         server.versions.pop(path, None)
-        server.tokens.pop(path, None)
+        workspace = session.workspace_of(path)
+        if server.tokens.pop(path, None) is not None and workspace is not None:
+            features.colours.forget(workspace, path, convert.encoding)
         server.check_soon((path, *session.close(path)))
 
 

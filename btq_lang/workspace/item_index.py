@@ -23,15 +23,10 @@ Said: TypeAlias = Kind | Literal["asked_for", "claiming", "node_names", "runs"]
 
 
 class Facts:
-    """What follows from an item alone: computed on demand, and valid as long as the item exists.
-
-    Attributes:
-        colours: a cache of its semantic tokens, for `ide`, which knows what else they depend on.
-    """
+    """What follows from an item alone: computed on demand, and valid as long as the item exists."""
 
     def __init__(self, item: Item) -> None:
         self.item = item
-        self.colours: object = None
 
     @cached_property
     def summary(self) -> Summary:

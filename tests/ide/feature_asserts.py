@@ -22,7 +22,7 @@ from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.ide.actions import code_actions
 from btq_lang.ide.calls import called, callers, prepare_calls
-from btq_lang.ide.colours import colours, difference, encoded_within, groups, stretch_of
+from btq_lang.ide.colours import colours, difference, encoded_within
 from btq_lang.ide.completion import Completion, complete
 from btq_lang.ide.describe import documentation, include_edits
 from btq_lang.ide.hints import code_lenses, inlay_hints
@@ -566,9 +566,8 @@ def answer_everything(
         assert _lies_in(link.span, whole)
     for outline in document_symbols(workspace, "main.btq"):
         assert _lies_in(outline.span, whole)
-    stretches = [stretch_of(file.parsed, len(text), *group) for group in groups(file.parsed)]
-    parts = [text[part.start : part.end] for part in stretches]
-    assert "".join(parts) == text
+    starts = [0, *(entry.start for entry in file.parsed.entries), len(text)]
+    parts = [text[start:end] for start, end in pairwise(starts)]  # each is coloured by itself
     words = [word for part in parts for word in words_of(tokens_of(part))]
     assert words == words_of(file.parsed.tokens)
     lines = LineIndex(text)
