@@ -105,8 +105,9 @@ def _finish(name: str, run: Callable[[Any], int], options: object) -> int:
     try:
         code = run(options)
         sys.stdout.flush()
-    except Refused as reason:
-        print(f"btq {name}: {reason}", file=sys.stderr)
+    except Refused as refused:
+        for reason in refused.args:
+            print(f"btq {name}: {reason}", file=sys.stderr)
         return TROUBLE
     except KeyboardInterrupt:
         return 130

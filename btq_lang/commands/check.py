@@ -82,25 +82,25 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
             raise Refused("no baseline to update; name it with --baseline, or in btq.toml")
         parameter_files = _parameter_files(files, options)
         groups = _chosen(groups, parameter_files, options)
+        if options.diff:
+            tell(problems)
+            code = _show_fixes(groups, options, bool(problems))
+        else:
+            mended = 0
+            if options.fix:
+                from btq_lang.commands.fixing import fix, write_fixes
+
+                after, mended = fix(groups, lambda diagnostic: _is_wanted(diagnostic, options))
+                groups, trouble = write_fixes(groups, after, files.stdin)
+                problems += trouble
+                mended = 0 if trouble else mended  # fixes that could not be written do not count
+            tell(problems)
+            why_empty = None if parameter_files else empty
+            code = _report(groups, parameter_files, options, files, problems, mended, why_empty)
     except Refused as reason:
         print(f"btq check: {reason}", file=sys.stderr)
-        return 2, _watched(groups)
-    watched = tuple(each.path for each in files.parameter_files)
-    mended = 0
-    if options.diff:
-        tell(problems)
-        return _show_fixes(groups, options, bool(problems)), (*_watched(groups), *watched)
-    if options.fix:
-        from btq_lang.commands.fixing import fix, write_fixes
-
-        after, mended = fix(groups, lambda diagnostic: _is_wanted(diagnostic, options))
-        groups, trouble = write_fixes(groups, after, files.stdin)
-        problems += trouble
-        mended = 0 if trouble else mended  # fixes that could not be written do not count
-    tell(problems)
-    why_empty = None if parameter_files else empty
-    code = _report(groups, parameter_files, options, files, problems, mended, why_empty)
-    return code, (*_watched(groups), *watched)
+        code = 2
+    return code, (*_watched(groups), *(each.path for each in files.parameter_files))
 
 
 def _report(
@@ -147,10 +147,10 @@ def _report(
         findings = together(findings)
     why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)
     report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), why_empty, known)
-    is_written = write_report(report, options, mended)
+    write_report(report, options, mended)
     if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
         print(f"btq check: {empty}", file=sys.stderr)
-    if problems or empty or not is_written:
+    if problems or empty:
         return 2
     fails = any(finding.diagnostic.effective_severity in _FAILS for finding in findings)
     return int(fails and not options.exit_zero)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-import sys
 from argparse import Namespace
 
+from btq_lang.commands.options import Refused
 from btq_lang.commands.output import form_of, form_problem, write_output
 from btq_lang.commands.stored import NO_STORE, store_of_project
 from btq_lang.evidence.compare import FORMATS, write
@@ -21,8 +21,7 @@ def run(options: Namespace) -> int:
         problem = "--label goes with --by robot"
     if problem or store is None:
         one = f"one {options.by} given; compare two, as in btq compare {sides[0]} A B"
-        print(f"btq compare: {problem or (one if os.path.isdir(sides[0]) else NO_STORE)}", file=sys.stderr)
-        return 2
+        raise Refused(problem or (one if os.path.isdir(sides[0]) else NO_STORE))
     from btq_lang.evidence.compare.comparison import Unknown, compare
     from btq_lang.evidence.store.engine import NoEngine, asked
 
@@ -30,10 +29,8 @@ def run(options: Namespace) -> int:
         found = compare(asked(store, options.label), options.by, sides)
     except (NoEngine, Unknown) as error:
         of = f" with the label {options.label}" if options.label is not None and isinstance(error, Unknown) else ""
-        print(f"btq compare: {error}{of}", file=sys.stderr)
-        return 2
-    if code := write_output("compare", options.output, write(found, options.by, sides, form_of(options, FORMATS))):
-        return code
+        raise Refused(f"{error}{of}") from error
+    write_output(options.output, write(found, options.by, sides, form_of(options, FORMATS)))
     return int(any(each.is_worse for each in found))
 
 

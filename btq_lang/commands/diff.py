@@ -189,7 +189,7 @@ def _groups(paths: list[str], stdin_filename: str | None = None) -> tuple[Group,
 
 def _raise(problems: tuple[LoadProblem, ...]) -> None:
     if problems:
-        raise Refused("\nbtq diff: ".join(map(str, problems)))
+        raise Refused(*problems)
 
 
 # ---- revisions ----

@@ -24,16 +24,14 @@ def run(options: Namespace) -> int:
     if len(given) > 1:
         problems += (LoadProblem(given[1][1], "expected one file to draw, found more"),)
     tell(problems)
-    if empty := no_mission_below(options.paths, groups):
-        print(f"btq graph: {empty}", file=sys.stderr)
+    refuse(no_mission_below(options.paths, groups))
     if problems or not given:
         return 2
     ((workspace, path),) = given
     found = figures(workspace, path, options.qualities)
     if not found:
         raise Refused(f"{shown(path)} has no trees")
-    if code := write_output("graph", options.output, draw(found, form_of(options, FORMATS), options.direction)):
-        return code
+    write_output(options.output, draw(found, form_of(options, FORMATS), options.direction))
     unread = [each for each in check(workspace, path) if each.rule in UNREADABLE]
     if unread:
         text = workspace.files[path].source

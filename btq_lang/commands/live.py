@@ -16,11 +16,12 @@ from btq_lang.commands.candidates import candidates
 from btq_lang.commands.files import usage_problem
 from btq_lang.commands.live_lines import Lines
 from btq_lang.commands.live_screen import Screen, is_screen
+from btq_lang.commands.options import Refused, refuse
 from btq_lang.commands.output import form_of, form_problem, is_coloured
 from btq_lang.commands.stored import name_problem, opened, store_of_project
 from btq_lang.commands.verdict_events import events_problem
 from btq_lang.commands.verdict_formats import FORMATS
-from btq_lang.commands.verdict_report import failed, finish
+from btq_lang.commands.verdict_report import finish
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.readers.groot2.publisher import NoLive, check_installed
 from btq_lang.evidence.readers.groot2.sessions import sessions
@@ -32,13 +33,12 @@ def run(options: Namespace) -> int:
     """Judge a running robot; returns the exit code."""
     if options.store is None and not options.no_store:
         options.store = store_of_project()
-    if problem := usage_problem(options.mission) or _problem(options):
-        return failed([problem])
+    refuse(usage_problem(options.mission) or _problem(options))
     problems: list[str] = []
     missions = candidates(options.mission, (), problems)
     keeping = opened(options, problems)
     if problems:
-        return failed(problems)
+        raise Refused(*problems)
     address = options.live
     entries = {signal.entry for mission in missions for signal in mission.requirements.signals.values()} - {""}
     form = form_of(options, FORMATS)

@@ -48,8 +48,7 @@ def run(options: Namespace) -> int:
     except GrammarMissing as error:
         raise Refused(MISSING) from error
     sources = " ".join(options.paths)
-    if code := write_output("nodes", options.output, _written(found, form, sources)):
-        return code
+    write_output(options.output, _written(found, form, sources))
     remarks = findings(found, files) | {path: nodes for path, (_, nodes) in exported.items() if nodes}
     texts = files | {path: text for path, (text, _) in exported.items()}
     for path in sorted(remarks):

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class Refused(Exception):
-    """What a command line asks for is wrong or cannot be done; the message says why."""
+    """What a command line asks for is wrong or cannot be done; each argument says why."""
 
 
 def refuse(problem: str | None) -> None:

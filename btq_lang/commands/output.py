@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from btq_lang.commands.files import write_stdout
+from btq_lang.commands.options import Refused
 from btq_lang.render.colour import wants_colour
 from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, absolute, write_whole
@@ -53,16 +54,24 @@ def mission_problem(option: str, path: str | None, form: str | None) -> str | No
     return None
 
 
-def write_output(command: str, path: str | None, text: str) -> int:
-    """Write a text to a file, or (None, `-`) to standard output; returns the command's exit code."""
+def write_output(path: str | None, text: str) -> None:
+    """Write a text to a file, or (None, `-`) to standard output.
+
+    Raises:
+        Refused: the file cannot be written.
+    """
     if path is None or path == "-":
         write_stdout(text)
-        return 0
-    return write_file(command, path, text)
+    else:
+        write_file(path, text)
 
 
-def write_file(command: str, path: str, content: str | bytes) -> int:
-    """Write a file, whole or not at all; returns the command's exit code."""
+def write_file(path: str, content: str | bytes) -> None:
+    """Write a file, whole or not at all.
+
+    Raises:
+        Refused: it cannot be written.
+    """
     target = absolute(path)
     try:
         if path.endswith("/"):
@@ -70,9 +79,7 @@ def write_file(command: str, path: str, content: str | bytes) -> int:
         os.makedirs(os.path.dirname(target), exist_ok=True)
         write_whole(target, content)
     except OSError as error:
-        print(f"btq {command}: {LoadProblem(target, f'cannot be written: {error.strerror}')}", file=sys.stderr)
-        return 2
-    return 0
+        raise Refused(LoadProblem(target, f"cannot be written: {error.strerror}")) from error
 
 
 def tell(problems: Iterable[LoadProblem]) -> None:

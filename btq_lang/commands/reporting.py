@@ -47,9 +47,12 @@ def report_problem(options: CheckOptions) -> str | None:
     return None
 
 
-def write_report(report: Report, options: CheckOptions, mended: int) -> bool:
-    """Write the report where the options say, with the number of applied fixes; False if that failed, with the reason
-    on standard error."""
+def write_report(report: Report, options: CheckOptions, mended: int) -> None:
+    """Write the report where the options say, with the number of applied fixes.
+
+    Raises:
+        Refused: the file cannot be written.
+    """
     form = form_of(options, os.environ)
     # With --fix, standard output has the new text of standard input, so the report goes to standard error.
     stream = sys.stderr if options.fix and STDIN in options.paths else sys.stdout
@@ -58,10 +61,9 @@ def write_report(report: Report, options: CheckOptions, mended: int) -> bool:
     pieces = _pieces(_named(report, form), form, options.statistics, colour, width)
     last = f"Fixed {counted(mended, 'problem')}\n" if mended and form in FOR_PEOPLE else ""
     if options.output_file:
-        return write_output("check", options.output_file, "".join((*pieces, last))) == 0
-    for piece in chain(pieces, (last,)):
-        stream.write(piece)
-    return True
+        write_output(options.output_file, "".join((*pieces, last)))
+    else:
+        stream.writelines(chain(pieces, (last,)))
 
 
 def _pieces(report: Report, form: str, is_counted: bool, colour: bool, width: int) -> Iterator[str]:

@@ -29,7 +29,8 @@ def run(options: Namespace) -> int:
         problem = "`project` takes no path: its schema is the same for every project"
     refuse(problem)
     if options.format == "project":
-        return write_output("schema", options.output, f"{json.dumps(project_schema(), indent=2)}\n")
+        write_output(options.output, f"{json.dumps(project_schema(), indent=2)}\n")
+        return 0
     return _write_xsd(options)
 
 
@@ -47,8 +48,7 @@ def _write_xsd(options: Namespace) -> int:
     checked = [(group, path, check(group.workspace, path)) for group in groups for path in group.given]
     unknown = frozenset().union(*(unknown_nodes(group.workspace.files[path], found) for group, path, found in checked))
     text = xsd([group.workspace for group in groups], options.target or _target(groups, paths), unknown)
-    if code := write_output("schema", options.output, text):
-        return code
+    write_output(options.output, text)
     unread = [path for _, path, found in checked if any(each.rule in UNREADABLE for each in found)]
     for path in unread:
         print(f"btq schema: {shown(path)} has errors, so nodes may be missing; run btq check", file=sys.stderr)

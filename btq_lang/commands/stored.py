@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import sys
 from argparse import Namespace
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.commands.options import Refused
 from btq_lang.commands.output import form_of, form_problem
 from btq_lang.commands.verdict_formats import FORMATS
 from btq_lang.commands.verdict_report import print_report
@@ -105,8 +105,7 @@ def summarise(options: Namespace) -> int:
             ask = asked_by(options.engine, options.store)
         report = summary(ask, options.store, tuple(dict.fromkeys(options.by)))
     except NoEngine as error:
-        print(f"btq verify: {error}", file=sys.stderr)
-        return 2
+        raise Refused(error) from error
     return print_report(options, report, ())
 
 

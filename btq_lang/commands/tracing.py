@@ -19,9 +19,8 @@ def run(options: Namespace) -> int:
 
     groups, problems = Files().groups(options.paths, options.stdin_filename)
     tell(problems)
-    if empty := no_mission_below(options.paths, groups):
-        print(f"btq trace: {empty}", file=sys.stderr)
-    if problems or empty:
+    refuse(no_mission_below(options.paths, groups))
+    if problems:
         return 2
     wrong: list[str] = []
     verdicts_of = verdicts_for(options.evidence, groups, wrong)
@@ -32,8 +31,7 @@ def run(options: Namespace) -> int:
     to_terminal = options.output is None and sys.stdout.isatty()
     colour = is_coloured(options, to_terminal)
     text = table.write(form_of(options, FORMATS), colour=colour, width=terminal_width() if to_terminal else 120)
-    if code := write_output("trace", options.output, text):
-        return code
+    write_output(options.output, text)
     if wrong:
         return 2
     if table.errors:

@@ -8,6 +8,7 @@ from argparse import Namespace
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.commands.options import Refused
 from btq_lang.commands.output import write_file
 from btq_lang.evidence.readers import NotALog, clocks
 from btq_lang.util.text import counted
@@ -40,11 +41,14 @@ def overwrites(path: str, logs: Iterable[str]) -> str | None:
     return None
 
 
-def write_events(path: str, report: Report, logs: Sequence[str]) -> int:
-    """Write the violations into a file; returns the exit code.
+def write_events(path: str, report: Report, logs: Sequence[str]) -> None:
+    """Write the violations into a file.
 
     Args:
         logs: the files that were judged.
+
+    Raises:
+        Refused: it cannot be written.
     """
     from btq_lang.evidence.events import render
 
@@ -52,17 +56,14 @@ def write_events(path: str, report: Report, logs: Sequence[str]) -> int:
         events = render(report, os.path.basename(path).removesuffix(_MCAP), _clocks(report, logs))
     except (NotALog, OSError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or error
-        print(f"btq verify: {path}: cannot be written: {reason}", file=sys.stderr)
-        return 2
-    if code := write_file("verify", path, events.data):
-        return code
+        raise Refused(f"{path}: cannot be written: {reason}") from error
+    write_file(path, events.data)
     if events.uncounted:
         number = counted(events.uncounted, "violation")
         print(f"btq verify: {path}: {number} left out; it has the first thousand of each clause", file=sys.stderr)
     if events.untimed:
         number = counted(events.untimed, "violation")
         print(f"btq verify: {path}: {number} left out; a ROS message cannot have their times", file=sys.stderr)
-    return 0
 
 
 def _clocks(report: Report, logs: Sequence[str]) -> dict[str, Clock]:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from btq_lang.commands.options import Refused
 from btq_lang.commands.output import form_of, is_coloured, terminal_width, write_output
 from btq_lang.commands.verdict_events import write_events
 from btq_lang.commands.verdict_formats import FORMATS, write
@@ -32,16 +33,9 @@ def finish(options: Namespace, found: Verification, missions: Sequence[Candidate
         print(f"btq verify: {note}", file=sys.stderr)
     code = print_report(options, report, missions)
     if options.events is not None:
-        code = max(code, write_events(options.events, report, logs))
-    return failed(found.problems) or code
-
-
-def failed(problems: Iterable[str]) -> int:
-    """Print why there are no verdicts, or why they may be incomplete; returns the exit code, 0 without problems."""
-    code = 0
-    for problem in problems:
-        print(f"btq verify: {problem}", file=sys.stderr)
-        code = 2
+        write_events(options.events, report, logs)
+    if found.problems:
+        raise Refused(*found.problems)
     return code
 
 
@@ -52,7 +46,8 @@ def print_report(options: Namespace, report: Report, missions: Sequence[Candidat
         missions: as of `write`.
     """
     if options.summary is not None:
-        return write_summary(options.summary, report)
+        write_summary(options.summary, report)
+        return 0
     to_terminal = options.output is None and sys.stdout.isatty()
     text = write(
         report,
@@ -62,7 +57,6 @@ def print_report(options: Namespace, report: Report, missions: Sequence[Candidat
         verbose=options.verbose,
         width=terminal_width() if to_terminal else None,
     )
-    if code := write_output("verify", options.output, text):
-        return code
+    write_output(options.output, text)
     wrong = report.verdicts - {SATISFIED} if options.strict else report.verdicts & {VIOLATED}
     return int(bool(wrong) and not options.exit_zero)

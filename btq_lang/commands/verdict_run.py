@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from btq_lang.commands.files import write_stdout
+from btq_lang.commands.options import Refused
 from btq_lang.evidence.one_run import one_run
 from btq_lang.evidence.readers import NotALog
 from btq_lang.util.record import fields_of
@@ -20,17 +20,14 @@ if TYPE_CHECKING:
 def print_run(logs: Sequence[str], missions: Sequence[Candidate], number: int) -> int:
     """Print the first mission's run with a number in the log; returns the exit code."""
     if len(logs) != 1 or len(missions) != 1 or number < 1:
-        print("btq verify: --run N goes with one log and one --mission", file=sys.stderr)
-        return 2
+        raise Refused("--run N goes with one log and one --mission")
     (log,), (mission,) = logs, missions
     try:
         found = one_run(log, mission, number)
     except (NotALog, OSError) as error:
-        print(f"btq verify: {shown(log)}: {error}", file=sys.stderr)
-        return 2
+        raise Refused(f"{shown(log)}: {error}") from error
     if found is None:
-        print(f"btq verify: {shown(log)} has no run {number} of {mission.name}", file=sys.stderr)
-        return 2
+        raise Refused(f"{shown(log)} has no run {number} of {mission.name}")
     steps = [{name: getattr(step, name) for name in fields_of(step)} for step in found.steps]
     document = {name: getattr(found, name) for name in fields_of(found)} | {"steps": steps}
     write_stdout(json.dumps(document) + "\n")

@@ -37,10 +37,10 @@ def progress_to_editor(logs: int) -> Callable[[int, int], None]:
     return reached
 
 
-def write_summary(path: str, report: Report) -> int:
-    """Write the summary, whole or not at all, with few violations of each clause; returns the exit code."""
+def write_summary(path: str, report: Report) -> None:
+    """Write the summary, whole or not at all, with few violations of each clause."""
     missions = (replace(each, requirements=tuple(map(_shortened, each.requirements))) for each in report.missions)
-    return write_file("verify", path, render(replace(report, missions=tuple(missions))))
+    write_file(path, render(replace(report, missions=tuple(missions))))
 
 
 def _shortened(requirement: RequirementVerdict) -> RequirementVerdict:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from argparse import Namespace
 from collections.abc import Sequence
 from glob import glob
@@ -11,12 +10,13 @@ from typing import TYPE_CHECKING
 
 from btq_lang.commands.candidates import candidates
 from btq_lang.commands.files import usage_problem
+from btq_lang.commands.options import Refused, refuse
 from btq_lang.commands.output import form_of, form_problem
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.stored import opened, reads_store, store_problem, summarise
 from btq_lang.commands.verdict_events import events_problem, overwrites
 from btq_lang.commands.verdict_formats import FORMATS
-from btq_lang.commands.verdict_report import failed, finish
+from btq_lang.commands.verdict_report import finish
 from btq_lang.commands.verdict_run import print_run
 from btq_lang.commands.verdict_summary import progress_to_editor
 from btq_lang.evidence.judging import Means
@@ -41,9 +41,7 @@ def run(options: Namespace) -> int:
         return watch(options)
     named = [*options.logs, *options.mission]
     is_summary = reads_store(options)
-    if problem := usage_problem(named) or store_problem(options, is_summary) or events_problem(options):
-        print(f"btq verify: {problem}", file=sys.stderr)
-        return 2
+    refuse(usage_problem(named) or store_problem(options, is_summary) or events_problem(options))
     if is_summary:
         return summarise(options)
     problems: list[str] = []
@@ -56,23 +54,22 @@ def run(options: Namespace) -> int:
     home = find_project(next(roots, "."))
     sources, of_files = signal_sources(home.project, shown(home.path or home.project.root), missions, problems)
     keeping = opened(options, problems)
-    if not problems:
-        form = form_of(options, FORMATS)
-        with Progress(len(logs), "read") as progress:
-            to_editor = progress_to_editor(len(logs)) if options.summary is not None else None
-            means = Means(
-                missions,
-                samples,
-                sources,
-                of_files,
-                with_timelines=form == "html",
-                with_measures=options.summary is not None,
-                keeping=keeping,
-            )
-            reached = to_editor or (lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"))
-            found = judged(logs, means, options.mission, options.signals or "", options.jobs, reached)
-        return finish(options, found, missions, logs)
-    return failed(problems)
+    if problems:
+        raise Refused(*problems)
+    with Progress(len(logs), "read") as progress:
+        to_editor = progress_to_editor(len(logs)) if options.summary is not None else None
+        means = Means(
+            missions,
+            samples,
+            sources,
+            of_files,
+            with_timelines=form_of(options, FORMATS) == "html",
+            with_measures=options.summary is not None,
+            keeping=keeping,
+        )
+        reached = to_editor or (lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"))
+        found = judged(logs, means, options.mission, options.signals or "", options.jobs, reached)
+    return finish(options, found, missions, logs)
 
 
 def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequence[Candidate], dict[str, Series]]:
