@@ -6,6 +6,7 @@ box would open at every save that formats.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
@@ -32,15 +33,12 @@ _ALL = types.FileOperationFilter(types.FileOperationPattern("**/*"), scheme="fil
 def register(server: Server) -> None:
     session, convert = server.session, server.convert
 
-    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(code_action_kinds=KINDS))
+    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(code_action_kinds=KINDS), [])
     def actions(params: types.CodeActionParams) -> list[Plain]:
-        place = server.at(params.text_document, reads=True)
-        if place is None:
-            return []
-        workspace, path = place
+        workspace, path = server.at(params.text_document, reads=True)
         only = [str(getattr(kind, "value", kind)) for kind in params.context.only or ()]
         found = features.actions.code_actions(
-            workspace, path, convert.span(*place, params.range), only, session.diagnostics(path)
+            workspace, path, convert.span(workspace, path, params.range), only, session.diagnostics(path)
         )
         return [convert.action(workspace, path, action, server.versions_for_edits()) for action in found]
 
@@ -51,19 +49,15 @@ def register(server: Server) -> None:
         edits = [convert.workspace_edit(*each, server.versions_for_edits()) for each in found if each[1]]
         return convert.merged(edits) if edits else None
 
-    @server.feature(types.TEXT_DOCUMENT_ON_TYPE_FORMATTING, types.DocumentOnTypeFormattingOptions("\n", [")"]))
+    @server.feature(types.TEXT_DOCUMENT_ON_TYPE_FORMATTING, types.DocumentOnTypeFormattingOptions("\n", [")"]), [])
     def typed(params: types.DocumentOnTypeFormattingParams) -> list[types.TextEdit]:
-        answer = server.ask(
-            params.text_document, params.position, lambda *at: features.on_type.on_type(at[0], at[1], at[2], params.ch)
-        )
-        return convert.edits(*answer) if answer else []
+        answer = server.ask(params, partial(features.on_type.on_type, typed=params.ch))
+        return convert.edits(*answer)
 
     @server.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
     def linked(params: types.LinkedEditingRangeParams) -> types.LinkedEditingRanges | None:
-        answer = server.ask(params.text_document, params.position, features.on_type.linked_ranges)
-        if answer is None or not answer[2]:
-            return None
-        return types.LinkedEditingRanges([convert.range(answer[0], answer[1], span) for span in answer[2]])
+        workspace, path, spans = server.ask(params, features.on_type.linked_ranges)
+        return types.LinkedEditingRanges([convert.range(workspace, path, span) for span in spans]) if spans else None
 
     @server.feature(types.TEXT_DOCUMENT_FORMATTING)
     @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
@@ -71,7 +65,7 @@ def register(server: Server) -> None:
         params: types.DocumentFormattingParams | types.DocumentRangeFormattingParams,
     ) -> list[types.TextEdit] | None:
         place = server.at(params.text_document)
-        if place is None or _is_refused(server, *place):
+        if _is_refused(server, *place):
             return None
         from btq_lang.formatter import format_range, format_text  # imported on use, like features
 

@@ -19,38 +19,36 @@ if TYPE_CHECKING:
 def register(server: Server) -> None:
     convert = server.convert
 
-    def colours(document: types.TextDocumentIdentifier) -> tuple[str, features.colours.Colours] | None:
-        place = server.at(document, reads=True)
-        if place is None:
-            return None
-        _raise_if_unread(*place)
-        make = (
-            features.colours.colours if place[0].files[place[1]].origin is None else features.xml_colours.colours_in_xml
-        )
+    def colours(document: types.TextDocumentIdentifier) -> tuple[str, features.colours.Colours]:
+        workspace, path = server.at(document, reads=True)
+        _raise_if_unread(workspace, path)
+        is_xml = workspace.files[path].origin is not None
+        make = features.xml_colours.colours_in_xml if is_xml else features.colours.colours
         server.count += 1
-        found = server.tokens[place[1]] = str(server.count), make(*place, convert.encoding)
+        found = server.tokens[path] = str(server.count), make(workspace, path, convert.encoding)
         return found
 
     async def made(document: types.TextDocumentIdentifier) -> None:
         """Compute what the tokens depend on for the first time, in steps that let other messages in; after an edit,
         continue with the new text.
         """
-        place, is_done = server.at(document), False
-        while place is not None and not is_done:
-            for _ in features.colours.making(*place, convert.encoding):
+        is_done = False
+        while not is_done:
+            place = workspace, path = server.at(document, reads=True)
+            is_xml = workspace.files[path].origin is not None
+            for _ in () if is_xml else features.colours.making(workspace, path, convert.encoding):
                 await asyncio.sleep(0)
-                if server.at(document) != place:
+                if server.at(document, reads=True) != place:
                     break
             else:
                 is_done = True
-            place = server.at(document)
 
-    def whole(found: tuple[str, features.colours.Colours] | None) -> Json:
-        return Json(f'{{"resultId": "{found[0]}", "data": {found[1].as_json}}}') if found else Json('{"data": []}')
+    def whole(number: str, found: features.colours.Colours) -> Json:
+        return Json(f'{{"resultId": "{number}", "data": {found.as_json}}}')
 
     legend = types.SemanticTokensLegend(list(TYPES), list(MODIFIERS))
 
-    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, legend)
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, legend, _NO_TOKENS)
     async def full(params: types.SemanticTokensParams) -> Json:
         if convert.path(params.text_document.uri) not in server.tokens:
             server.answering += 1
@@ -58,32 +56,29 @@ def register(server: Server) -> None:
                 await made(params.text_document)
             finally:
                 server.answering -= 1
-        return whole(colours(params.text_document))
+        return whole(*colours(params.text_document))
 
-    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, legend)
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, legend, _NO_TOKENS)
     def delta(params: types.SemanticTokensDeltaParams) -> Json:
         before = server.tokens.get(convert.path(params.text_document.uri))
-        found = colours(params.text_document)
-        if found is None or before is None or before[0] != params.previous_result_id:
-            return whole(found)
-        changes = features.colours.delta(before[1], found[1])
+        number, found = colours(params.text_document)
+        if before is None or before[0] != params.previous_result_id:
+            return whole(number, found)
+        changes = features.colours.delta(before[1], found)
         edits = [f'{{"start": {one.start}, "deleteCount": {one.gone}, "data": {one.come}}}' for one in changes]
-        return Json(f'{{"resultId": "{found[0]}", "edits": [{", ".join(edits)}]}}')
+        return Json(f'{{"resultId": "{number}", "edits": [{", ".join(edits)}]}}')
 
-    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, legend)
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, legend, _NO_TOKENS)
     def part(params: types.SemanticTokensRangeParams) -> Plain:
-        place = server.at(params.text_document, reads=True)
-        if place is None:
-            return {"data": []}
-        workspace, path = place
+        workspace, path = server.at(params.text_document, reads=True)
         _raise_if_unread(workspace, path)
         within = convert.span(workspace, path, params.range)
-        make = (
-            features.colours.encoded_within
-            if workspace.files[path].origin is None
-            else features.xml_colours.encoded_in_xml
-        )
+        is_xml = workspace.files[path].origin is not None
+        make = features.xml_colours.encoded_in_xml if is_xml else features.colours.encoded_within
         return {"data": make(workspace, path, within, convert.encoding)}
+
+
+_NO_TOKENS = Json('{"data": []}')
 
 
 class Later(Refused):

@@ -5,12 +5,13 @@ Their names begin with `btq.server.`, so that an editor's plug-in can have comma
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
 from btq_lang import ide as features
-from btq_lang.lsp.editor import Refused, Server
+from btq_lang.lsp.editor import Refused, Server, Unknown
 
 if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
@@ -30,15 +31,16 @@ def register(server: Server) -> None:
     @server.command(NODE_PATH)
     def path_of_node(place: types.TextDocumentPositionParams) -> str | None:
         """The path of the node at a position."""
-        answer = server.ask(place.text_document, place.position, features.navigation.node_path, reads=True)
-        return answer[2] if answer else None
+        with suppress(Unknown):
+            return server.ask(place, features.navigation.node_path, reads=True)[2]
+        return None
 
     def mission(document: types.TextDocumentIdentifier, *, reads: bool = False) -> tuple[Workspace, str]:
-        place = server.at(document, reads=reads)
-        if place is None:
+        try:
+            return server.at(document, reads=reads)
+        except Unknown:
             what = "neither a .btq file nor BehaviorTree.CPP's XML" if reads else "not a .btq file"
-            raise Refused(f"this is {what} of the open folders")
-        return place
+            raise Refused(f"this is {what} of the open folders") from None
 
     @server.command(XML)
     def xml(document: types.TextDocumentIdentifier) -> str:

@@ -12,11 +12,13 @@ import json
 import logging
 import os
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from itertools import chain
 from threading import Event, Timer
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
+from typing import Protocol as Shape
 
 from lsprotocol import types
 from pygls.capabilities import get_capability
@@ -40,10 +42,21 @@ T = TypeVar("T")
 Handler = TypeVar("Handler", bound=Callable[..., Any])
 
 
+class Asked(Shape):
+    """The parameters of a request about a position."""
+
+    text_document: types.TextDocumentIdentifier
+    position: types.Position
+
+
 class Refused(JsonRpcException):
     """A request that is refused, with the reason for the user; not a failure of the server."""
 
     CODE = -32803  # RequestFailed
+
+
+class Unknown(Exception):  # not an error: there is nothing to answer
+    """A document that btq does not know, or that a feature does not read."""
 
 
 NOT_JSON = json.JSONDecodeError, UnicodeDecodeError
@@ -154,11 +167,15 @@ class Server(LanguageServer):
 
     # ---- tracing ----
 
-    def feature(self, feature_name: str, options: Any | None = None) -> Callable[[Handler], Handler]:
-        """As in pygls, but without inspecting each handler's parameters and compiling a converter for its options."""
+    def feature(
+        self, feature_name: str, options: Any | None = None, otherwise: Any = None
+    ) -> Callable[[Handler], Handler]:
+        """As in pygls, but without inspecting each handler's parameters and compiling a converter for its options;
+        `otherwise`: the answer about a document that is unknown.
+        """
 
         def register(handler: Handler) -> Handler:
-            self.protocol.fm.features[feature_name] = self._timed(feature_name, handler)
+            self.protocol.fm.features[feature_name] = self._timed(feature_name, handler, otherwise)
             if options is not None:
                 self.protocol.fm.feature_options[feature_name] = options
             return handler
@@ -172,28 +189,29 @@ class Server(LanguageServer):
             verbose = details if value is types.TraceValue.Verbose else None
             self.log_trace(types.LogTraceParams(message, verbose))
 
-    def _timed(self, name: str, handler: Handler) -> Handler:
-        """A handler that traces how long it took."""
+    def _timed(self, name: str, handler: Handler, otherwise: Any) -> Handler:
+        """A handler that traces how long it took, and answers about unknown documents."""
 
-        def say(begin: float, arguments: tuple[Any, ...]) -> None:
-            if self.protocol.trace is not types.TraceValue.Off:
-                self.trace(f"{name}: {1000 * (perf_counter() - begin):.1f} ms", repr(arguments)[:MAX_DETAILS])
+        @contextmanager
+        def timing(arguments: tuple[Any, ...]) -> Iterator[None]:
+            begin = perf_counter()
+            try:
+                yield
+            finally:
+                if self.protocol.trace is not types.TraceValue.Off:
+                    self.trace(f"{name}: {1000 * (perf_counter() - begin):.1f} ms", repr(arguments)[:MAX_DETAILS])
 
         @functools.wraps(handler)
         def answer(*arguments: Any) -> Any:
-            begin = perf_counter()
-            try:
+            with timing(arguments), suppress(Unknown):
                 return handler(*arguments)
-            finally:
-                say(begin, arguments)
+            return otherwise
 
         @functools.wraps(handler)
         async def answer_later(*arguments: Any) -> Any:
-            begin = perf_counter()
-            try:
+            with timing(arguments), suppress(Unknown):
                 return await handler(*arguments)
-            finally:
-                say(begin, arguments)
+            return otherwise
 
         return answer_later if asyncio.iscoroutinefunction(handler) else answer  # type: ignore[return-value]  # `wraps`
 
@@ -237,31 +255,36 @@ class Server(LanguageServer):
 
     # ---- calling features ----
 
-    def at(self, document: types.TextDocumentIdentifier, *, reads: bool = False) -> tuple[Workspace, str] | None:
-        """The workspace and the path of a document; None if it is unknown, C++, XML that is not the engine's, or any
-        XML unless the request `reads`: it changes nothing, and its result has places that `convert.range` maps."""
+    def at(self, document: types.TextDocumentIdentifier, *, reads: bool = False) -> tuple[Workspace, str]:
+        """The workspace and the path of a document.
+
+        Args:
+            reads: whether the request changes nothing, and its result has places that `convert.range` maps: only such
+                requests have answers about XML.
+
+        Raises:
+            Unknown: it is in no folder, or C++, or XML that is not the engine's or not to be read.
+        """
         path = self.convert.path(document.uri)
         workspace = self.session.workspace_of(path)
         if workspace is None or workspace.files[path].is_cpp:
-            return None
+            raise Unknown
         if workspace.files[path].origin is not None and not (reads and self.session.knows(path)):
-            return None
+            raise Unknown
         return workspace, path
 
     def ask(
-        self,
-        document: types.TextDocumentIdentifier,
-        position: types.Position,
-        feature: Callable[[Workspace, str, int], T],
-        *,
-        reads: bool = False,
-    ) -> tuple[Workspace, str, T] | None:
-        """The result of a feature at a position, and the workspace and path of its spans; `reads`: as in `at`."""
-        place = self.at(document, reads=reads)
-        offset = self.convert.offset_made(*place, position) if place is not None else None
-        if place is None or offset is None:
-            return None
-        workspace, path = place
+        self, place: Asked, feature: Callable[[Workspace, str, int], T], *, reads: bool = False
+    ) -> tuple[Workspace, str, T]:
+        """The result of a feature at a position, and the workspace and path of its spans; `reads`: as in `at`.
+
+        Raises:
+            Unknown: the document is, or no text is translated from this place of it.
+        """
+        workspace, path = self.at(place.text_document, reads=reads)
+        offset = self.convert.offset_made(workspace, path, place.position)
+        if offset is None:
+            raise Unknown
         return workspace, path, feature(workspace, path, offset)
 
     # ---- publishing diagnostics ----
@@ -363,8 +386,8 @@ class Server(LanguageServer):
         """Prepare for the first requests about open files, handling messages between steps; an edit ends it."""
         self._ready.intersection_update(self.session.open)
         for path in [path for path in self.session.open if path not in self._ready]:
-            place = self.at(types.TextDocumentIdentifier(self.convert.uri(path)))
-            if place is not None:
+            with suppress(Unknown):
+                place = self.at(types.TextDocumentIdentifier(self.convert.uri(path)))
                 has_tokens = self.supports("text_document.semantic_tokens")
                 tokens = features.colours.making(*place, self.convert.encoding) if has_tokens else ()
                 for _ in chain(self.protocol.getting_ready(), tokens, features.readiness.getting_ready(*place)):

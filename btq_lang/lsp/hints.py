@@ -35,26 +35,21 @@ def register(server: Server) -> None:
             data={"path": tree.path, "span": [*tree.span], "name": [*tree.name_span]},
         )
 
-    def tree_of(given: types.CallHierarchyItem) -> tuple[Workspace, features.calls.TreeItem] | None:
-        data = given.data if isinstance(given.data, dict) else {}
-        workspace = session.workspace_of(str(data.get("path")))
-        if workspace is None:
-            return None
-        return workspace, features.calls.TreeItem(given.name, data["path"], Span(*data["span"]), Span(*data["name"]))
-
     def calls(
         given: types.CallHierarchyItem,
         feature: Callable[[Workspace, features.calls.TreeItem], tuple[features.calls.Call, ...]],
     ) -> Iterator[tuple[types.CallHierarchyItem, list[types.Range]]]:
-        if answer := tree_of(given):
-            workspace = answer[0]
-            for call in feature(*answer):
+        data = given.data if isinstance(given.data, dict) else {}
+        workspace = session.workspace_of(str(data.get("path")))
+        if workspace is not None:
+            tree = features.calls.TreeItem(given.name, data["path"], Span(*data["span"]), Span(*data["name"]))
+            for call in feature(workspace, tree):
                 yield item(workspace, call.tree), [convert.range(workspace, call.path, span) for span in call.places]
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
     def prepare(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem] | None:
-        answer = server.ask(params.text_document, params.position, features.calls.prepare_calls, reads=True)
-        return [item(answer[0], answer[2])] if answer and answer[2] else None
+        workspace, _, tree = server.ask(params, features.calls.prepare_calls, reads=True)
+        return [item(workspace, tree)] if tree else None
 
     @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
     def incoming(params: types.CallHierarchyIncomingCallsParams) -> list[types.CallHierarchyIncomingCall]:
@@ -64,12 +59,11 @@ def register(server: Server) -> None:
     def outgoing(params: types.CallHierarchyOutgoingCallsParams) -> list[types.CallHierarchyOutgoingCall]:
         return [types.CallHierarchyOutgoingCall(*call) for call in calls(params.item, features.calls.called)]
 
-    @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
+    @server.feature(types.TEXT_DOCUMENT_INLAY_HINT, otherwise=[])
     def hints(params: types.InlayHintParams) -> list[types.InlayHint]:
-        place = server.at(params.text_document)
-        if place is None or not session.setting("inlayHints", True):
+        workspace, path = server.at(params.text_document)
+        if not session.setting("inlayHints", True):
             return []
-        workspace, path = place
         return [
             types.InlayHint(
                 convert.range(workspace, path, Span(hint.offset, hint.offset)).start,
@@ -81,12 +75,11 @@ def register(server: Server) -> None:
             for hint in features.hints.inlay_hints(workspace, path, convert.span(workspace, path, params.range))
         ]
 
-    @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
+    @server.feature(types.TEXT_DOCUMENT_CODE_LENS, otherwise=[])
     def lenses(params: types.CodeLensParams) -> list[types.CodeLens]:
-        place = server.at(params.text_document, reads=True)
-        if place is None or not session.setting("codeLens", True):
+        workspace, path = server.at(params.text_document, reads=True)
+        if not session.setting("codeLens", True):
             return []
-        workspace, path = place
         found = []
         for lens in features.hints.code_lenses(workspace, path, session.side_file(path), session.evidence(workspace)):
             range_ = convert.range(workspace, path, lens.span)
@@ -103,23 +96,18 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     def show(params: types.HoverParams) -> Json | None:
         side = session.side_file(convert.path(params.text_document.uri))
-        answer = server.ask(
-            params.text_document,
-            params.position,
-            lambda workspace, path, offset: features.hover.hover(
-                workspace, path, offset, side, session.evidence(workspace)
-            ),
-            reads=True,
+        workspace, path, found = server.ask(
+            params, lambda *at: features.hover.hover(at[0], at[1], at[2], side, session.evidence(at[0])), reads=True
         )
-        return convert.hover(answer[0], answer[1], answer[2]) if answer and answer[2] else None
+        return convert.hover(workspace, path, found) if found else None
 
     @server.feature(
         types.TEXT_DOCUMENT_SIGNATURE_HELP,
         types.SignatureHelpOptions(trigger_characters=["("], retrigger_characters=["=", " ", ","]),
     )
     def signature(params: types.SignatureHelpParams) -> types.SignatureHelp | None:
-        answer = server.ask(params.text_document, params.position, features.hover.signature_help)
-        return convert.signature(answer[2]) if answer and answer[2] else None
+        found = server.ask(params, features.hover.signature_help)[2]
+        return convert.signature(found) if found else None
 
     @server.feature(
         types.TEXT_DOCUMENT_COMPLETION,
@@ -134,8 +122,6 @@ def register(server: Server) -> None:
             snippets=server.supports("text_document.completion.completion_item.snippet_support"),
         )
         place = server.at(params.text_document, reads=True)
-        if place is None:
-            return None
         return convert.completion(*place, feature(*place, convert.offset(*place, params.position)))
 
     @server.feature(types.COMPLETION_ITEM_RESOLVE)

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from lsprotocol import types
 
-from btq_lang.lsp.editor import Refused, Server
+from btq_lang.lsp.editor import Refused, Server, Unknown
 from btq_lang.lsp.progress import progress
 from btq_lang.util.version import __version__
 
@@ -49,11 +49,11 @@ def register(server: Server) -> None:
         logs.saved(convert.path(params.text_document.uri))
 
     def judged(document: types.TextDocumentIdentifier) -> tuple[Workspace, str, Evidence]:
-        place = server.at(document, reads=True)
-        evidence = session.evidence(place[0]) if place is not None else None
-        if place is None or evidence is None:
-            raise Refused("no logs of this mission have been judged; name them with `logs` in [evidence] of btq.toml")
-        return *place, evidence
+        with suppress(Unknown):
+            workspace, path = server.at(document, reads=True)
+            if (evidence := session.evidence(workspace)) is not None:
+                return workspace, path, evidence
+        raise Refused("no logs of this mission have been judged; name them with `logs` in [evidence] of btq.toml")
 
     @server.command(RUNS)
     def runs(document: types.TextDocumentIdentifier) -> list[dict[str, object]]:
