@@ -8,7 +8,7 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Collection, Iterator
 
-from btq_lang.btcpp.as_built import Built, as_built
+from btq_lang.btcpp.as_built import as_built
 from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of
 from btq_lang.btcpp.recognition import is_mission
@@ -109,7 +109,11 @@ def _with_stdin(paths: list[str], stdin_filename: str | None) -> Comparison:
     def side(path: str) -> Side:
         if path == os.devnull:
             return NOWHERE
-        return (_built_on_disk(absolute(path)) if path != STDIN else None) or _on_disk(path, stdin_filename)
+        if path != STDIN:
+            return _side_in(Disk(), absolute(path))
+        (group,) = _groups([path], stdin_filename)
+        (own,) = group.given
+        return Side(shown(own), group.workspace, group.workspace.closure(own), shown)
 
     return without_made_models(compared(*map(side, paths)))
 
@@ -131,23 +135,25 @@ def _sides(path: str) -> dict[str, Side]:
     in it.
     """
     if not os.path.isdir(path):
-        return {"": _built_on_disk(path) or _on_disk(path)}
+        return {"": _side_in(Disk(), path)}
     found: dict[str, Side] = {}
     for group in _groups([path, *_xml_below(path)]):
         for each in group.given:
-            built = _built_on_disk(each)
+            built = _built_in(Disk(), each)
             side = Side(shown(each), group.workspace, (each,), shown)
-            if built is not None:
-                side = _by_itself(built, os.path.isfile)
-            found[each.removeprefix(f"{path}/")] = side
+            found[each.removeprefix(f"{path}/")] = _by_itself(built, os.path.isfile) if built is not None else side
     return found
 
 
-def _on_disk(path: str, stdin_filename: str | None = None) -> Side:
-    """A file with its includes; `-` is standard input."""
-    (group,) = _groups([path], stdin_filename)
-    (own,) = group.given
-    return Side(shown(own), group.workspace, group.workspace.closure(own), shown)
+def _side_in(files: Disk | Commit, path: str, with_includes: bool = True) -> Side:
+    """A file on the disk or in a commit."""
+    built = _built_in(files, path)
+    if built is not None:
+        return built if with_includes else _by_itself(built, files.is_file)
+    workspace = files.workspace(path)
+    if workspace is None:
+        return NOWHERE
+    return Side(files.shown(path), workspace, workspace.closure(path) if with_includes else (path,), files.shown)
 
 
 def _by_itself(built: Side, is_file: Callable[[str], bool]) -> Side:
@@ -157,18 +163,16 @@ def _by_itself(built: Side, is_file: Callable[[str], bool]) -> Side:
     return replace(built, paths=(*bundled, own))
 
 
-def _built_on_disk(path: str) -> Side | None:
+def _built_in(files: Disk | Commit, path: str) -> Side | None:
     """The mission from which an XML file was built, if its side file tells."""
-    built = as_built(path, Disk())
-    return None if built is None else _side(shown(path), built)
-
-
-def _side(name: str, built: Built) -> Side:
+    built = as_built(path, files, files.shown)
+    if built is None:
+        return None
     manual_edits = tuple(
         ManualEdit(each.guard, each.sum, f"{each.happened}; {ADVICE}", Place(xml, each.span))
         for xml, each in built.manual_edits
     )
-    return Side(name, built.workspace, built.workspace.closure(built.path), built.shown, manual_edits)
+    return Side(files.shown(path), built.workspace, built.workspace.closure(built.path), built.shown, manual_edits)
 
 
 def _xml_below(folder: str) -> tuple[str, ...]:
@@ -213,21 +217,6 @@ def _of_revisions(options: Namespace) -> Iterator[Comparison]:
 
 def _revised(commit: Commit | None, path: str | None, with_includes: bool) -> Side:
     """A file in a commit; None: in the working tree."""
-    if path is None:
+    if path is None or (commit is None and not os.path.exists(path)):
         return NOWHERE
-    if commit is None:
-        if not os.path.exists(path):
-            return NOWHERE
-        side = _built_on_disk(path)
-        if side is not None:
-            return side if with_includes else _by_itself(side, os.path.isfile)
-        group = _groups([path])[0]
-        return Side(shown(path), group.workspace, group.workspace.closure(path) if with_includes else (path,), shown)
-    built = as_built(path, commit, commit.shown)
-    if built is not None:
-        side = _side(commit.shown(path), built)
-        return side if with_includes else _by_itself(side, commit.is_file)
-    workspace = commit.workspace(path)
-    if workspace is None:
-        return NOWHERE
-    return Side(commit.shown(path), workspace, workspace.closure(path) if with_includes else (path,), commit.shown)
+    return _side_in(commit or Disk(), path, with_includes)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 
 from btq_lang.commands.files import Files
+from btq_lang.commands.options import Refused
 from btq_lang.util.record import replace
-from btq_lang.workspace.loader import read
+from btq_lang.workspace.loader import read, shown
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -62,15 +63,26 @@ def _shown_from_root(workspace: Workspace) -> Workspace:
 class Disk:
     """The files on the disk, as one side of a comparison with another revision."""
 
+    def shown(self, path: str) -> str:
+        """How messages name a file."""
+        return shown(path)
+
     def is_file(self, path: str) -> bool:
         return os.path.isfile(path)
 
     def text(self, path: str) -> str | None:
         return read(path)[0]
 
-    def workspace(self, path: str, known: dict[str, str]) -> Workspace | None:
+    def workspace(self, path: str, known: dict[str, str] | None = None) -> Workspace | None:
+        """A file with all that it includes; `known`: texts that override those on the disk.
+
+        Raises:
+            Refused: the file cannot be read, and no texts are known.
+        """
         files = Files()
-        files.overlay.update(known)
-        groups, problems = files.groups(known)
+        files.overlay.update(known or {})
+        groups, problems = files.groups(known or [path])
+        if problems and known is None:
+            raise Refused(*problems)
         group = next((group for group in groups if path in group.given), None)
         return None if problems or group is None else group.workspace

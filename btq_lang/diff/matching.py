@@ -18,13 +18,14 @@ matched nodes are for `nodes`.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from typing import Final, TypeAlias
 
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.diff.contents import TREE, Part
 
 Ids: TypeAlias = dict[Hashable, int]
+Key: TypeAlias = "Callable[[Forest, int], Hashable]"
 
 _UPWARDS: Final = 4  # how many levels above an identical subtree its holder is looked for
 _TABLE: Final = 1_000_000  # cells of the largest table that is filled for a longest common subsequence
@@ -138,10 +139,7 @@ def _pair(old: Forest, new: Forest, one: int, other: int) -> None:
 def _same_trees(old: Forest, new: Forest) -> Iterator[tuple[int, int]]:
     """Pairs of trees: of one name, then of equal contents, then of mostly equal contents."""
     left, right = dict.fromkeys(old.tops), dict.fromkeys(new.tops)
-    steps: tuple[Callable[[Forest, int], Hashable], ...] = (
-        lambda forest, top: forest.parts[top].name,
-        lambda forest, top: forest.whole[top],
-    )
+    steps: tuple[Key, ...] = (lambda forest, top: forest.parts[top].name, lambda forest, top: forest.whole[top])
     for key in steps:
         waiting: dict[Hashable, list[int]] = {}
         for top in reversed(right):
@@ -255,14 +253,22 @@ def _line_up_children(old: Forest, new: Forest, left: list[int], right: list[int
         for at, to in common(mine, yours):
             _pair_if_free(old, new, left[at], right[to])
         if anywhere:
-            waiting: dict[Hashable, list[int]] = {}
-            for other in reversed(right):
-                if new.match[other] < 0:
-                    waiting.setdefault(key(new, other), []).append(other)
-            for one in left:
-                if old.match[one] < 0 and (found := waiting.get(key(old, one))):
-                    _pair_if_free(old, new, one, found.pop())
+            _pair_equal(old, new, left, right, key)
     _replaced(old, new, left, right)
+
+
+def _pair_equal(old: Forest, new: Forest, left: Iterable[int], right: Sequence[int], key: Key) -> None:
+    """Pair unmatched parts of equal keys, in order."""
+    waiting: dict[Hashable, list[int]] = {}
+    for other in reversed(right):
+        if new.match[other] < 0:
+            waiting.setdefault(key(new, other), []).append(other)
+    for one in left:
+        found = waiting.get(key(old, one), []) if old.match[one] < 0 else []
+        while found and new.match[found[-1]] >= 0:  # in an identical subtree that was paired before
+            found.pop()
+        if found:
+            _pair_if_free(old, new, one, found.pop())
 
 
 def _pair_if_free(old: Forest, new: Forest, one: int, other: int) -> None:
@@ -356,7 +362,7 @@ def _rough(left: Sequence[Hashable], right: Sequence[Hashable]) -> list[tuple[in
 
 
 # How children are aligned, the surest way first; whether also those that changed places.
-_KEYS: Final[tuple[tuple[Callable[[Forest, int], Hashable], bool], ...]] = (
+_KEYS: Final[tuple[tuple[Key, bool], ...]] = (
     (lambda forest, index: forest.whole[index], True),
     (lambda forest, index: forest.own[index], True),
     (lambda forest, index: (forest.kinds[index], forest.parts[index].name), True),
@@ -374,18 +380,8 @@ def _leftovers(old: Forest, new: Forest, left: range, right: range, elsewhere: b
     Args:
         elsewhere: whether in other trees; there, only those that a reader would recognize.
     """
-    waiting: dict[Hashable, list[int]] = {}
-    for other in reversed(right):
-        if new.match[other] < 0:
-            waiting.setdefault(new.whole[other], []).append(other)
-    for one in left:
-        if old.match[one] >= 0 or (elsewhere and not _is_known_again(old, one)):
-            continue
-        found = waiting.get(old.whole[one], [])
-        while found and new.match[found[-1]] >= 0:
-            found.pop()
-        if found:
-            _pair_all(old, new, one, found.pop())
+    known = [one for one in left if _is_known_again(old, one)] if elsewhere else left
+    _pair_equal(old, new, known, right, lambda forest, index: forest.whole[index])
     mine, yours = _by_name(old, left), _by_name(new, right)
     for key, found in mine.items():
         others = yours.get(key, [])
