@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import re
-from argparse import ArgumentParser, ArgumentTypeError, RawDescriptionHelpFormatter, _SubParsersAction
-from typing import Any, Final, NoReturn
+from argparse import ArgumentParser, ArgumentTypeError, RawDescriptionHelpFormatter
+from collections.abc import Callable
+from typing import Final, NoReturn, TypeAlias
 
 from btq_lang.commands.options import CheckOptions, add_server_options
 from btq_lang.commands.verdict_formats import FORMATS as VERDICT_FORMATS
@@ -33,23 +34,16 @@ def build_parser() -> Parser:
     )
     parser.add_argument("-V", "--version", action="version", version=f"btq {__version__}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
-    _add_check(commands)
-    _add_format(commands)
-    _add_build(commands)
-    _add_import(commands)
-    _add_trace(commands)
-    _add_verify(commands)
-    _add_compare(commands)
-    _add_report(commands)
-    _add_graph(commands)
-    _add_preview(commands)
-    _add_diff(commands)
-    _add_explain(commands)
-    _add_nodes(commands)
-    _add_schema(commands)
-    _add_init(commands)
-    _add_completion(commands)
-    _add_lsp(commands)
+    for name, help, epilog, add_options in _COMMANDS:
+        command = commands.add_parser(
+            name,
+            help=help,
+            description=help[0].upper() + help[1:] + ".",
+            formatter_class=RawDescriptionHelpFormatter,
+            epilog=epilog,
+        )
+        command.set_defaults(command=name, parser=command)
+        add_options(command)
     return parser
 
 
@@ -64,16 +58,18 @@ class Parser(ArgumentParser):
         super().error(message)
 
 
-def _command(commands: _SubParsersAction[Parser], name: str, help: str, **more: Any) -> ArgumentParser:
-    parser = commands.add_parser(
-        name,
-        help=help,
-        description=help[0].upper() + help[1:] + ".",
-        formatter_class=RawDescriptionHelpFormatter,
-        **more,
-    )
-    parser.set_defaults(command=name, parser=parser)
-    return parser
+_Adder: TypeAlias = "Callable[[ArgumentParser], None]"
+_COMMANDS: Final[list[tuple[str, str, str | None, _Adder]]] = []  # name, help, epilog, and what adds the options
+
+
+def _command(name: str, help: str, epilog: str | None = None) -> Callable[[_Adder], _Adder]:
+    """Register a command with the function that adds its options; the order is that of the help."""
+
+    def register(add_options: _Adder) -> _Adder:
+        _COMMANDS.append((name, help, epilog, add_options))
+        return add_options
+
+    return register
 
 
 def _add_paths(parser: ArgumentParser) -> None:
@@ -85,17 +81,16 @@ def _add_paths(parser: ArgumentParser) -> None:
     )
 
 
-def _add_check(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "check",
-        "find mistakes in missions before the robot does",
-        epilog="exit codes: 0 clean, or only infos and hints; 1 errors or warnings, or (--diff) changes to make;\n"
-        "2 usage or I/O\n\n"
-        "examples:\n  btq check                          the project in this folder\n"
-        "  btq check --fix mission.btq        and apply the safe fixes\n"
-        "  btq check --statistics             which rules have most findings\n",
-    )
+@_command(
+    "check",
+    "find mistakes in missions before the robot does",
+    "exit codes: 0 clean, or only infos and hints; 1 errors or warnings, or (--diff) changes to make;\n"
+    "2 usage or I/O\n\n"
+    "examples:\n  btq check                          the project in this folder\n"
+    "  btq check --fix mission.btq        and apply the safe fixes\n"
+    "  btq check --statistics             which rules have most findings\n",
+)
+def _add_check(parser: ArgumentParser) -> None:
     _add_paths(parser)
     parser.add_argument(
         "--output-format",
@@ -152,35 +147,33 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
     parser.set_defaults(**{name: value for name, value in vars(CheckOptions).items() if not name.startswith("_")})
 
 
-def _add_format(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "format",
-        "normalize indentation, spaces and the order of clauses",
-        epilog="exit codes: 0 formatted; 1 files with syntax errors, left unchanged, or changes to make\n"
-        "(--check, --diff); 2 usage or I/O\n\n"
-        "examples:\n  btq format                   the project in this folder\n"
-        "  btq format --check           in CI: is everything formatted?\n"
-        "  btq format - < mission.btq   to standard output\n",
-    )
+@_command(
+    "format",
+    "normalize indentation, spaces and the order of clauses",
+    "exit codes: 0 formatted; 1 files with syntax errors, left unchanged, or changes to make\n"
+    "(--check, --diff); 2 usage or I/O\n\n"
+    "examples:\n  btq format                   the project in this folder\n"
+    "  btq format --check           in CI: is everything formatted?\n"
+    "  btq format - < mission.btq   to standard output\n",
+)
+def _add_format(parser: ArgumentParser) -> None:
     _add_paths(parser)
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file would change")
     parser.add_argument("--diff", action="store_true", help="write nothing, show the changes; exit 1 if there are any")
     _add_color(parser)
 
 
-def _add_build(commands: _SubParsersAction[Parser]) -> None:
+@_command(
+    "build",
+    "write missions as XML that BehaviorTree.CPP loads",
+    "exit codes: 0 written, 1 errors in the missions or (--check) files out of date, 2 usage or I/O\n\n"
+    "examples:\n  btq build mission.btq              mission.xml, and one file for each included one\n"
+    "  btq build missions -o install      below another folder\n"
+    "  btq build --check                  in CI: does the XML match the missions?\n",
+)
+def _add_build(parser: ArgumentParser) -> None:
     from btq_lang.catalog.versions import targets  # of the catalog, which not every reader of this module needs
 
-    parser = _command(
-        commands,
-        "build",
-        "write missions as XML that BehaviorTree.CPP loads",
-        epilog="exit codes: 0 written, 1 errors in the missions or (--check) files out of date, 2 usage or I/O\n\n"
-        "examples:\n  btq build mission.btq              mission.xml, and one file for each included one\n"
-        "  btq build missions -o install      below another folder\n"
-        "  btq build --check                  in CI: does the XML match the missions?\n",
-    )
     _add_paths(parser)
     _add_folder(parser, "FOLDER", "where to write; default: beside the missions")
     parser.add_argument("--bundle", action="store_true", help="each mission in one file with all that it needs")
@@ -210,16 +203,15 @@ def _add_folder(parser: ArgumentParser, metavar: str, help: str) -> None:
     parser.add_argument("-o", "--output", type=folder, metavar=metavar, help=help)
 
 
-def _add_import(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "import",
-        "convert BehaviorTree.CPP XML to .btq files",
-        epilog="exit codes: 0 imported; 1 XML that cannot be read; 2 usage or I/O\n\n"
-        "examples:\n  btq import mission.xml          writes mission.btq beside it\n"
-        "  btq import trees/*.xml -o btq   and into a folder\n"
-        "  btq import - < mission.xml      to standard output\n",
-    )
+@_command(
+    "import",
+    "convert BehaviorTree.CPP XML to .btq files",
+    "exit codes: 0 imported; 1 XML that cannot be read; 2 usage or I/O\n\n"
+    "examples:\n  btq import mission.xml          writes mission.btq beside it\n"
+    "  btq import trees/*.xml -o btq   and into a folder\n"
+    "  btq import - < mission.xml      to standard output\n",
+)
+def _add_import(parser: ArgumentParser) -> None:
     parser.add_argument("files", nargs="+", metavar="FILE", help="XML files, `-` for standard input")
     _add_folder(parser, "DIR", "the folder to write into; default: that of each file")
     parser.add_argument("--keep-v3", action="store_true", help="keep the syntax of files for version 3 of the engine")
@@ -227,17 +219,16 @@ def _add_import(commands: _SubParsersAction[Parser]) -> None:
     _add_color(parser)
 
 
-def _add_trace(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "trace",
-        "show which requirements hold for which nodes, how they are enforced, and what is missing",
-        epilog="exit codes: 0 written; 1 written, but of missions with errors; 2 usage or I/O\n\n"
-        "examples:\n  btq trace                               the project in this folder\n"
-        "  btq trace --format html -o trace.html   a page with the trees\n"
-        "  btq trace --format markdown             for a pull request\n"
-        "  btq trace --evidence verdicts.json      with the verdicts that btq verify wrote\n",
-    )
+@_command(
+    "trace",
+    "show which requirements hold for which nodes, how they are enforced, and what is missing",
+    "exit codes: 0 written; 1 written, but of missions with errors; 2 usage or I/O\n\n"
+    "examples:\n  btq trace                               the project in this folder\n"
+    "  btq trace --format html -o trace.html   a page with the trees\n"
+    "  btq trace --format markdown             for a pull request\n"
+    "  btq trace --evidence verdicts.json      with the verdicts that btq verify wrote\n",
+)
+def _add_trace(parser: ArgumentParser) -> None:
     _add_paths(parser)
     parser.add_argument(
         "--evidence",
@@ -253,23 +244,22 @@ def _add_trace(commands: _SubParsersAction[Parser]) -> None:
     _add_color(parser)
 
 
-def _add_verify(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "verify",
-        "judge what robots did, by their logs, against what the mission demands",
-        epilog="exit codes: 0 nothing violated; 1 a requirement violated (--strict: or not satisfied);\n"
-        "2 usage, I/O, or nothing to read\n\n"
-        "examples:\n  btq verify logs/*.btlog                            the mission is found by its nodes\n"
-        "  btq verify run.db3 --mission mission.btq           or named\n"
-        "  btq verify bag/ --mission nav.btq                  a ROS 2 bag with /behavior_tree_log of Nav2\n"
-        "  btq verify run.db3 --signals battery.csv           with samples of signals\n"
-        "  btq verify logs/ --format junit -o verdicts.xml    for CI\n"
-        "  btq verify bag/ --events violations.mcap           for Foxglove and rqt_console\n"
-        "  btq verify logs/ --store evidence --label v1.4     kept beside earlier runs\n"
-        "  btq verify --store evidence --by label             the verdicts of all that is kept\n"
-        "  btq verify --live tcp://127.0.0.1:1667             a running robot, until Ctrl+C\n",
-    )
+@_command(
+    "verify",
+    "judge what robots did, by their logs, against what the mission demands",
+    "exit codes: 0 nothing violated; 1 a requirement violated (--strict: or not satisfied);\n"
+    "2 usage, I/O, or nothing to read\n\n"
+    "examples:\n  btq verify logs/*.btlog                            the mission is found by its nodes\n"
+    "  btq verify run.db3 --mission mission.btq           or named\n"
+    "  btq verify bag/ --mission nav.btq                  a ROS 2 bag with /behavior_tree_log of Nav2\n"
+    "  btq verify run.db3 --signals battery.csv           with samples of signals\n"
+    "  btq verify logs/ --format junit -o verdicts.xml    for CI\n"
+    "  btq verify bag/ --events violations.mcap           for Foxglove and rqt_console\n"
+    "  btq verify logs/ --store evidence --label v1.4     kept beside earlier runs\n"
+    "  btq verify --store evidence --by label             the verdicts of all that is kept\n"
+    "  btq verify --live tcp://127.0.0.1:1667             a running robot, until Ctrl+C\n",
+)
+def _add_verify(parser: ArgumentParser) -> None:
     parser.add_argument(
         "logs",
         nargs="*",
@@ -345,17 +335,16 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
     _add_color(parser)
 
 
-def _add_compare(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "compare",
-        "compare what robots did with two versions, by the verdicts in a store",
-        epilog="exit codes: 0 nothing got worse; 1 something slower, less reliable or newly violated;\n"
-        "2 usage, I/O, or nothing to compare\n\n"
-        "examples:\n  btq compare evidence v1.3 v1.4                two labels of a store\n"
-        "  btq compare evidence --by robot r7 r8         two robots\n"
-        "  btq compare evidence v1.3 v1.4 -o report.md   for a pull request\n",
-    )
+@_command(
+    "compare",
+    "compare what robots did with two versions, by the verdicts in a store",
+    "exit codes: 0 nothing got worse; 1 something slower, less reliable or newly violated;\n"
+    "2 usage, I/O, or nothing to compare\n\n"
+    "examples:\n  btq compare evidence v1.3 v1.4                two labels of a store\n"
+    "  btq compare evidence --by robot r7 r8         two robots\n"
+    "  btq compare evidence v1.3 v1.4 -o report.md   for a pull request\n",
+)
+def _add_compare(parser: ArgumentParser) -> None:
     # Two names alone are `store` and `before`: if `store` were the optional one, `STORE --by robot A B` would fail.
     parser.usage = "btq compare [-h] [STORE] A B [--by {label,robot}] [--label LABEL] [--format FORMAT] [-o FILE]"
     parser.add_argument("store", metavar="STORE", help=_STORE)
@@ -367,16 +356,15 @@ def _add_compare(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 
-def _add_report(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "report",
-        "show what a store has as one page: what got worse, requirements by version and robot, trends",
-        epilog="exit codes: 0 nothing got worse between the last two labels, as btq compare says; 1 something did;\n"
-        "2 usage, I/O, or nothing to show\n\n"
-        "examples:\n  btq report evidence -o report.html                by version and robot\n"
-        "  btq report evidence --by label -o report.html     without the robots\n",
-    )
+@_command(
+    "report",
+    "show what a store has as one page: what got worse, requirements by version and robot, trends",
+    "exit codes: 0 nothing got worse between the last two labels, as btq compare says; 1 something did;\n"
+    "2 usage, I/O, or nothing to show\n\n"
+    "examples:\n  btq report evidence -o report.html                by version and robot\n"
+    "  btq report evidence --by label -o report.html     without the robots\n",
+)
+def _add_report(parser: ArgumentParser) -> None:
     parser.add_argument("store", nargs="?", metavar="STORE", help=_STORE)
     parser.add_argument(
         "--by",
@@ -388,15 +376,14 @@ def _add_report(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 
-def _add_graph(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "graph",
-        "draw a mission's trees",
-        epilog="exit codes: 0 drawn, 2 usage or I/O\n\n"
-        "examples:\n  btq graph mission.btq --qualities -o mission.svg   for documents\n"
-        "  btq graph mission.btq --format mermaid             for pull requests\n",
-    )
+@_command(
+    "graph",
+    "draw a mission's trees",
+    "exit codes: 0 drawn, 2 usage or I/O\n\n"
+    "examples:\n  btq graph mission.btq --qualities -o mission.svg   for documents\n"
+    "  btq graph mission.btq --format mermaid             for pull requests\n",
+)
+def _add_graph(parser: ArgumentParser) -> None:
     parser.add_argument("paths", nargs=1, metavar="FILE", help="the mission, `-` for standard input")
     parser.add_argument(
         "--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes"
@@ -410,15 +397,14 @@ def _add_graph(commands: _SubParsersAction[Parser]) -> None:
     _add_color(parser)
 
 
-def _add_preview(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "preview",
-        "show a mission's trees in a browser, redrawn whenever a file is saved",
-        epilog="exit codes: 0 ended by Ctrl+C, 2 usage or I/O\n\n"
-        "examples:\n  btq preview mission.btq --open\n"
-        "  btq preview mission.btq --on-click 'emacsclient -n +{line}:{column} {file}'\n",
-    )
+@_command(
+    "preview",
+    "show a mission's trees in a browser, redrawn whenever a file is saved",
+    "exit codes: 0 ended by Ctrl+C, 2 usage or I/O\n\n"
+    "examples:\n  btq preview mission.btq --open\n"
+    "  btq preview mission.btq --on-click 'emacsclient -n +{line}:{column} {file}'\n",
+)
+def _add_preview(parser: ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="the mission")
     parser.add_argument(
         "--port", type=int, default=0, metavar="N", help="the port, on this machine only; default: a free one"
@@ -436,17 +422,16 @@ def _add_preview(commands: _SubParsersAction[Parser]) -> None:
     )
 
 
-def _add_diff(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "diff",
-        "show what changed between two missions",
-        epilog="exit codes: 0 the same, 1 different, 2 usage or I/O\n\n"
-        "examples:\n  btq diff old.btq new.btq                   two missions, XML or btq\n"
-        "  btq diff --git HEAD                        what has changed since the last commit\n"
-        "  btq diff --git main...HEAD --format markdown mission.btq\n"
-        "  ssh robot cat mission.xml | btq diff - mission.btq\n",
-    )
+@_command(
+    "diff",
+    "show what changed between two missions",
+    "exit codes: 0 the same, 1 different, 2 usage or I/O\n\n"
+    "examples:\n  btq diff old.btq new.btq                   two missions, XML or btq\n"
+    "  btq diff --git HEAD                        what has changed since the last commit\n"
+    "  btq diff --git main...HEAD --format markdown mission.btq\n"
+    "  ssh robot cat mission.xml | btq diff - mission.btq\n",
+)
+def _add_diff(parser: ArgumentParser) -> None:
     parser.add_argument(
         "paths",
         nargs="*",
@@ -463,28 +448,26 @@ def _add_diff(commands: _SubParsersAction[Parser]) -> None:
     _add_color(parser)
 
 
-def _add_explain(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "explain",
-        "explain a rule, a node, a quality or a word of the language",
-        epilog="examples:\n  btq explain unknown-port\n  btq explain '->'\n  btq explain time-behaviour\n"
-        "  btq explain on violation\n",
-    )
+@_command(
+    "explain",
+    "explain a rule, a node, a quality or a word of the language",
+    "examples:\n  btq explain unknown-port\n  btq explain '->'\n  btq explain time-behaviour\n"
+    "  btq explain on violation\n",
+)
+def _add_explain(parser: ArgumentParser) -> None:
     parser.add_argument("subject", nargs="*", metavar="RULE|NODE|QUALITY|WORD", help="default: list them all")
     _add_color(parser)
 
 
-def _add_nodes(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "nodes",
-        "write the nodes that C++ sources register, with their ports, as models or as a page",
-        epilog="exit codes: 0 written; 1 written, with remarks on the sources; 2 usage, I/O, no btq-lang[cpp]\n\n"
-        "examples:\n  btq nodes src -o nodes.btq                models to include in missions\n"
-        "  btq nodes src --format xml -o nodes.xml   a palette for Groot\n"
-        "  btq nodes src include -o nodes.html       a page for people\n",
-    )
+@_command(
+    "nodes",
+    "write the nodes that C++ sources register, with their ports, as models or as a page",
+    "exit codes: 0 written; 1 written, with remarks on the sources; 2 usage, I/O, no btq-lang[cpp]\n\n"
+    "examples:\n  btq nodes src -o nodes.btq                models to include in missions\n"
+    "  btq nodes src --format xml -o nodes.xml   a palette for Groot\n"
+    "  btq nodes src include -o nodes.html       a page for people\n",
+)
+def _add_nodes(parser: ArgumentParser) -> None:
     parser.add_argument("paths", nargs="+", metavar="SRC", help="C++ files and folders")
     parser.add_argument(
         "--format", choices=("btq", "xml", "html"), help="default: by the suffix of the -o file, else btq"
@@ -492,53 +475,49 @@ def _add_nodes(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 
-def _add_schema(commands: _SubParsersAction[Parser]) -> None:
+@_command(
+    "schema",
+    "write the schema by which other editors check XML or btq.toml",
+    "exit codes: 0 written; 1 written, but of files that cannot be read whole; 2 usage or I/O\n\n"
+    "examples:\n  btq schema xsd -o btq.xsd                an XSD with the nodes of the project in this folder\n"
+    "  btq schema xsd missions --target 4.6     for an older engine\n"
+    "  btq schema project -o btq.schema.json    a JSON schema of btq.toml\n",
+)
+def _add_schema(parser: ArgumentParser) -> None:
     from btq_lang.catalog.versions import targets  # as above
 
-    parser = _command(
-        commands,
-        "schema",
-        "write the schema by which other editors check XML or btq.toml",
-        epilog="exit codes: 0 written; 1 written, but of files that cannot be read whole; 2 usage or I/O\n\n"
-        "examples:\n  btq schema xsd -o btq.xsd                an XSD with the nodes of the project in this folder\n"
-        "  btq schema xsd missions --target 4.6     for an older engine\n"
-        "  btq schema project -o btq.schema.json    a JSON schema of btq.toml\n",
-    )
     parser.add_argument("format", choices=("xsd", "project"), help="an XSD of the nodes, or a JSON schema of btq.toml")
     parser.add_argument("paths", nargs="*", metavar="PATH", help="of xsd: files and folders with nodes; default: .")
     parser.add_argument("--target", choices=targets(), help="the engine's version; default: the project's newest")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 
-def _add_init(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(
-        commands,
-        "init",
-        "create a project without findings",
-        epilog="exit codes: 0 created; 2 usage or I/O, or the project exists already\n\n"
-        "examples:\n  btq init my-robot && btq check my-robot\n"
-        "  btq init --from-xml        a project file for the XML in this folder\n",
-    )
+@_command(
+    "init",
+    "create a project without findings",
+    "exit codes: 0 created; 2 usage or I/O, or the project exists already\n\n"
+    "examples:\n  btq init my-robot && btq check my-robot\n"
+    "  btq init --from-xml        a project file for the XML in this folder\n",
+)
+def _add_init(parser: ArgumentParser) -> None:
     parser.add_argument("folder", nargs="?", default=".", metavar="FOLDER", help="default: .")
     parser.add_argument("--from-xml", action="store_true", help="only a project file, for the XML that is there")
     parser.add_argument("--convert", action="store_true", help="with --from-xml: and write .btq files beside the XML")
 
 
-def _add_completion(commands: _SubParsersAction[Parser]) -> None:
+@_command(
+    "completion",
+    "print the completion script of a shell",
+    'examples:\n  eval "$(btq completion bash)"\n  btq completion fish > ~/.config/fish/completions/btq.fish\n',
+)
+def _add_completion(parser: ArgumentParser) -> None:
     from btq_lang.commands.shell import SHELLS
 
-    parser = _command(
-        commands,
-        "completion",
-        "print the completion script of a shell",
-        epilog='examples:\n  eval "$(btq completion bash)"\n'
-        "  btq completion fish > ~/.config/fish/completions/btq.fish\n",
-    )
     parser.add_argument("shell", choices=SHELLS)
 
 
-def _add_lsp(commands: _SubParsersAction[Parser]) -> None:
-    parser = _command(commands, "lsp", "serve an editor: the language server, also called btq-lsp")
+@_command("lsp", "serve an editor: the language server, also called btq-lsp")
+def _add_lsp(parser: ArgumentParser) -> None:
     add_server_options(parser)
 
 
