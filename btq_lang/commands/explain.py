@@ -11,7 +11,7 @@ from btq_lang.catalog.language import PHRASES, SIGNS, phrases_of
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import Quality, find, parts, qualities, siblings
-from btq_lang.catalog.units import Unit, dimension_name, nearest_units, parse_unit, symbols
+from btq_lang.catalog.units import dimension_name, nearest_units, parse_unit, symbols
 from btq_lang.catalog.verdicts import VERDICTS, Verdict
 from btq_lang.commands.explain_nav2 import nav2_nodes, nav2_page
 from btq_lang.commands.output import is_coloured
@@ -28,7 +28,7 @@ def run(options: Namespace) -> int:
     pages = list(_pages(" ".join(names)))  # a name of several words: `time behaviour`
     unknown = []
     if not names:
-        pages = ["\n".join(_overview())]
+        pages = [_overview()]
     elif not pages:
         by_name = {name: list(_pages(name)) or list(_pages(name.split()[0])) for name in names}  # `takes at most`
         pages = [text for found in by_name.values() for text in found]
@@ -178,37 +178,21 @@ def _likely(name: str) -> tuple[str, ...]:
     return near(name, names) or tuple(sorted(parts, key=lambda each: (len(each), each))[:5]) or nearest_units(name)
 
 
-def _overview() -> Iterator[str]:
-    yield "# Rules"
-    for rule in RULES.values():
-        yield f"{rule.name:<28} {rule.severity.value:<8} {rule.summary}"
-    yield "\n# Nodes"
-    for kind in BUILTINS.values():
-        yield f"{kind.tag:<28} {'  '.join(spellings(kind)[1:]):<22} {kind.doc}"
-    yield "\n# Qualities"
-    for quality in qualities():
-        yield f"{quality.id:<58} {quality.name}"
-    yield "\n# Words of the language"
-    for phrase in PHRASES:
-        yield f"{phrase.words:<20} {phrase.part:<22} {phrase.brief}"
-    yield "\n# Signs"
-    for sign, form, meaning in SIGNS:
-        yield f"{sign:<12} {form:<38} {meaning}"
-    yield "\n# Attributes of nodes"
-    for attribute in RESERVED_ATTRIBUTES.values():
-        yield f"{attribute.name:<20} {attribute.doc}"
-    yield "\n# Verdicts"
-    yield from _verdicts()
-    yield "\n# Units"
-    for measured, units in _by_dimension(symbols()):
-        yield f"{measured:<22} {' '.join(units)}"
-
-
-def _by_dimension(units: tuple[Unit, ...]) -> Iterator[tuple[str, list[str]]]:
-    found: dict[str, list[str]] = {}
-    for unit in units:
-        found.setdefault(dimension_name(unit), []).append(unit.symbol)
-    yield from found.items()
+def _overview() -> str:
+    by_dimension: dict[str, list[str]] = {}
+    for unit in symbols():
+        by_dimension.setdefault(dimension_name(unit), []).append(unit.symbol)
+    sections = {
+        "Rules": [f"{rule.name:<28} {rule.severity.value:<8} {rule.summary}" for rule in RULES.values()],
+        "Nodes": [f"{kind.tag:<28} {'  '.join(spellings(kind)[1:]):<22} {kind.doc}" for kind in BUILTINS.values()],
+        "Qualities": [f"{quality.id:<58} {quality.name}" for quality in qualities()],
+        "Words of the language": [f"{one.words:<20} {one.part:<22} {one.brief}" for one in PHRASES],
+        "Signs": [f"{sign:<12} {form:<38} {meaning}" for sign, form, meaning in SIGNS],
+        "Attributes of nodes": [f"{each.name:<20} {each.doc}" for each in RESERVED_ATTRIBUTES.values()],
+        "Verdicts": _verdicts(),
+        "Units": [f"{measured:<22} {' '.join(units)}" for measured, units in by_dimension.items()],
+    }
+    return "\n\n".join("\n".join((f"# {title}", *lines)) for title, lines in sections.items())
 
 
 def _names() -> list[str]:

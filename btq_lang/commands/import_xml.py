@@ -54,14 +54,17 @@ def import_files(options: Namespace) -> tuple[int, tuple[str, ...]]:
     Returns:
         the exit code, and the missions that were written.
     """
-    jobs: list[_Job] = []
     problems: list[LoadProblem] = []
     targets = {absolute(path): _target(path, options) for path in options.files if path != _STDIN}
-    for path in options.files:
-        job = _job(path, targets, options, problems)
-        if job is not None:
-            jobs.append(job)
-    if len([job for job in jobs if _is_second(job, jobs, problems)]) > 0:  # no `any`: it reports all of them
+    made = (_job(path, targets, options, problems) for path in options.files)
+    jobs = [job for job in made if job is not None]
+    first: dict[str | int, _Job] = {}
+    for job in jobs:
+        other = first.setdefault(job.target or id(job), job)
+        if other is not job and job.target is not None:
+            message = f"not imported: {shown(other.path)} would also become {shown(job.target)}"
+            problems.append(LoadProblem(job.path, message))
+    if len(first) < len(jobs):
         jobs = []  # the others may include what would be missing
     jobs = [job for job in jobs if not _clashes(job, jobs, options.force, problems)]
     _show_findings(jobs, options)
@@ -85,7 +88,7 @@ def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: li
     if path == _STDIN:
         xml, problem = decoded("<stdin>", sys.stdin.buffer.read())
         if xml is None or problem is not None:  # as for a file
-            problems.extend([problem] if problem else [])
+            problems += [problem] if problem else []
             return None
         job = _Job("<stdin>", xml, import_xml(xml, options.keep_v3), None)
         return _without_side_file(job, "import the file by its name, beside its .qreq.json, to keep them")
@@ -152,35 +155,16 @@ def _without_side_file(job: _Job, advice: str) -> _Job:
     return replace(job, losses=(f"the requirements or qualities of {nodes} are lost: {advice}",))
 
 
-def _is_second(job: _Job, jobs: Iterable[_Job], problems: list[LoadProblem]) -> bool:
-    """Whether another job has the same target."""
-    if job.target is None:
-        return False
-    first = next(other for other in jobs if other.target == job.target)
-    if first is job:
-        return False
-    problems.append(LoadProblem(job.path, f"not imported: {shown(first.path)} would also become {shown(job.target)}"))
-    return True
-
-
 def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadProblem]) -> bool:
     """Whether writing a job would overwrite a file."""
     if job.target is None:
         return False
     for other in jobs:
-        known = {
-            other.path: other.xml,
-            **dict(other.others),
-            **({other.target: other.done.text} if other.target else {}),
-        }
+        known: dict[str | None, str] = {other.path: other.xml, **dict(other.others), other.target: other.done.text}
         for path, text in job.others:
             if known.get(path, text) != text:
-                problems.append(
-                    LoadProblem(
-                        job.path,
-                        f"not imported: the bundle {shown(other.path)} contains another version of {shown(path)}",
-                    )
-                )
+                message = f"not imported: the bundle {shown(other.path)} contains another version of {shown(path)}"
+                problems.append(LoadProblem(job.path, message))
                 return True
     if os.path.lexists(job.target) and not force:
         problems.append(LoadProblem(job.target, "already exists; --force overwrites it"))
@@ -192,15 +176,13 @@ def _write(job: _Job, problems: list[LoadProblem]) -> bool:
     if job.target is None:
         sys.stdout.write(job.done.text)
         return True
-    at = job.target
-    try:
-        for path, text in (*job.others, (job.target, job.done.text)):
-            at = path
+    for path, text in (*job.others, (job.target, job.done.text)):
+        try:
             os.makedirs(os.path.dirname(path), exist_ok=True)
             write_whole(path, text)
-    except OSError as error:
-        problems.append(LoadProblem(at, f"cannot be written: {error.strerror}"))
-        return False
+        except OSError as error:
+            problems.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
+            return False
     return True
 
 
@@ -300,11 +282,8 @@ def unpacked(
     for name, text in others:
         path = _below(root, folder, name)
         if path is None:
-            problems.append(
-                LoadProblem(
-                    target, f"its bundle contains `{name}`, which is not a .btq or XML file below the output folder"
-                )
-            )
+            message = f"its bundle contains `{name}`, which is not a .btq or XML file below the output folder"
+            problems.append(LoadProblem(target, message))
         elif path in (target, *taken):
             problems.append(LoadProblem(target, f"its bundle contains `{name}`, which the import would overwrite"))
         elif not os.path.lexists(path):

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from btq_lang.syntax.tokens import COMMENT, STRING
 from btq_lang.syntax.tree import Entry, Node, Tree
 from btq_lang.util.record import Record
-from btq_lang.util.text import LINE_END, Edit, Span
+from btq_lang.util.text import LINE_END, Edit, Span, apply_edits
 from btq_lang.workspace.file import File
 
 STEP = "    "
@@ -66,17 +66,9 @@ def block_of(file: File, entry: Entry, node: Node) -> Block:
 
 def moved(file: File, block: Block, blanks: str) -> str:
     """The text of a block, reindented so that its first line has other blanks; the first line's own are left out."""
-    text = file.text[block.span.start : block.span.end]
-    pieces: list[str] = []
-    at = 0
-    for start in _line_starts(file, block.span):
-        line = start - block.span.start
-        pieces.append(text[at:line])
-        at = line
-        if text.startswith(block.blanks, line):
-            pieces.append(blanks)
-            at = line + len(block.blanks)
-    return "".join([*pieces, text[at:]])
+    start, end = block.span
+    inside = (edit for edit in shifts(file, block, blanks) if edit.span.start > start)
+    return apply_edits(file.text[start:end], (Edit(edit.span.shifted(-start), edit.text) for edit in inside))
 
 
 def shifts(file: File, block: Block, blanks: str) -> Iterator[Edit]:

@@ -102,13 +102,9 @@ def _head(file: File, entry: Entry, node: Node) -> Iterator[Edit]:
             return
     for pair in moved:
         start, end = pair.span.shifted(entry.start)
-        while end < len(text) and text[end] in " \t":
-            end += 1
-        if text[end : end + 1] == ",":
-            end += 1
-            while text[end : end + 1] in (" ", "\t"):
-                end += 1
-        yield Edit(Span(start, end), "")
+        rest = text[end:].lstrip(" \t")
+        rest = rest[1:].lstrip(" \t") if rest.startswith(",") else rest
+        yield Edit(Span(start, len(text) - len(rest)), "")
 
 
 def _without(text: str, pairs: list[Pair], by: int) -> str:

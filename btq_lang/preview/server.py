@@ -55,20 +55,20 @@ class Preview:
 
     def changed(self) -> None:
         """Make every page request its picture again."""
-        with self._changed:
-            self._now = (self._now[0] + 1, *self._now[1:])
-            self._changed.notify_all()
+        self._show(changes=1)
 
     def mark_line(self, line: int) -> None:
         """Make every page mark the node at the line, counted from 1."""
-        with self._changed:
-            self._now = (self._now[0], line, self._now[2])
-            self._changed.notify_all()
+        self._show(line=line)
 
     def show_run(self, run: str) -> None:
         """Make every page show a run of the logs; `run`: as JSON."""
+        self._show(run=run)
+
+    def _show(self, changes: int = 0, line: int | None = None, run: str | None = None) -> None:
         with self._changed:
-            self._now = (*self._now[:2], run)
+            before = self._now
+            self._now = (before[0] + changes, before[1] if line is None else line, before[2] if run is None else run)
             self._changed.notify_all()
 
     def wait(self, seen: tuple[int, int, str]) -> tuple[int, int, str]:
