@@ -10,7 +10,7 @@ from btq_lang.commands.files import write_stdout
 from btq_lang.commands.options import Refused
 from btq_lang.evidence.one_run import one_run
 from btq_lang.evidence.readers import NotALog
-from btq_lang.util.record import fields_of
+from btq_lang.util.record import as_dict
 from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
@@ -28,7 +28,6 @@ def print_run(logs: Sequence[str], missions: Sequence[Candidate], number: int) -
         raise Refused(f"{shown(log)}: {error}") from error
     if found is None:
         raise Refused(f"{shown(log)} has no run {number} of {mission.name}")
-    steps = [{name: getattr(step, name) for name in fields_of(step)} for step in found.steps]
-    document = {name: getattr(found, name) for name in fields_of(found)} | {"steps": steps}
-    write_stdout(json.dumps(document) + "\n")
+    write_stdout(json.dumps({**as_dict(found), "steps": [*map(as_dict, found.steps)]}) + "
+")
     return 0

@@ -6,7 +6,7 @@ One invariant: a clause that cannot be judged is unknown with the reason, and ne
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.btcpp.around import LIMITING, WATCHING
 from btq_lang.catalog.verbs import VERBS, words
@@ -23,7 +23,7 @@ from btq_lang.evidence.model import (
     Activation,
     LoggedTree,
 )
-from btq_lang.evidence.observed import Observed, parts_in
+from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.over_run import OverRun, target_of
 from btq_lang.evidence.recent import Recent
 from btq_lang.evidence.run_verbs import run_judge
@@ -33,7 +33,7 @@ from btq_lang.evidence.tally import Run, Tally
 from btq_lang.evidence.verbs import JUDGES, Judgement
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Link, Measures
 from btq_lang.evidence.wording import duration
-from btq_lang.requirements.model import Mission, Running, Span, Target, Total, Value
+from btq_lang.requirements.model import Mission, Running, Span, Target, Total, Value, parts_in
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     from btq_lang.evidence.identity import Joined
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
-    from btq_lang.evidence.verdicts import Verdict
-    from btq_lang.requirements.model import Claim, Event, Subject
+    from btq_lang.evidence.verdicts import Timeline, Verdict
+    from btq_lang.requirements.model import Claim, Event, Requirement, Subject
 
 
 class _Place(Record):
@@ -58,20 +58,35 @@ class _Place(Record):
     others: Nearby
 
 
-class ClauseFindings(Record):
-    """What was found of a clause in some logs.
+class ClauseFindings:
+    """What was found of a clause in some logs; it refers to no text, so it may go to another process.
 
     Attributes:
-        paths: of its nodes.
+        paths: of its nodes, as an ordered set.
         missing: why it cannot be judged at all its nodes; empty if it can.
         has_run: whether one of its nodes has.
+        timeline: the run with the worst violation; None if none is kept.
     """
 
-    tally: Tally | Recent
-    margins: Margins
-    paths: tuple[str, ...]
-    missing: str
-    has_run: bool
+    def __init__(self, requirement: Requirement, limits: Limits) -> None:
+        odds, confidence, window = requirement.odds, requirement.confidence, requirement.window
+        self.tally: Final = Tally(odds, confidence, limits) if window is None else Recent(window, odds, confidence)
+        self.margins: Final = Margins(odds is not None and odds.experiments == "runs")
+        self.paths: Final[dict[str, None]] = {}
+        self.missing = ""
+        self.has_run = False
+        self.timeline: Timeline | None = None
+
+    def add(self, other: ClauseFindings, runs: int) -> None:
+        """Add what was found in later logs; `runs`: how many runs were before them."""
+        theirs: Any = other.tally  # one clause has tallies of one class
+        if other.timeline is not None and theirs.is_worse_than(self.tally, other.timeline.run):
+            self.timeline = replace(other.timeline, run=other.timeline.run + runs)
+        self.tally.add_all(theirs, runs)
+        self.margins.add_all(other.margins, runs)
+        self.paths.update(other.paths)
+        self.missing = self.missing or other.missing
+        self.has_run = self.has_run or other.has_run
 
 
 class JudgedClause:
@@ -89,28 +104,27 @@ class JudgedClause:
         self.demand: Final = demand
         self.requirement: Final = requirement
         self.claim: Final = claim
-        odds, confidence, window = requirement.odds, requirement.confidence, requirement.window
-        self._tally: Final = Tally(odds, confidence, limits) if window is None else Recent(window, odds, confidence)
+        self.found: Final = ClauseFindings(requirement, limits)
+        self._tally: Final = self.found.tally
+        self._margins: Final = self.found.margins
         self._subject: Final = subject
         self._judge: Final = JUDGES.get(claim.verb) if not isinstance(subject, Span | Total) else None
         self._judge_run: Final = run_judge(claim, subject)
         self.judged: Final = replace(within(claim, requirement.scopes), subject=subject)
         self._edge: Final = edge_of(self.judged, subject, requirement) if with_measures else None
         self._extremes: Final = self._edge.extremes if self._edge is not None else ()
-        self._margins: Final = Margins(odds is not None and odds.experiments == "runs")
         self._with_measures: Final = with_measures
         self._events: Final = _events(claim, subject)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [each.target for part in parts for each in parts_in(part) if isinstance(each, Running)]
-        self._not_judged: Final = self._why_not()
+        self.found.missing = self._why_not()
+        self._is_judged: Final = not self.found.missing
         self._nodes: Final[list[int]] = []  # of the current log, as are these:
         self._places: Final[list[_Place]] = []
         self._signals: Signals
         self._history: History
         self._waiting: Final[list[tuple[Activation, Observed, str]]] = []  # until it is known what else ran meanwhile
-        self._paths: Final[dict[str, None]] = {}
-        self._missing = ""
-        self._has_run = self._waits = False
+        self._waits = False
         self._records: Final[list[Callable[[Judgement, int, int, str], None]]] = []
         self.explainer: Explainer
 
@@ -127,7 +141,7 @@ class JudgedClause:
         self._signals, self._history = signals, history
         self._nodes.clear()
         self._places.clear()
-        for uids in self._own(joined) if not self._not_judged else ():
+        for uids in self._own(joined) if self._is_judged else ():
             others = nearby(uids[0])
             needed = [target_of(each) for each in self._events if each.condition is None]
             if isinstance(self.claim.per, Target):
@@ -136,7 +150,7 @@ class JudgedClause:
             for target in self._running:
                 others.find(target)
             if lost:
-                self._missing = self._missing or lost[0].why
+                self.found.missing = self.found.missing or lost[0].why
                 continue
             self._nodes.extend(uids)
             if self._judge_run is not None:
@@ -146,7 +160,7 @@ class JudgedClause:
 
     def judge(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
         """Count an activation of one of its nodes, which a guard may have stopped, by what was observed during it."""
-        self._has_run = True
+        self.found.has_run = True
         if activation.timing in BEGUN_BEFORE:
             return
         self._waits = self._waits or activation.started[1] != activation.ended[1]
@@ -165,7 +179,7 @@ class JudgedClause:
         """
         own = self.claim.verb == refusal.verb and self.requirement.name == refusal.requirement
         if own or (VERBS[self.claim.verb].limits == "success" and VERBS[refusal.verb].operand == "condition"):
-            self._has_run = True
+            self.found.has_run = True
             self._margins.is_exact = False
             judgement = Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}")
             self._add(judgement, path, refusal.time, refusal.time, self.explainer.chain(self.claim, judgement, path))
@@ -180,7 +194,7 @@ class JudgedClause:
             self._judge_over(root)
         if root.timing in CUT_BY_GAP and self._nodes:
             lost = Judgement(None, root.end, ROWS_LOST)
-            self._add(lost, next(iter(self._paths)), root.end, root.end, ())
+            self._add(lost, next(iter(self.found.paths)), root.end, root.end, ())
             self._margins.add(margins.UNKNOWN, margins.UNKNOWN, None)
         self._tally.end_run(run)
         self._margins.end_run(run.number)
@@ -279,21 +293,21 @@ class JudgedClause:
             for uid in firsts if subject.first.subject is not None else [ROOT]:
                 together = near(uid, lasts, joined.tree)
                 groups[together] = (*groups.get(together, ()), uid)
-            return [*groups.values()] if not self._missing else []
+            return [*groups.values()] if not self.found.missing else []
         if isinstance(subject, Total):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
-            return [tuple(uids)] if uids and not self._missing else []
+            return [tuple(uids)] if uids and not self.found.missing else []
         return [(uid,) for uid in self._instances(joined, _known(subject))]
 
     def _instances(self, joined: Joined, target: Target | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""
         found: list[int] = []
         for path, uid in joined.instances(target) if target is not None else ():
-            self._paths[path] = None
+            self.found.paths[path] = None
             if uid is not None:
                 found.append(uid)
             else:
-                self._missing = self._missing or f"`{path}` {joined.lacking}"
+                self.found.missing = self.found.missing or f"`{path}` {joined.lacking}"
         return found
 
     def _is_own(self, guard: Guard) -> bool:
@@ -332,54 +346,26 @@ class JudgedClause:
         """Whether the clause is judged at the end of a run."""
         return self._judge_run is not None
 
-    def is_worst_in(self, run: Run) -> bool:
-        """Whether a run has the worst violation so far; unknown for a window until all logs are read, so False."""
-        return isinstance(self._tally, Tally) and self._tally.is_worst_in(run)
-
-    def findings(self) -> ClauseFindings:
-        """What a verdict needs of the logs so far."""
-        missing = self._not_judged or self._missing
-        return ClauseFindings(self._tally, self._margins, tuple(self._paths), missing, self._has_run)
-
-    def add(self, findings: ClauseFindings, runs: int) -> None:
-        """Add what was found in later logs; `runs`: how many runs were before them."""
-        self._tally.add_all(findings.tally, runs)  # type: ignore[arg-type]  # one clause has tallies of one class
-        self._margins.add_all(findings.margins, runs)
-        self._paths.update(dict.fromkeys(findings.paths))
-        self._missing = self._missing or findings.missing
-        self._has_run = self._has_run or findings.has_run
-
-    def is_worse_in(self, findings: ClauseFindings, run: int) -> bool:
-        """Whether a run of later logs has a worse violation than all runs so far."""
-        later = findings.tally
-        return isinstance(self._tally, Tally) and isinstance(later, Tally) and later.is_worse_than(self._tally, run)
-
     def verdict(self, open_run: Run | None = None) -> ClauseVerdict:
         """The verdict on all judgements so far, with those of the open run if that is given."""
+        found = self.found
         tally = self._tally.result() if open_run is None else self._tally.so_far(open_run)
-        verdict, why = verdict_of(tally, self._not_judged or self._missing, self._has_run)
+        verdict, why = verdict_of(tally, found.missing, found.has_run)
         goal = self.requirement.goal
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
-        is_once_a_run = isinstance(self._subject, Total) or (is_of_run and len(self._paths) == 1)
+        is_once_a_run = isinstance(self._subject, Total) or (is_of_run and len(found.paths) == 1)
         return ClauseVerdict(
             text=self.text,
-            path=", ".join(self._paths),
+            path=", ".join(found.paths),
             of=self.claim.text.partition(f" {self.claim.verb} ")[0] if isinstance(self._subject, Span | Total) else "",
             verdict=verdict,
-            counted=tally.counted,
-            violated=tally.violated,
-            unknown=tally.unknown,
-            cut_off=tally.cut_off,
-            unit="runs" if tally.counts_runs or is_once_a_run else "activations",
-            worst=tally.worst,
-            interval=tally.interval(),
-            limits=tally.limits,
-            confidence=self.requirement.confidence,
-            more=tally.more(),
-            violations=tuple(tally.violations),
             why=why,
+            unit="runs" if tally.counts_runs or is_once_a_run else "activations",
+            confidence=self.requirement.confidence,
             histogram=tally.distribution.histogram(goal if isinstance(goal, Value) else None),
+            timeline=found.timeline if verdict == VIOLATED else None,
             measures=self._measures() if self._with_measures else None,
+            **tally.fields(),
         )
 
     def _measures(self) -> Measures:
@@ -390,8 +376,8 @@ class JudgedClause:
             place=self.demand.place,
             bound=edge.value.si if edge is not None else None,
             odds=(odds.relation, odds.probability) if odds is not None else None,
-            missing=self._not_judged or self._missing,
-            has_run=self._has_run,
+            missing=self.found.missing,
+            has_run=self.found.has_run,
             margins=self._margins if is_exact else None,
         )
 

@@ -9,23 +9,25 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.history import History, Nearby
 from btq_lang.evidence.model import ROOT, Activation
-from btq_lang.evidence.observed import Observed, parts_in
+from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.signals import Signals, Unknown
-from btq_lang.evidence.verdicts import ContextSummary
-from btq_lang.requirements.model import Condition, InContext, Running
+from btq_lang.requirements.model import Condition, InContext, Running, parts_in
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Joined
 
 
 class Contexts:
-    """Counts the runs of a mission's contexts while its logs are read."""
+    """Counts the runs of a mission's contexts while its logs are read.
+
+    Attributes:
+        counts: in how many runs each context held, and in how many others that is unknown.
+    """
 
     def __init__(self, contexts: Mapping[str, Condition | None]) -> None:
         """Count nothing yet; a context that could not be resolved is None."""
         self._contexts: Final = [InContext(name, each) for name, each in contexts.items() if each is not None]
-        self._held: Final = Counter(dict.fromkeys(contexts, 0))
-        self._unknown: Final = Counter(dict.fromkeys(contexts, 0))
+        self.counts: Final = Counter(dict.fromkeys(contexts, 0)), Counter(dict.fromkeys(contexts, 0))
 
     def join(self, joined: Joined, signals: Signals, history: History) -> None:
         """Begin another log."""
@@ -38,26 +40,14 @@ class Contexts:
     def end_run(self, root: Activation) -> None:
         """Count the open run, which has ended; `root`: the activation of its root."""
         observed = Observed(self._signals, self._nodes, root.started, root.ended, root.timing != "latest")
+        held, unknown = self.counts
         for context in self._contexts:
             is_unknown = False
             for moment in observed.moments(context):
                 found = truth(context, observed, moment)
                 if found is True:
-                    self._held[context.name] += 1
+                    held[context.name] += 1
                     break
                 is_unknown = is_unknown or isinstance(found, Unknown)
             else:
-                self._unknown[context.name] += is_unknown
-
-    def counts(self) -> tuple[Counter[str], Counter[str]]:
-        """In how many runs each context held, and in how many others that is unknown."""
-        return self._held, self._unknown
-
-    def add_all(self, counts: tuple[Counter[str], Counter[str]]) -> None:
-        """Add the counts of other logs."""
-        self._held.update(counts[0])
-        self._unknown.update(counts[1])
-
-    def summary(self) -> tuple[ContextSummary, ...]:
-        """The counts of each context, in the order of definition."""
-        return tuple(ContextSummary(name, held, self._unknown[name]) for name, held in self._held.items())
+                unknown[context.name] += is_unknown

@@ -22,40 +22,63 @@ from btq_lang.evidence.outline import demands, outline
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signals import Signals
 from btq_lang.evidence.tally import Run
-from btq_lang.evidence.timeline import Timelines
+from btq_lang.evidence.timeline import OpenRun
 from btq_lang.evidence.verdicts import (
     OUTCOMES,
-    VIOLATED,
     ClauseVerdict,
+    ContextSummary,
     MissionVerdicts,
     RequirementVerdict,
     Source,
     worst_of,
 )
-from btq_lang.util.record import Record, replace
+from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate, Joined
     from btq_lang.evidence.model import Activation, Outcome, Series, Session
     from btq_lang.evidence.odds import Limits
-    from btq_lang.evidence.verdicts import Timeline
 
 
-class Findings(Record):
-    """What was found in some logs of a mission.
+class Findings:
+    """What was found in some logs of a mission; it refers to no text, so it may go to another process.
 
     Attributes:
         clauses: in the order in which a `MissionEvaluation` has them.
-        contexts: as of `Contexts.counts`.
-        timelines: of the runs that broke clauses worst, by the clause's index.
+        contexts: in how many runs each context held, and in how many others that is unknown.
     """
 
-    clauses: tuple[ClauseFindings, ...]
-    sources: tuple[Source, ...]
-    outcomes: Counter[Outcome]
-    coverage: Coverage
-    contexts: tuple[Counter[str], Counter[str]]
-    timelines: dict[int, Timeline]
+    def __init__(self, clauses: Sequence[ClauseFindings], contexts: tuple[Counter[str], Counter[str]]) -> None:
+        self.clauses: Final = clauses
+        self.contexts: Final = contexts
+        self.sources: Final[list[Source]] = []
+        self.outcomes: Final[Counter[Outcome]] = Counter(dict.fromkeys(OUTCOMES, 0))
+        self.coverage: Final = Coverage()
+
+    def add(self, other: Findings, runs: int) -> None:
+        """Add what was found in later logs, whose runs are numbered by themselves, after so many runs."""
+        for clause, found in zip(self.clauses, other.clauses, strict=True):
+            clause.add(found, runs)
+        for own, theirs in zip(self.contexts, other.contexts, strict=True):
+            own.update(theirs)
+        self.outcomes.update(other.outcomes)
+        for source in other.sources:
+            self.add_source(replace(source, first_run=source.first_run + runs))
+        self.coverage.add_all(other.coverage, runs)
+
+    def add_source(self, source: Source) -> None:
+        """Merge a session's counts into those of its file."""
+        last = self.sources[-1] if self.sources else None
+        if last is None or (last.file, last.identity) != (source.file, source.identity):
+            self.sources.append(source)
+            return
+        self.sources[-1] = replace(
+            last,
+            runs=last.runs + source.runs,
+            begin=last.begin if last.begin is not None else source.begin,
+            end=source.end if source.end is not None else last.end,
+            remarks=tuple(dict.fromkeys((*last.remarks, *source.remarks))),
+        )
 
 
 class Listener(Protocol):
@@ -99,11 +122,9 @@ class MissionEvaluation:
         clauses = [JudgedClause(each, limits, with_measures) for each in demands(found)]
         self._with_measures: Final = with_measures
         self._clauses: Final = clauses
-        self._sources: Final[list[Source]] = []
-        self._outcomes: Final[Counter[Outcome]] = Counter(dict.fromkeys(OUTCOMES, 0))
-        self._coverage: Final = Coverage()
         self._contexts: Final = Contexts(found.contexts)
-        self._timelines: Final = Timelines() if with_timelines else None
+        self._found: Final = Findings([each.found for each in clauses], self._contexts.counts)
+        self._open_run: Final = OpenRun() if with_timelines else None
 
     def read(self, session: Session, joined: Joined, given: Mapping[str, Series], first_run: int, source: str) -> int:
         """Judge the runs of a session; returns how many there are.
@@ -130,17 +151,18 @@ class MissionEvaluation:
         for listener in self.listeners:
             listener.join(joined, self._clauses)
         self._contexts.join(joined, signals, history)
-        self._coverage.expect(tree, joined.written())
+        coverage = self._found.coverage
+        coverage.expect(tree, joined.written())
         begin: int | None = None
         end = 0
         runs = 0
-        log = self._coverage.timed(session)
+        log = coverage.timed(session)
         for activation in activations(log):
-            self._coverage.count(activation)
+            coverage.count(activation)
             origin = explainer.see(activation)
             history.add(activation)
-            if self._timelines is not None:
-                self._timelines.see(activation)
+            if self._open_run is not None:
+                self._open_run.see(activation)
             for listener in self.listeners:
                 listener.see(activation)
             if activation.uid in guards.concerned:  # few nodes are
@@ -158,10 +180,10 @@ class MissionEvaluation:
                 runs += 1
                 begin = activation.begin if begin is None else begin
                 end = activation.end
-                self._outcomes[activation.outcome] += 1
+                self._found.outcomes[activation.outcome] += 1
                 began = origin.uid if origin is not None else None
-                repeats = self._coverage.retries.now, self._coverage.recoveries.now
-                self._coverage.end_run(run.number, began)
+                repeats = coverage.retries.now, coverage.recoveries.now
+                coverage.end_run(run.number, began)
                 for clause in self._clauses:
                     clause.end_run(run, activation)
                 for listener in self.listeners:
@@ -169,12 +191,12 @@ class MissionEvaluation:
                 self._contexts.end_run(activation)
                 history.clear()
                 explainer.end_run()
-                if self._timelines is not None:
-                    self._timelines.end_run(run, tree, [each for each in self._clauses if each.is_worst_in(run)])
+                if self._open_run is not None:
+                    self._open_run.end(run, tree, self._found.clauses)
                 signals.forget_before(end)
                 self._ran(run.number)
         session.remarks.extend([found for each in self._clauses if (found := each.remark(tree, log.keeping))])
-        self._add(
+        self._found.add_source(
             Source(
                 file=source,
                 runs=runs,
@@ -195,37 +217,19 @@ class MissionEvaluation:
             listener.end(self._clauses)
 
     def findings(self) -> Findings:
-        """What the verdicts need of the logs so far; refers to no text, and may go to another process."""
-        kept = self._timelines.kept if self._timelines is not None else {}
-        return Findings(
-            tuple(clause.findings() for clause in self._clauses),
-            tuple(self._sources),
-            self._outcomes,
-            self._coverage,
-            self._contexts.counts(),
-            {index: kept[clause] for index, clause in enumerate(self._clauses) if clause in kept},
-        )
+        """What the verdicts need of the logs so far."""
+        return self._found
 
     def add(self, findings: Findings, runs: int) -> None:
-        """Add what was found in later logs, whose runs are numbered by themselves, after so many runs."""
-        for index, timeline in findings.timelines.items():
-            clause = self._clauses[index]
-            if self._timelines is not None and clause.is_worse_in(findings.clauses[index], timeline.run):
-                self._timelines.kept[clause] = replace(timeline, run=timeline.run + runs)
-        for clause, found in zip(self._clauses, findings.clauses, strict=True):
-            clause.add(found, runs)
-        for source in findings.sources:
-            self._add(replace(source, first_run=source.first_run + runs))
-        self._outcomes.update(findings.outcomes)
-        self._coverage.add_all(findings.coverage, runs)
-        self._contexts.add_all(findings.contexts)
+        """Add what was found in later logs, as `Findings.add`."""
+        self._found.add(findings, runs)
 
     def verdicts(self, open_run: Run | None = None) -> tuple[RequirementVerdict, ...]:
         """The verdict on each requirement so far, with the open run if that is given."""
         found = self.mission.requirements
         by_requirement: dict[str, list[ClauseVerdict]] = {name: [] for name in found.all}
         for clause in self._clauses:
-            by_requirement[clause.requirement.name].append(self._verdict(clause, open_run))
+            by_requirement[clause.requirement.name].append(clause.verdict(open_run))
         return tuple(
             RequirementVerdict(
                 name,
@@ -239,37 +243,20 @@ class MissionEvaluation:
 
     def result(self) -> MissionVerdicts:
         """All that was found so far."""
-        found = self.mission.requirements
+        requirements, found = self.mission.requirements, self._found
+        held, unknown = found.contexts
         return MissionVerdicts(
             name=self.mission.name,
             file=self.mission.path,
-            sources=tuple(self._sources),
+            sources=tuple(found.sources),
             requirements=self.verdicts(),
-            outcomes=tuple((OUTCOMES[outcome], number) for outcome, number in self._outcomes.items() if number),
-            nodes=self._coverage.summary(found.nodes.all),
-            contexts=self._contexts.summary(),
-            retries=self._coverage.retries.summary(),
-            recoveries=self._coverage.recoveries.summary(),
-            by_people=tuple(each.name for each in found.all.values() if each.claims and each.is_verified_by_people),
-            outline=outline(found) if self._with_measures else "",
-        )
-
-    def _verdict(self, clause: JudgedClause, open_run: Run | None) -> ClauseVerdict:
-        verdict = clause.verdict(open_run)
-        if self._timelines is None or verdict.verdict != VIOLATED:
-            return verdict
-        return replace(verdict, timeline=self._timelines.kept.get(clause))
-
-    def _add(self, source: Source) -> None:
-        """Merge a session's counts into those of its file."""
-        last = self._sources[-1] if self._sources else None
-        if last is None or (last.file, last.identity) != (source.file, source.identity):
-            self._sources.append(source)
-            return
-        self._sources[-1] = replace(
-            last,
-            runs=last.runs + source.runs,
-            begin=last.begin if last.begin is not None else source.begin,
-            end=source.end if source.end is not None else last.end,
-            remarks=tuple(dict.fromkeys((*last.remarks, *source.remarks))),
+            outcomes=tuple((OUTCOMES[outcome], number) for outcome, number in found.outcomes.items() if number),
+            nodes=found.coverage.summary(requirements.nodes.all),
+            contexts=tuple(ContextSummary(name, runs, unknown[name]) for name, runs in held.items()),
+            retries=found.coverage.retries.summary(),
+            recoveries=found.coverage.recoveries.summary(),
+            by_people=tuple(
+                each.name for each in requirements.all.values() if each.claims and each.is_verified_by_people
+            ),
+            outline=outline(requirements) if self._with_measures else "",
         )

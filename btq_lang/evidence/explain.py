@@ -14,10 +14,10 @@ from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.explain_run import RunExplainer, ago, part
-from btq_lang.evidence.observed import signals_in
 from btq_lang.evidence.signals import Signals, Unknown
 from btq_lang.evidence.verdicts import Link
 from btq_lang.evidence.wording import duration, quantity
+from btq_lang.requirements.model import signals_in
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from collections.abc import Container
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.wording import timestamp
-from btq_lang.util.record import fields_of
+from btq_lang.util.record import as_dict
 from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
@@ -102,4 +102,4 @@ def _measures(measures: Measures) -> Json:
 
 def _fields(record: object, but: Container[str] = ()) -> dict[str, Json]:
     """The fields of a record by name; the schema has them."""
-    return {name: getattr(record, name) for name in fields_of(record) if name not in but}
+    return {name: value for name, value in as_dict(record).items() if name not in but}

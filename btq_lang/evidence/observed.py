@@ -5,27 +5,13 @@ One invariant: an answer is a value in SI, or the reason why it is unknown.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from math import fsum, sqrt
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Signals, Unknown
-from btq_lang.requirements.model import (
-    Aggregate,
-    All,
-    Any,
-    Arithmetic,
-    Compare,
-    Event,
-    InContext,
-    Limit,
-    Minus,
-    Not,
-    Read,
-    Running,
-    Table,
-)
+from btq_lang.requirements.model import InContext, Read, Running, parts_in
 
 if TYPE_CHECKING:
     from btq_lang.evidence.history import Nearby
@@ -100,27 +86,6 @@ class Observed:
         return sorted(found)
 
 
-def signals_in(part: object) -> Iterator[Signal]:
-    """The signals that a condition or a bound reads."""
-    return (each.signal for each in parts_in(part) if isinstance(each, Read | Aggregate))
-
-
-def parts_in(part: object) -> Iterator[Read | Aggregate | Running]:
-    """What a condition, a bound or an event reads, each context once."""
-    contexts: set[str] = set()
-    waiting = [part]
-    while waiting:
-        part = waiting.pop()
-        if isinstance(part, _READING):
-            yield part
-        elif isinstance(part, InContext):
-            if part.name not in contexts:
-                contexts.add(part.name)
-                waiting.append(part.condition)
-        elif (inside := _INSIDE.get(type(part))) is not None:
-            waiting += reversed(inside(part))
-
-
 def _mean(values: Sequence[float]) -> float:
     return fsum(values) / len(values)
 
@@ -136,19 +101,6 @@ def _stddev(values: Sequence[float]) -> float:
     return sqrt(_mean([(value - middle) ** 2 for value in values]))
 
 
-_READING: Final = (Read, Aggregate, Running)
-# The parts of a condition, a bound or an event, by its class.
-_INSIDE: Final[Mapping[type, Callable[..., Sequence[object]]]] = {
-    Compare: lambda part: part.operands,
-    All: lambda part: part.conditions,
-    Any: lambda part: part.conditions,
-    Not: lambda part: (part.condition,),
-    Event: lambda part: (part.condition,),
-    Minus: lambda part: (part.operand,),
-    Arithmetic: lambda part: (part.left, part.right),
-    Table: lambda part: [each for case in part.cases for each in (case.value, case.condition)],
-    Limit: lambda part: (part.value, part.upper),
-}
 _FUNCTIONS: Final[dict[str, Callable[[Sequence[float]], float]]] = {
     "max": max,
     "min": min,

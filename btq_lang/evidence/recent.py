@@ -57,6 +57,10 @@ class Recent:
         """The judgements, as `Tally.__getstate__`."""
         return {**self.__dict__, "_odds": None, "_window": None}
 
+    def is_worst_in(self, run: Run) -> bool:
+        """Unknown until all logs are read."""
+        return False
+
     def so_far(self, run: Run) -> Tally:
         """The tally without the open run."""
         return self.result()

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.evidence.clause import verdict_of
 from btq_lang.evidence.edges import edge_of, key_of
+from btq_lang.evidence.margins import Counts
 from btq_lang.evidence.outline import Demand, demands
 from btq_lang.evidence.tally import Tally
 from btq_lang.evidence.verdicts import ClauseVerdict, Worst
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from btq_lang.evidence.edges import Edge
-    from btq_lang.evidence.margins import Counts
     from btq_lang.evidence.verdicts import Measures, RequirementVerdict
     from btq_lang.requirements.resolve import Requirements
 
@@ -76,21 +76,11 @@ def _with_counts(demand: Demand, clause: ClauseVerdict, measures: Measures, coun
     """The clause as its requirement demands it now, with other counts."""
     requirement = demand.requirement
     tally = Tally(requirement.odds, requirement.confidence, clause.limits)
-    counted = clause.counted - clause.violated, clause.violated, clause.unknown, clause.cut_off
-    kept, tally.violated, tally.unknown, tally.cut_off = counts if counts is not None else counted
+    tally.worst, tally.why = clause.worst, clause.why
+    if counts is None:
+        tally.violations.extend(clause.violations)
+        counts = Counts(clause.counted - clause.violated, clause.violated, clause.unknown, clause.cut_off)
+    kept, tally.violated, tally.unknown, tally.cut_off = counts
     tally.counted = kept + tally.violated
-    tally.why = clause.why
     verdict, why = verdict_of(tally, measures.missing, measures.has_run)
-    return replace(
-        clause,
-        verdict=verdict,
-        counted=tally.counted,
-        violated=tally.violated,
-        unknown=tally.unknown,
-        cut_off=tally.cut_off,
-        interval=tally.interval(),
-        confidence=requirement.confidence,
-        more=tally.more(),
-        violations=clause.violations if counts is None else (),
-        why=why,
-    )
+    return replace(clause, verdict=verdict, why=why, confidence=requirement.confidence, **tally.fields())

@@ -42,7 +42,7 @@ def activations(session: Session) -> Iterator[Activation]:
     nodes = _OpenNodes(tree)
     parent = tree.parent
     begun, running, unseen = nodes.begun, nodes.running, nodes.unseen
-    odd = _Oddities(session)
+    odd = Oddities()
     idle: tuple[int, Moment] | None = None  # a halt that may turn out to be part of the node's own completion
     done: set[int] = set()  # the nodes that have completed and have not been reset since
     is_reset_written = False
@@ -110,7 +110,7 @@ def activations(session: Session) -> Iterator[Activation]:
         yield from nodes.end(*idle, "H")
     if ROOT in begun:
         yield from nodes.end(ROOT, (now[0], row), "O", below="O")
-    odd.report()
+    session.remarks.extend(odd.remarks())
 
 
 def count_runs(session: Session) -> int:
@@ -195,20 +195,22 @@ class _OpenNodes:
         return Activation(uid, self.begun.pop(uid), now, outcome, timing)
 
 
-class _Oddities:
-    """Counts what is unusual in a log; each kind is reported once, with the time of the first."""
+class Oddities:
+    """Counts what is unusual in a log; each kind is one remark, with the time of the first."""
 
-    def __init__(self, session: Session) -> None:
-        self._session: Final = session
+    def __init__(self) -> None:
         self._found: Final[dict[str, tuple[int, int]]] = {}
 
-    def count(self, what: str, time: int) -> None:
+    def count(self, what: str, time: int) -> int:
+        """Count one; returns how many of its kind were before it."""
         first, number = self._found.get(what, (time, 0))
         self._found[what] = first, number + 1
+        return number
 
-    def report(self) -> None:
+    def remarks(self) -> Iterator[str]:
+        """A remark for each kind."""
         for what, (first, number) in self._found.items():
-            self._session.remarks.append(f"{what}: {number}, the first at {timestamp(first)}")
+            yield f"{what}: {number}, the first at {timestamp(first)}"
 
 
 ONE_COMPLETION: Final = 1000  # µs between a node's IDLE and its own result

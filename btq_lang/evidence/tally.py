@@ -6,7 +6,7 @@ One invariant: counts are enough for the verdict, so the only judgements kept ar
 from __future__ import annotations
 
 from copy import copy
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.distribution import Distribution
 from btq_lang.evidence.odds import lower_limit, runs_to_decide, upper_limit
@@ -151,6 +151,12 @@ class Tally:
             found._kept = found._unclear = 0
         found.end_run(run)
         return found
+
+    def fields(self) -> dict[str, Any]:
+        """What `ClauseVerdict` has of it, by name."""
+        same = ("counted", "violated", "unknown", "cut_off", "worst", "limits")
+        found = {name: getattr(self, name) for name in same}
+        return {**found, "interval": self.interval(), "more": self.more(), "violations": tuple(self.violations)}
 
     def verdict(self) -> Verdict:
         """Without odds one violation decides; with odds the unknown ones are taken as false and as true, and a verdict

@@ -5,40 +5,42 @@ One invariant: it keeps the activations of the open run, at most a thousand, and
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.verdicts import Bar, Timeline
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.clause import JudgedClause
+    from btq_lang.evidence.clause import ClauseFindings
     from btq_lang.evidence.model import Activation, LoggedTree
     from btq_lang.evidence.tally import Run
 
 
-class Timelines:
-    """Records the run with the worst violation of each clause."""
+class OpenRun:
+    """The activations of the open run."""
 
     def __init__(self) -> None:
-        self.kept: Final[dict[JudgedClause, Timeline]] = {}
-        self._now: Final[list[Activation]] = []
+        self._seen: Final[list[Activation]] = []
         self._left_out = 0
 
     def see(self, activation: Activation) -> None:
         """Record an activation that has ended."""
-        if len(self._now) < _MOST_BARS:
-            self._now.append(activation)
+        if len(self._seen) < _MOST_BARS:
+            self._seen.append(activation)
         else:
             self._left_out += 1
 
-    def end_run(self, run: Run, tree: LoggedTree, broken: list[JudgedClause]) -> None:
-        """Close the open run, which has the worst violation so far of some clauses."""
-        if broken:
-            self.kept.update(dict.fromkeys(broken, self._timeline(run, tree)))
-        self._now.clear()
+    def end(self, run: Run, tree: LoggedTree, clauses: Sequence[ClauseFindings]) -> None:
+        """Close the run, and keep it as the timeline of the clauses of which it has the worst violation so far."""
+        if broken := [each for each in clauses if each.tally.is_worst_in(run)]:
+            timeline = self._timeline(run, tree)
+            for each in broken:
+                each.timeline = timeline
+        self._seen.clear()
         self._left_out = 0
 
     def _timeline(self, run: Run, tree: LoggedTree) -> Timeline:
-        bars = sorted(self._now, key=lambda each: (each.uid, each.begin))
+        bars = sorted(self._seen, key=lambda each: (each.uid, each.begin))
         return Timeline(
             run.number,
             run.source,

@@ -115,7 +115,7 @@ class _Listener:
         watched.tell(f"run {watched.outcomes.total()} {how} after {duration(root.seconds)}{began}", root.end)
         self._begin = None
         for clause, told in self._clauses.items():
-            found = clause.findings()
+            found = clause.found
             verdict, _ = verdict_of(found.tally.result(), found.missing, found.has_run)
             if verdict != told:
                 self._clauses[clause] = verdict

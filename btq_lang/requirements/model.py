@@ -11,7 +11,7 @@ from typing import Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import Dimension, Unit
 from btq_lang.diagnostics.model import Place
-from btq_lang.util.record import Record, fields_of
+from btq_lang.util.record import Record, values_of
 from btq_lang.workspace.resolved import ResolvedNode
 
 Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]
@@ -475,18 +475,28 @@ NO_DIMENSION: Final[Dimension] = (0, 0, 0, 0, 0, 0, 0, 0, 0)
 
 
 def signals_in(part: object) -> Iterator[Signal]:
-    """The signals in a condition, a bound or any other part of the model, or in a tuple of such; each context is
-    searched once."""
+    """The signals in a condition, a bound or any other part of the model, or in a tuple of such."""
+    return (each for each in parts_in(part) if isinstance(each, Signal))
+
+
+def parts_in(part: object) -> Iterator[object]:
+    """A part of the model, or a tuple of such, and all that it has, in order, but for what a signal has; each context
+    once.
+    """
     waiting = [part]
-    contexts: set[int] = set()
+    contexts: set[str] = set()
     while waiting:
         part = waiting.pop()
-        if isinstance(part, Signal):
-            yield part
-        elif isinstance(part, tuple):
+        if isinstance(part, tuple):
             waiting += reversed(part)
-        elif part is not None and type(part).__module__ == Signal.__module__:
-            if id(part) in contexts:
-                continue
-            contexts.add(id(part))
-            waiting += [getattr(part, field) for field in reversed(fields_of(part))]
+        elif type(part) in _CLASSES:
+            if isinstance(part, InContext):
+                if part.name in contexts:
+                    continue
+                contexts.add(part.name)
+            yield part
+            if not isinstance(part, Signal):
+                waiting += reversed(values_of(part))
+
+
+_CLASSES: Final = frozenset([each for each in globals().values() if getattr(each, "__module__", "") == __name__])

@@ -38,7 +38,7 @@ import json
 from typing import TypeAlias
 
 from btq_lang.trace.overview import Overview, RequirementRow, Total
-from btq_lang.util.record import fields_of
+from btq_lang.util.record import as_dict
 from btq_lang.util.version import __version__
 
 Json: TypeAlias = "bool | int | str | list[Json] | dict[str, Json] | None"
@@ -53,7 +53,7 @@ def render(overview: Overview) -> str:
         "quality_model": f"iso25010-{overview.edition}",
         "files": list(overview.files),
         "requirements": [_requirement(each, overview.has_evidence) for each in overview.requirements],
-        "qualities": [{**_fields(each), "at": _fields(each.at)} for each in overview.qualities],
+        "qualities": [{**as_dict(each), "at": as_dict(each.at)} for each in overview.qualities],
         "nodes": [
             {
                 "key": each.key,
@@ -62,12 +62,12 @@ def render(overview: Overview) -> str:
                 "category": each.category,
                 "skill": each.is_skill,
                 "carries": each.carries,
-                "at": _fields(each.at),
+                "at": as_dict(each.at),
             }
             for each in overview.nodes
         ],
         "trees": [
-            {"name": each.name, "at": _fields(each.at), "nodes": list(each.nodes), "without_quality": each.is_bare}
+            {"name": each.name, "at": as_dict(each.at), "nodes": list(each.nodes), "without_quality": each.is_bare}
             for each in overview.trees
         ],
         "totals": [_total(each) for each in overview.totals],
@@ -93,15 +93,15 @@ def _requirement(each: RequirementRow, has_evidence: bool) -> Json:
         "quality_key": each.quality_key,
         "how": each.way,
         "clauses": list(each.clauses),
-        "at": _fields(each.at),
+        "at": as_dict(each.at),
         "clauses_without_nodes": list(each.loose),
-        "evidence": [_fields(one) for one in each.evidence] if has_evidence else None,
+        "evidence": [as_dict(one) for one in each.evidence] if has_evidence else None,
         "holds_for": [
             {
                 "subject": use.subject,
                 "nodes": list(use.nodes),
                 "arguments": use.arguments,
-                "at": _fields(use.at),
+                "at": as_dict(use.at),
                 "attached_by": use.how,
                 "clauses": [{"text": one.text, "how": one.way, "why": one.why} for one in use.clauses],
             }
@@ -111,10 +111,5 @@ def _requirement(each: RequirementRow, has_evidence: bool) -> Json:
 
 
 def _total(each: Total) -> Json:
-    fields = _fields(each)
+    fields = as_dict(each)
     return {"characteristic": fields.pop("id") or None, **fields}
-
-
-def _fields(record: object) -> dict[str, Json]:
-    """The fields of a record by name."""
-    return {name: getattr(record, name) for name in fields_of(record)}

@@ -72,9 +72,19 @@ else:
 
 def replace(instance: T, **changes: Any) -> T:
     """A copy of a record with some fields changed; an unknown name raises a TypeError."""
-    return type(instance)(**{field: getattr(instance, field) for field in fields_of(instance)} | changes)
+    return type(instance)(**as_dict(instance) | changes)
+
+
+def as_dict(part: object) -> dict[str, Any]:
+    """The fields, in order, of a record or of another class with `__match_args__`, by name."""
+    return {field: getattr(part, field) for field in fields_of(part)}
 
 
 def fields_of(part: object) -> tuple[str, ...]:
     """The names of the fields, in order, of a record or of another class with `__match_args__`."""
     return type(part).__match_args__  # type: ignore[attr-defined, no-any-return]  # `part` may be of any class
+
+
+def values_of(part: object) -> tuple[Any, ...]:
+    """The values of the fields, in order, of a record."""
+    return type(part)._key(part)[1:]  # type: ignore[attr-defined, no-any-return]  # as above

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from btq_lang.evidence.compare.comparison import Comparison
-from btq_lang.util.record import fields_of
+from btq_lang.util.record import as_dict
 
 FORMAT: Final = "btq-comparison"
 VERSION: Final = 1
@@ -22,18 +22,13 @@ def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
         "sides": sides,
         "missions": [
             {
-                **_fields(each),
-                **{name: [_fields(one) for one in getattr(each, name)] for name in _LISTS},
+                **as_dict(each),
+                **{name: [as_dict(one) for one in getattr(each, name)] for name in _LISTS},
             }
             for each in found
         ],
     }
     return json.dumps(document, indent=1, allow_nan=False) + "\n"
-
-
-def _fields(record: object) -> dict[str, object]:
-    """The fields of a record by name; the schema has them."""
-    return {name: getattr(record, name) for name in fields_of(record)}
 
 
 _LISTS: Final = ("newly", "no_longer", "edited", "changes")

@@ -140,19 +140,11 @@ def _verdict(row: Row, counts: Row | None, broken: Sequence[Row], recent: Sequen
         path=row["node"],
         of=row["measures"] or "",
         verdict=verdict,
-        counted=tally.counted,
-        violated=tally.violated,
-        unknown=tally.unknown,
-        cut_off=tally.cut_off,
-        unit=row["counts"],
-        worst=tally.worst,
-        interval=tally.interval(),
-        limits=tally.limits,
-        confidence=row["confidence"],
-        more=tally.more(),
-        violations=tuple(tally.violations),
         why=why,
+        unit=row["counts"],
+        confidence=row["confidence"],
         histogram=None,
+        **tally.fields(),
     )
 
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.model import Series, Session
 from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Notice, Sampled
 from btq_lang.evidence.readers.groot2.publisher import Publisher
-from btq_lang.evidence.wording import timestamp
+from btq_lang.evidence.runs import Oddities
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Transition
@@ -64,7 +64,7 @@ def _transitions(
     """The transitions of a session; samples and remarks are appended while they are read, and at the end the next
     session.
     """
-    gaps = _Gaps(tell)
+    gaps, silent_until = Oddities(), 0.0
     for event in events:
         if isinstance(event, Came):
             yield from event.transitions
@@ -72,7 +72,11 @@ def _transitions(
             for entry, value in event.values.items():
                 samples.setdefault(entry, Series()).add(event.time, value)
         elif isinstance(event, Lost):
-            gaps.add(event)
+            before = gaps.count(f"gaps: {event.why}", event.time)
+            if time.monotonic() >= silent_until:
+                silent_until = time.monotonic() + _BETWEEN
+                times = f", {before + 1} times so far" if before else ""
+                tell(f"gap: {event.why}{times}; what happened meanwhile is unknown")
         elif isinstance(event, Began):
             after.append(event)
             tell("another tree")
@@ -80,27 +84,6 @@ def _transitions(
         else:
             tell(event.text)
     remarks.extend(gaps.remarks())
-
-
-class _Gaps:
-    """Counts gaps, and tells of them, but not of every one where there are many."""
-
-    def __init__(self, tell: Callable[[str], None]) -> None:
-        self._tell: Final = tell
-        self._found: Final[dict[str, tuple[int, int]]] = {}
-        self._next = 0.0
-
-    def add(self, lost: Lost) -> None:
-        first, number = self._found.get(lost.why, (lost.time, 0))
-        self._found[lost.why] = first, number + 1
-        if time.monotonic() >= self._next:
-            self._next = time.monotonic() + _BETWEEN
-            times = f", {number + 1} times so far" if number else ""
-            self._tell(f"gap: {lost.why}{times}; what happened meanwhile is unknown")
-
-    def remarks(self) -> Iterator[str]:
-        for why, (first, number) in self._found.items():
-            yield f"gaps: {why}: {number}, the first at {timestamp(first)}"
 
 
 def _followed(address: str, entries: Collection[str], stop: Flag, wait: Callable[[], None]) -> Iterator[Event]:
