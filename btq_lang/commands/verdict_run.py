@@ -28,6 +28,5 @@ def print_run(logs: Sequence[str], missions: Sequence[Candidate], number: int) -
         raise Refused(f"{shown(log)}: {error}") from error
     if found is None:
         raise Refused(f"{shown(log)} has no run {number} of {mission.name}")
-    write_stdout(json.dumps({**as_dict(found), "steps": [*map(as_dict, found.steps)]}) + "
-")
+    write_stdout(json.dumps({**as_dict(found), "steps": [*map(as_dict, found.steps)]}) + "\n")
     return 0
