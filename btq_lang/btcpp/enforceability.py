@@ -11,7 +11,7 @@ from typing import Final
 
 from btq_lang.btcpp.around import may_be_skipped
 from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
-from btq_lang.btcpp.guards import Guarded, NotEnforced, guarded
+from btq_lang.btcpp.guards import Guarded, NotEnforced
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, Span, Target
@@ -105,7 +105,7 @@ class Judge:
         Raises:
             NotEnforced: the engine cannot do it.
         """
-        made = guarded(requirement, claim, node, name, stop, self._is_shared)
+        made = Guarded(requirement, claim, node, name, stop, self._is_shared)
         if VERBS[claim.verb].limits and claim.limit is not None and not self._budgets.composed(node).waits:
             raise NotEnforced(f"{node.shown} completes within one tick")
         for each in dict.fromkeys(each for each, _ in made.wrappers):

@@ -238,7 +238,7 @@ class _Plan:
             self.stops[made.stop] = None
         for each, wrapper in made.wrappers:
             self.wrappers.setdefault(id(each.node), []).append(wrapper)
-        notes = [made.note] if made.note else []
+        notes = [*made.notes]
         if unset := [signal.name for signal in made.signals if signal.initially is None]:
             notes.append(f"the mission ends if a guard reads {_listed(unset)} before anything writes it")
         if aging := [signal.name for signal in made.signals if signal.fresh is not None]:

@@ -37,7 +37,7 @@ from btq_lang.requirements.model import (
     Value,
     signals_in,
 )
-from btq_lang.util.record import Record, replace
+from btq_lang.util.record import replace
 from btq_lang.workspace.resolved import ResolvedNode
 
 
@@ -45,84 +45,61 @@ class NotEnforced(Exception):
     """No wrapper makes the engine enforce a clause; the text is the reason and reads well after "because"."""
 
 
-class Guarded(Record):
-    """What enforces a clause.
+class Guarded:
+    """What enforces a clause that applies to a node.
 
     Attributes:
         wrappers: each with its node, from the outside in.
         cells: the entries of the root blackboard that the mission initializes, each with its first value.
         signals: that its scripts read.
-        stop: the entry that halts the mission, if any.
-        note: what of the clause is not enforced, or how it is interpreted.
+        stop: the entry that halts the mission, if a violation does.
+        notes: what of the clause is not enforced, or how it is interpreted.
     """
-
-    wrappers: tuple[tuple[ResolvedNode, Wrapper], ...]
-    cells: tuple[tuple[str, str], ...]
-    signals: tuple[Signal, ...]
-    stop: str | None
-    note: str = ""
-
-
-def guarded(requirement: Requirement, claim: Claim, node: ResolvedNode, name: str, stop: str, shared: bool) -> Guarded:
-    """What enforces a clause that applies to a node.
-
-    Args:
-        name: prefix of the names of its nodes and entries.
-        stop: the entry that halts the mission.
-        shared: whether the file of the node is a part of several missions.
-
-    Raises:
-        NotEnforced: the engine cannot do it.
-    """
-    draft = _Draft(requirement, claim, node, name, stop, shared)
-    try:
-        if claim.verb not in _BY_VERB:
-            raise NotEnforced(VERBS[claim.verb].why_monitored)
-        _BY_VERB[claim.verb](draft)
-        return draft.done()
-    except NoScript as reason:
-        raise NotEnforced(str(reason)) from reason
-
-
-class _Draft:
-    """The wrappers of a clause while they are being collected."""
 
     def __init__(
         self, requirement: Requirement, claim: Claim, node: ResolvedNode, name: str, stop: str, shared: bool
     ) -> None:
+        """
+        Args:
+            name: prefix of the names of its nodes and entries.
+            stop: the entry that halts the mission.
+            shared: whether the file of the node is a part of several missions.
+
+        Raises:
+            NotEnforced: the engine cannot do it.
+        """
+        self.wrappers: list[tuple[ResolvedNode, Wrapper]] = []
+        self.cells: Final[dict[str, str]] = {}
+        self.signals: tuple[Signal, ...] = ()
+        self.stop: Final = stop if requirement.action == "halt" else None
+        self.notes: Final[list[str]] = []
         self.requirement: Final = requirement
         self.claim: Final = claim
         self.node: Final = node
         self.name: Final = name
-        self.halts: Final = requirement.action == "halt"
-        self.stop: Final = stop
-        self._notes: Final[list[str]] = []
         self._shared: Final = shared
         self._values: Final[list[str]] = []
-        self._wrappers: Final[list[tuple[ResolvedNode, Wrapper]]] = []
-        self._cells: Final[dict[str, str]] = {}
+        if claim.verb not in _BY_VERB:
+            raise NotEnforced(VERBS[claim.verb].why_monitored)
+        try:
+            _BY_VERB[claim.verb](self)
+            self._finish()
+        except NoScript as reason:
+            raise NotEnforced(str(reason)) from reason
 
-    def done(self) -> Guarded:
-        wrappers = self._wrappers
+    def _finish(self) -> None:
         if self._values:
             script = Leaf("Script", f"{self.name}_start", "; ".join(self._values))
             values = Wrapper(VALUES, self.requirement.name, "Sequence", f"{self.name}_values", before=(script,))
-            wrappers = [(self.node, values), *wrappers]
-        for _, wrapper in wrappers:
+            self.wrappers.insert(0, (self.node, values))
+        for _, wrapper in self.wrappers:
             for leaf in (*wrapper.before, *wrapper.behind):
                 if isinstance(leaf, Leaf):
                     no_longer_than_allowed(leaf.code)
         claim = self.claim
         scopes = tuple(scope.condition for scope in self.requirement.scopes)
-        read = signals_in((claim.condition, claim.limit, claim.signal, scopes))
-        signals = tuple({signal.name: signal for signal in read}.values()) if wrappers else ()
-        return Guarded(
-            tuple(wrappers),
-            tuple(self._cells.items()),
-            signals,
-            self.stop if self.halts else None,
-            "; ".join(self._notes),
-        )
+        read = signals_in((claim.condition, claim.limit, claim.signal, scopes)) if self.wrappers else ()
+        self.signals = tuple({signal.name: signal for signal in read}.values())
 
     def around(
         self,
@@ -137,15 +114,11 @@ class _Draft:
     ) -> None:
         """Add a wrapper around the clause's node, or around another one."""
         wrapper = Wrapper(rank, self.requirement.name, tag, f"{self.name}_{what}", attributes, before, behind)
-        self._wrappers.append((node or self.node, wrapper))
-
-    def noted(self, note: str) -> None:
-        """Add a note for the user."""
-        self._notes.append(note)
+        self.wrappers.append((node or self.node, wrapper))
 
     def condition(self, what: str, code: str) -> Leaf:
         """A condition whose failure breaks the clause."""
-        return Leaf("ScriptCondition", f"{self.name}_{what}", code, f"{self.stop} := true" if self.halts else None)
+        return Leaf("ScriptCondition", f"{self.name}_{what}", code, f"{self.stop} := true" if self.stop else None)
 
     def script(self, condition: Condition) -> str:
         return condition_script(condition, self.stored)
@@ -172,7 +145,7 @@ class _Draft:
             return f"_{self.name}_{what}"
         tree = f"_{legal(self.node.tree or '')}" if self._shared else ""
         key = f"@{self.name}{tree}_{what}"
-        self._cells[key] = first
+        self.cells[key] = first
         return key
 
     def when(self) -> str | None:
@@ -201,31 +174,31 @@ class _Draft:
 # ---- verbs ----
 
 
-def _takes(draft: _Draft) -> None:
+def _takes(draft: Guarded) -> None:
     """`<Timeout msec="30000">X</Timeout>`: halts X at the deadline and returns FAILURE."""
     when = draft.when()
     _limit(draft, _upper(draft), when)
     if isinstance(draft.claim.subject, Span):
-        draft.noted(f"as a limit on {draft.node.shown}, which restarts whenever {draft.node.shown} starts")
+        draft.notes.append(f"as a limit on {draft.node.shown}, which restarts whenever {draft.node.shown} starts")
 
 
-def _succeeds(draft: _Draft) -> None:
+def _succeeds(draft: Guarded) -> None:
     """A failure breaks the clause by itself; a Timeout makes a failure of a late success."""
     if draft.claim.limit is not None:
         when = draft.when()
         _limit(draft, _upper(draft), when)
-    elif not draft.halts:
-        draft.noted("the node's failure is the violation itself")
+    elif not draft.stop:
+        draft.notes.append("the node's failure is the violation itself")
         return
     else:
         when = draft.when()
-    if draft.halts:
+    if draft.stop:
         stop = draft.stop
         failed = f"{stop} := true" if when is None else f"{stop} := ({stop} || {when})"
         draft.around(INSIDE, "Sequence", "succeeds", attributes=(("_onFailure", failed),))
 
 
-def _limit(draft: _Draft, bound: Limit, when: str | None) -> None:
+def _limit(draft: Guarded, bound: Limit, when: str | None) -> None:
     value = bound.value
     milliseconds = (
         _milliseconds(value) if not isinstance(value, Table) else table_script(value, _milliseconds, draft.stored)
@@ -234,7 +207,7 @@ def _limit(draft: _Draft, bound: Limit, when: str | None) -> None:
         chosen = milliseconds if when is None else f"({when} ? {milliseconds} : 0)"  # 0 means no limit for the engine
         milliseconds = f"{{{draft.at_start('ms', chosen)}}}"
     attributes: tuple[tuple[str, str], ...] = (("msec", milliseconds),)
-    if not draft.halts:
+    if not draft.stop:
         draft.around(LIMIT, "Timeout", "limit", attributes=attributes)
         return
     # A Timeout fails also if its child fails in time: only a node that is not done by then was late.
@@ -253,13 +226,13 @@ def _milliseconds(value: Bounded) -> str:
     return str(whole)
 
 
-def _needs(draft: _Draft) -> None:
+def _needs(draft: Guarded) -> None:
     """`<Sequence><ScriptCondition code="φ"/>X</Sequence>`"""
     code = draft.in_scope(draft.script(_condition(draft)))
     draft.around(CONDITION, "Sequence", "needs", before=(draft.condition("check", code),))
 
 
-def _keeps(draft: _Draft) -> None:
+def _keeps(draft: Guarded) -> None:
     """`<ReactiveSequence><ScriptCondition code="φ"/>X</ReactiveSequence>`: evaluated at every tick."""
     code = draft.script(_condition(draft))
     if draft.claim.verb == "never":
@@ -270,7 +243,7 @@ def _keeps(draft: _Draft) -> None:
     draft.around(GUARD, "ReactiveSequence", draft.claim.verb, before=(draft.condition("guard", code),))
 
 
-def _leaves(draft: _Draft) -> None:
+def _leaves(draft: Guarded) -> None:
     """`<Sequence>X<ScriptCondition code="φ"/></Sequence>`"""
     code = draft.script(_condition(draft))
     if (when := draft.when()) is not None:
@@ -278,7 +251,7 @@ def _leaves(draft: _Draft) -> None:
     draft.around(CHECK, "Sequence", "leaves", behind=(draft.condition("check", code),))
 
 
-def _uses(draft: _Draft) -> None:
+def _uses(draft: Guarded) -> None:
     """The signal's value at the start, and two conditions: while the node runs, and when it has succeeded."""
     signal = draft.claim.signal
     assert signal is not None, "the clause names one"
@@ -296,7 +269,7 @@ def _uses(draft: _Draft) -> None:
     draft.around(GUARD, "ReactiveSequence", "uses", before=(draft.condition("guard", code),))
 
 
-def _tries(draft: _Draft) -> None:
+def _tries(draft: Guarded) -> None:
     """A counter, reset when the node starts whose activations it counts in."""
     draft.unscoped()
     bound = _upper(draft)
@@ -315,7 +288,7 @@ def _tries(draft: _Draft) -> None:
         draft.around(INSIDE, "Sequence", "per", before=(back,), node=holder)
 
 
-def _follows(draft: _Draft) -> None:
+def _follows(draft: Guarded) -> None:
     """A flag that the event sets and the start of the node resets."""
     draft.unscoped()
     event = draft.claim.event
@@ -344,7 +317,7 @@ def _follows(draft: _Draft) -> None:
         draft.around(INSIDE, "Sequence", "event", attributes=((attribute, note),), node=subject.node)
 
 
-def _upper(draft: _Draft) -> Limit:
+def _upper(draft: Guarded) -> Limit:
     """The upper bound of a clause."""
     limit = draft.claim.limit
     assert limit is not None, "the clause has a bound"
@@ -352,11 +325,11 @@ def _upper(draft: _Draft) -> Limit:
         raise NotEnforced("the engine can stop a node, but cannot make it do more")
     if limit.upper is None:
         return limit
-    draft.noted("its lower bound is only monitored")
+    draft.notes.append("its lower bound is only monitored")
     return Limit("<=", limit.upper)
 
 
-def _condition(draft: _Draft) -> Condition:
+def _condition(draft: Guarded) -> Condition:
     assert draft.claim.condition is not None, "the clause has one"
     return draft.claim.condition
 
@@ -376,7 +349,7 @@ _SEEN: Final[dict[str, str | None]] = {
     "fails": "_onFailure",
     "finishes": "_post",
 }
-_BY_VERB: Final[dict[str, Callable[[_Draft], None]]] = {
+_BY_VERB: Final[dict[str, Callable[[Guarded], None]]] = {
     "takes": _takes,
     "succeeds": _succeeds,
     "needs": _needs,
