@@ -7,6 +7,7 @@ What is lost is reported.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
@@ -111,43 +112,24 @@ def _merged(now: Parsed, sources: Sequence[tuple[str | None, Parsed]], place: st
     """The XML as it is now, with what the mission and the files of its bundle said beyond it."""
     edits: list[Edit] = []
     lost: list[Lost] = []
+    known = {name: (entry, _parts(entry)) for entry, name in _trees(now)}
     for file, then in sources:
-        _merge(now, then, file, edits, lost)
+        items = [_lines(then, entry) for entry in then.entries if isinstance(entry.item, _WITHOUT_ELEMENT)]
+        if items:
+            at = _place_of_items(now)
+            edits.append(Edit(Span(at, at), "".join(f"{item}\n" for item in items)))
+        lines = LineIndex(then.text)
+        for entry, name in _trees(then):
+            there, parts = known.get(name, (entry, {}))
+            for key, part in _parts(entry).items():
+                if part.clauses:
+                    text = _clauses(then, entry, part.clauses)
+                    edit = _attaching(now, there, parts.get(key), text)
+                    edits += [edit] if edit is not None else []
+                    if edit is None:
+                        line = lines.position(entry.start + part.clauses[0].start).line + 1
+                        lost.append(Lost(text, file, line))
     return Restored(apply_edits(now.text, edits), False, place, tuple(lost))
-
-
-def _merge(now: Parsed, then: Parsed, file: str | None, edits: list[Edit], lost: list[Lost]) -> None:
-    items = [_lines(then, entry) for entry in then.entries if isinstance(entry.item, _WITHOUT_ELEMENT)]
-    if items:
-        at = _place_of_items(now)
-        edits.append(Edit(Span(at, at), "".join(f"{item}\n" for item in items)))
-    lines = LineIndex(then.text)
-
-    def lose(text: str, start: int) -> None:
-        lost.append(Lost(text, file, lines.position(start).line + 1))
-
-    nodes = {name: _nodes(entry) for entry, name in _trees(now)}
-    for entry, name in _trees(then):
-        known = nodes.get(name, {})
-        assert isinstance(entry.item, Tree)
-        if entry.item.clauses:
-            text = _clauses(then, entry, entry.item.clauses)
-            other = next((each for each, of in _trees(now) if of == name), None)
-            edit = _tree_clauses(now, other, text) if other is not None else None
-            if edit is not None:
-                edits.append(edit)
-            else:
-                lose(text, entry.start + entry.item.clauses[0].start)
-        for key, (_, node) in _nodes(entry).items():
-            if not node.clauses:
-                continue
-            text = _clauses(then, entry, node.clauses)
-            if key in known:
-                there, match = known[key]
-                end = there.start + match.end
-                edits.append(Edit(Span(end, end), f" {text}"))
-            else:
-                lose(text, entry.start + node.clauses[0].start)
 
 
 def _trees(parsed: Parsed) -> Iterator[tuple[Entry, str]]:
@@ -156,16 +138,15 @@ def _trees(parsed: Parsed) -> Iterator[tuple[Entry, str]]:
             yield entry, legal_name(entry.item.name.text) if entry.item.name is not None else ""
 
 
-def _nodes(entry: Entry) -> dict[tuple[str, str, int], tuple[Entry, Node]]:
-    """The nodes of a tree by kind, name, and number among the nodes that share those."""
-    found: dict[tuple[str, str, int], tuple[Entry, Node]] = {}
+def _parts(entry: Entry) -> dict[object, Tree | Node]:
+    """A tree, and its nodes by kind, name, and number among the nodes that share those."""
     assert isinstance(entry.item, Tree)
+    found: dict[object, Tree | Node] = {None: entry.item}
+    counts = Counter[tuple[str, str]]()
     for node in entry.item.walk():
-        ID, name = _called(node)
-        number = 0
-        while (ID, name, number) in found:
-            number += 1
-        found[ID, name, number] = entry, node
+        called = _called(node)
+        counts[called] += 1
+        found[called, counts[called]] = node
     return found
 
 
@@ -221,12 +202,15 @@ def _on_one_line(text: str) -> str:
     return "".join(words).strip()
 
 
-def _tree_clauses(parsed: Parsed, entry: Entry, text: str) -> Edit | None:
-    """The edit that puts clauses of a tree on a line of their own, above its node."""
-    tree = entry.item
-    if not isinstance(tree, Tree) or not tree.children:
+def _attaching(parsed: Parsed, entry: Entry, part: Tree | Node | None, text: str) -> Edit | None:
+    """The edit that puts clauses after a node, or on a line of their own above the node of a tree; None if it is not
+    there."""
+    if isinstance(part, Node):
+        end = entry.start + part.end
+        return Edit(Span(end, end), f" {text}")
+    if part is None or not part.children:
         return None
-    first = entry.start + tree.children[0].start
+    first = entry.start + part.children[0].start
     line = parsed.text.rfind("\n", 0, first) + 1
     return Edit(Span(line, line), f"{parsed.text[line:first]}{text}\n")
 
