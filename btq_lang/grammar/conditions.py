@@ -5,6 +5,7 @@ Each function is a production of docs/grammar.md and named after it; its docstri
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Final
 
 from btq_lang.diagnostics.model import replace_fix
@@ -65,14 +66,26 @@ class ConditionParser(Cursor):
             self.too_deep(f"more than {MAX_NESTING} nested brackets")
             return None
         self._nesting += 1
-        left = self.conj()
-        while left is not None and (self.accept_word("or") or self.accept_instead("||", "or")):
-            right = self.conj()
+        found = self.joined(self.conj, "or")
+        self._nesting -= 1
+        return found
+
+    def joined(self, operand: Callable[[], Condition | None], *operators: str) -> Condition | None:
+        """Operand { Operator Operand }"""
+        left = operand()
+        while left is not None and (operator := self.accept_one(operators)):
+            right = operand()
             if right is None:
                 break
-            left = self.binary("or", left, right)
-        self._nesting -= 1
+            left = self.binary(operator, left, right)
         return left
+
+    def accept_one(self, operators: tuple[str, ...]) -> str:
+        """The operator that is here, if it is one of these; else empty"""
+        for each in operators:
+            if self.accept(each) or self.accept_word(each) or self.accept_instead(_INSTEAD.get(each, ""), each):
+                return each
+        return ""
 
     def accept_instead(self, sign: str, word: str) -> bool:
         """Report an operator of another language, and read it as the word that is meant"""
@@ -99,13 +112,7 @@ class ConditionParser(Cursor):
 
     def conj(self) -> Condition | None:
         """Conj = Neg { "and" Neg }"""
-        left = self.neg()
-        while left is not None and (self.accept_word("and") or self.accept_instead("&&", "and")):
-            right = self.neg()
-            if right is None:
-                break
-            left = self.binary("and", left, right)
-        return left
+        return self.joined(self.neg, "and")
 
     def neg(self) -> Condition | None:
         """Neg = [ "not" ] Atom"""
@@ -175,27 +182,11 @@ class ConditionParser(Cursor):
 
     def expr(self) -> Condition | None:
         """Expr = Term { ( "+" | "-" ) Term }"""
-        left = self.term()
-        while left is not None and (self.at("+") or self.at("-")):
-            operator = self.raw
-            self.advance()
-            right = self.term()
-            if right is None:
-                break
-            left = self.binary(operator, left, right)
-        return left
+        return self.joined(self.term, "+", "-")
 
     def term(self) -> Condition | None:
         """Term = Factor { ( "*" | "/" ) Factor }"""
-        left = self.factor()
-        while left is not None and (self.at("*") or self.at("/")):
-            operator = self.raw
-            self.advance()
-            right = self.factor()
-            if right is None:
-                break
-            left = self.binary(operator, left, right)
-        return left
+        return self.joined(self.factor, "*", "/")
 
     def factor(self) -> Condition | None:
         """[ "-" ] ( QUANTITY | NUMBER ) | NAME | STRING | Func "(" NAME ")" | "(" Expr ")\""""
@@ -261,6 +252,7 @@ class ConditionParser(Cursor):
         self.advance()
 
 
+_INSTEAD: Final = {"or": "||", "and": "&&"}  # as other languages write them
 _ENDS_OPERAND: Final = HEADS | {"and", "or", "if", "else"}
 _FOLLOWED_BY: Final = {
     "in": "at",
