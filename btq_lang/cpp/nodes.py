@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.kinds import Category
 from btq_lang.cpp.grammar import arguments, callee, contents, enclosing, field, place_of, text_of, walk
 from btq_lang.cpp.model import CppNode, CppNodes
 from btq_lang.cpp.ports import Body, PortsReader, Provided
@@ -19,8 +20,6 @@ from btq_lang.cpp.values import string
 
 if TYPE_CHECKING:
     from tree_sitter import Node
-
-    from btq_lang.catalog.kinds import Category
 
 
 def read_nodes(files: Mapping[str, str]) -> CppNodes:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.catalog.kinds import Direction
 from btq_lang.cpp.grammar import arguments, callee, contents, enclosing, field, named, place_of, text_of, walk
 from btq_lang.cpp.model import CppPort, Place
 from btq_lang.cpp.source import REGISTERS, substituted
@@ -17,8 +18,6 @@ from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from tree_sitter import Node
-
-    from btq_lang.catalog.kinds import Direction
 
     Ports: TypeAlias = dict[str, CppPort]
 

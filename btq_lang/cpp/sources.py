@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from btq_lang.catalog.cpp_classes import ENGINE, LIBRARIES, NUMBERED_TAGS, ROS_PORTS, TAGS
+from btq_lang.catalog.kinds import Category
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.cpp.grammar import place_of
 from btq_lang.cpp.model import CppPort, Place, Unseen
@@ -18,8 +19,6 @@ from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from tree_sitter import Node
-
-    from btq_lang.catalog.kinds import Category
 
 
 T = TypeVar("T", Class, Function)

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.catalog.nodes import tags_of
-from btq_lang.evidence.model import FAILURE, RUNNING, SUCCESS, Session
+from btq_lang.evidence.model import FAILURE, RUNNING, SUCCESS, Activation, LoggedTree, Outcome, Session, Transition
 from btq_lang.evidence.verdicts import NodeSummary, Repeats
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.model import Activation, LoggedTree, Outcome, Transition
     from btq_lang.workspace.resolved import ResolvedNode
 
 

@@ -7,15 +7,12 @@ constant on one side, not of a sum, and not of a count whose starts may be unkno
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.evidence.conditions import MIRRORED, OPPOSITE
-from btq_lang.requirements.model import Aggregate, Compare, Limit, Read, Total, Value
+from btq_lang.requirements.model import Aggregate, Claim, Compare, Limit, Read, Requirement, Subject, Total, Value
 from btq_lang.util.record import Record, replace
-
-if TYPE_CHECKING:
-    from btq_lang.requirements.model import Claim, Requirement, Subject
 
 
 class Edge(Record):

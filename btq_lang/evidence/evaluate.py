@@ -16,8 +16,9 @@ from btq_lang.evidence.coverage import Coverage
 from btq_lang.evidence.explain import Explainer
 from btq_lang.evidence.guards import Guards
 from btq_lang.evidence.history import History, Nearby
-from btq_lang.evidence.model import ROOT
+from btq_lang.evidence.model import ROOT, Activation, Outcome, Series, Session
 from btq_lang.evidence.observed import Observed
+from btq_lang.evidence.odds import Limits
 from btq_lang.evidence.outline import demands, outline
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signals import Signals
@@ -36,8 +37,6 @@ from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate, Joined
-    from btq_lang.evidence.model import Activation, Outcome, Series, Session
-    from btq_lang.evidence.odds import Limits
 
 
 class Findings:

@@ -12,19 +12,18 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.catalog.units import Unit
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.explain_run import RunExplainer, ago, part
+from btq_lang.evidence.model import Activation, LoggedTree, Outcome
 from btq_lang.evidence.signals import Signals, Unknown
 from btq_lang.evidence.verdicts import Link
 from btq_lang.evidence.wording import duration, quantity
-from btq_lang.requirements.model import signals_in
+from btq_lang.requirements.model import Claim, Condition, Signal, signals_in
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.units import Unit
-    from btq_lang.evidence.model import Activation, LoggedTree, Outcome
     from btq_lang.evidence.verbs import Judgement
-    from btq_lang.requirements.model import Claim, Condition, Signal
 
     Sums: TypeAlias = dict[int, list[int]]  # by uid: activations, those that failed, µs
 

@@ -11,13 +11,12 @@ from collections.abc import Iterable, Sequence
 from operator import attrgetter
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.model import UNKNOWN_END
+from btq_lang.evidence.model import UNKNOWN_END, Activation, LoggedTree, Moment
 from btq_lang.evidence.signals import Unknown
+from btq_lang.requirements.model import Target
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Joined
-    from btq_lang.evidence.model import Activation, LoggedTree, Moment
-    from btq_lang.requirements.model import Target
 
 
 class History:

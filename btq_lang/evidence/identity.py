@@ -9,23 +9,20 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from btq_lang.btcpp.export import is_mission
+from btq_lang.btcpp.instances import Instance
 from btq_lang.btcpp.outputs import as_xml
 from btq_lang.btcpp.side_file import Built, RunningTree
 from btq_lang.btcpp.wrappers import MARK
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.evidence.model import LoggedTree
 from btq_lang.evidence.readers.tree import kind_of
-from btq_lang.requirements.resolve import requirements
+from btq_lang.requirements.model import Target
+from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.workspace import Workspace
-
-if TYPE_CHECKING:
-    from btq_lang.btcpp.instances import Instance
-    from btq_lang.requirements.model import Target
-    from btq_lang.requirements.resolve import Requirements
 
 
 class Candidate:

@@ -12,8 +12,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.evaluate import Findings, MissionEvaluation
-from btq_lang.evidence.identity import difference
+from btq_lang.evidence.identity import Candidate, difference
+from btq_lang.evidence.model import Series
 from btq_lang.evidence.named_runs import joined_sessions
+from btq_lang.evidence.odds import Limits
 from btq_lang.evidence.readers import NotALog, read
 from btq_lang.evidence.runs import count_runs
 from btq_lang.evidence.signals import by_signal
@@ -23,9 +25,6 @@ from btq_lang.util.text import counted
 from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.identity import Candidate
-    from btq_lang.evidence.model import Series
-    from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.store.sets import Draft, Keeping
     from btq_lang.evidence.watching import Watched
     from btq_lang.workspace.project_evidence import SignalSource

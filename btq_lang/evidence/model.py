@@ -17,12 +17,11 @@ from btq_lang.util.record import Record
 if TYPE_CHECKING:
     from btq_lang.catalog.units import Unit
 
-    Transition: TypeAlias = tuple[int, int, int]  # time, uid, new status
-    SampleValue: TypeAlias = float | bool | str
-    Outcome: TypeAlias = Literal["S", "F", "H", "O"]
-    Timing: TypeAlias = Literal["exact", "latest", "broken", "late", "lost", "part"]
-    Moment: TypeAlias = tuple[int, int]  # time, and row of the log, which orders rows of one time
-
+Transition: TypeAlias = tuple[int, int, int]  # time, uid, new status
+SampleValue: TypeAlias = float | bool | str
+Outcome: TypeAlias = Literal["S", "F", "H", "O"]
+Timing: TypeAlias = Literal["exact", "latest", "broken", "late", "lost", "part"]
+Moment: TypeAlias = tuple[int, int]  # time, and row of the log, which orders rows of one time
 T = TypeVar("T")
 IDLE: Final = 0
 RUNNING: Final = 1

@@ -12,16 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence, Set
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.evidence.identity import Build, Candidate, Joined, join, join_build
-from btq_lang.evidence.model import FAILURE, IDLE, ROOT, RUNNING, SUCCESS, LoggedTree, NamedLog, Session
+from btq_lang.evidence.model import FAILURE, IDLE, ROOT, RUNNING, SUCCESS, LoggedTree, NamedLog, Session, Transition
 from btq_lang.evidence.runs import ONE_COMPLETION
 from btq_lang.util.record import replace
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.model import Transition
-
 
 OTHER: Final = "of another mission"
 SEVERAL: Final = "of one of several missions"

@@ -9,14 +9,12 @@ from collections.abc import Callable, Sequence
 from math import fsum, sqrt
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.model import UNKNOWN_END
+from btq_lang.evidence.model import UNKNOWN_END, Activation, Moment, SampleValue
 from btq_lang.evidence.signals import Signals, Unknown
-from btq_lang.requirements.model import InContext, Read, Running, parts_in
+from btq_lang.requirements.model import InContext, Read, Running, Signal, parts_in
 
 if TYPE_CHECKING:
     from btq_lang.evidence.history import Nearby
-    from btq_lang.evidence.model import Activation, Moment, SampleValue
-    from btq_lang.requirements.model import Signal
 
 
 class Observed:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.model import ROOT, Activation
 from btq_lang.evidence.named_runs import joined_sessions
 from btq_lang.evidence.outline import outline
@@ -13,9 +13,6 @@ from btq_lang.evidence.runs import activations
 from btq_lang.evidence.verdicts import OUTCOMES
 from btq_lang.evidence.wording import timestamp
 from btq_lang.util.record import Record
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.identity import Candidate
 
 
 class Step(Record):

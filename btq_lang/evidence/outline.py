@@ -7,14 +7,12 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.requirements.model import Target
+from btq_lang.requirements.model import Applied, Claim, Requirement, Target
 from btq_lang.util.record import Record, fields_of
-from btq_lang.workspace.resolved import ResolvedNode
+from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.model import Applied, Claim, Requirement
     from btq_lang.requirements.resolve import Requirements
-    from btq_lang.workspace.resolved import ResolvedTree
 
 
 class Demand(Record):

@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.conditions import truth
-from btq_lang.evidence.model import UNKNOWN_END
+from btq_lang.evidence.model import UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.scopes import in_scope
 from btq_lang.evidence.signals import Unknown
 from btq_lang.requirements.model import All, Condition, Event, Mission, Scope, Target
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.model import Activation, Moment
     from btq_lang.evidence.observed import Observed
 
 

@@ -6,12 +6,9 @@ import multiprocessing
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from btq_lang.evidence.judging import JudgedLog, judge
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.judging import Means
+from btq_lang.evidence.judging import JudgedLog, Means, judge
 
 # A forked process has the missions already; otherwise each process builds them once.
 START = "fork" if "fork" in multiprocessing.get_all_start_methods() else None

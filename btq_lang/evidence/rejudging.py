@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.evidence.clause import verdict_of
-from btq_lang.evidence.edges import edge_of, key_of
+from btq_lang.evidence.edges import Edge, edge_of, key_of
 from btq_lang.evidence.margins import Counts
 from btq_lang.evidence.outline import Demand, demands
 from btq_lang.evidence.tally import Tally
-from btq_lang.evidence.verdicts import ClauseVerdict, Worst
+from btq_lang.evidence.verdicts import ClauseVerdict, Measures, RequirementVerdict, Worst
 from btq_lang.evidence.wording import measured
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from btq_lang.evidence.edges import Edge
-    from btq_lang.evidence.verdicts import Measures, RequirementVerdict
     from btq_lang.requirements.resolve import Requirements
 
 

@@ -13,8 +13,8 @@ from math import ceil, floor
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.evidence.conditions import compared
-from btq_lang.evidence.model import UNKNOWN_END, Activation
+from btq_lang.evidence.conditions import Measure, compared
+from btq_lang.evidence.model import UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.over_run import Happening, OverRun, Stretch
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
@@ -22,9 +22,6 @@ from btq_lang.requirements.model import Claim, Span, Subject, Target, Total, Val
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.conditions import Measure
-    from btq_lang.evidence.model import Moment
-
     Judgements: TypeAlias = Iterator[Judgement | None]
     RunJudge: TypeAlias = Callable[[Claim, OverRun], Judgements]
 

@@ -7,15 +7,12 @@ until `fresh within` is over.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.catalog.units import Unit, to_si
-from btq_lang.evidence.model import Series
+from btq_lang.evidence.model import SampleValue, Series
 from btq_lang.requirements.model import Signal, Value
 from btq_lang.util.record import Record
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.model import SampleValue
 
 
 class Unknown(Record):

@@ -9,16 +9,14 @@ from copy import copy
 from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.distribution import Distribution
-from btq_lang.evidence.odds import lower_limit, runs_to_decide, upper_limit
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, Violation, Worst
+from btq_lang.evidence.odds import Limits, lower_limit, runs_to_decide, upper_limit
+from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, Link, Verdict, Violation, Worst
 from btq_lang.evidence.wording import measured
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.conditions import Measure
-    from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.verbs import Judgement
-    from btq_lang.evidence.verdicts import Link, Verdict
     from btq_lang.requirements.model import Odds
 
 

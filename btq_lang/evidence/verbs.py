@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import Measure, compared, measure_of, truth
-from btq_lang.evidence.model import CLOCK_SET_BACK, UNKNOWN_END, Activation
+from btq_lang.evidence.model import CLOCK_SET_BACK, UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.signals import Unknown
 from btq_lang.requirements.model import Aggregate, Claim, Condition, Limit, Not, Signal, parts_in
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.model import Moment
-
     Judge: TypeAlias = Callable[[Claim, Activation, Observed], "Judgement | None"]
 
 

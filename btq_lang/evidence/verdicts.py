@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from btq_lang.requirements.model import Value
     from btq_lang.workspace.resolved import ResolvedNode
 
-    Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised"]
-
+Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised"]
 VIOLATED: Final = "violated"
 UNKNOWN: Final = "unknown"
 UNDECIDED: Final = "undecided"

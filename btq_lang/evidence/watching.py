@@ -11,20 +11,18 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.clause import verdict_of
+from btq_lang.evidence.clause import JudgedClause, verdict_of
+from btq_lang.evidence.model import Activation, NamedLog, Session
 from btq_lang.evidence.sentences import result
 from btq_lang.evidence.tally import Run
-from btq_lang.evidence.verdicts import NEVER, OUTCOMES, VIOLATED
+from btq_lang.evidence.verbs import Judgement
+from btq_lang.evidence.verdicts import NEVER, OUTCOMES, VIOLATED, RequirementVerdict, Verdict
 from btq_lang.evidence.wording import duration, measured
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.clause import JudgedClause
     from btq_lang.evidence.evaluate import MissionEvaluation
     from btq_lang.evidence.identity import Joined
-    from btq_lang.evidence.model import Activation, NamedLog, Session
-    from btq_lang.evidence.verbs import Judgement
-    from btq_lang.evidence.verdicts import RequirementVerdict, Verdict
 
 
 class News(Record):

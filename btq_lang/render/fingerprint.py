@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from hashlib import sha256
-from typing import TYPE_CHECKING
 
 from btq_lang.render.location import clamped, line_index
-
-if TYPE_CHECKING:
-    from btq_lang.render.report import Finding
+from btq_lang.render.report import Finding
 
 
 def fingerprint(finding: Finding) -> str:

@@ -14,17 +14,14 @@ Invariant: a finding is one block, its gutter as wide as its largest line number
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from btq_lang.diagnostics.model import Place
 from btq_lang.render.cells import printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.render.frame import Row, frame
 from btq_lang.render.location import line_index, location, text_of
+from btq_lang.render.report import Finding, Report
 from btq_lang.render.summary import summary
-
-if TYPE_CHECKING:
-    from btq_lang.diagnostics.model import Place
-    from btq_lang.render.report import Finding, Report
 
 _LEAST_ROOM = 20  # lines are not cut below this width
 

@@ -6,14 +6,11 @@ Invariant: every place has a location; a span outside its text is clamped, a fil
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
+from btq_lang.diagnostics.model import Place
+from btq_lang.render.report import Finding, Report
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Span
-
-if TYPE_CHECKING:
-    from btq_lang.diagnostics.model import Place
-    from btq_lang.render.report import Finding, Report
 
 
 class Location(Record):

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.render.report import Finding, Report
 from btq_lang.util.text import counted
-
-if TYPE_CHECKING:
-    from btq_lang.render.report import Finding, Report
 
 _WORDS = {
     Severity.ERROR: "error",

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from btq_lang.catalog.qualities import Edition, get, qualities
 from btq_lang.diagnostics.model import Place
 from btq_lang.evidence.sentences import result
-from btq_lang.evidence.verdicts import WORST_FIRST
+from btq_lang.evidence.verdicts import WORST_FIRST, RequirementVerdict
 from btq_lang.graph.figure import Box, Note
 from btq_lang.graph.missions import by_tree, clauses_in_words, concerns, figure
 from btq_lang.requirements.model import Applied, Mission, Requirement, Span, Target, Total
@@ -40,7 +40,6 @@ from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import RequirementVerdict
     from btq_lang.trace.overview import Carries
     from btq_lang.trace.ways import Ways
 

@@ -10,8 +10,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from btq_lang.evidence.verdicts import MissionVerdicts
 from btq_lang.graph.placing import place
 from btq_lang.graph.svg import STYLE, colours, part
 from btq_lang.render.page_style import PAGE_STYLE
@@ -20,9 +21,6 @@ from btq_lang.trace.page_parts import SCRIPT, TRACE_STYLE
 from btq_lang.trace.verdicts import VERDICT_STYLE, verdicts
 from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
 from btq_lang.util.text import counted
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import MissionVerdicts
 
 
 def render(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:

@@ -12,12 +12,10 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from btq_lang.evidence.store.queries import only
 from btq_lang.evidence.store.summary import summary
 from btq_lang.evidence.store.tables import quoted
-from btq_lang.evidence.verdicts import VIOLATED, worst_of
+from btq_lang.evidence.verdicts import VIOLATED, ClauseVerdict, RequirementVerdict, worst_of
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import ClauseVerdict, RequirementVerdict
-
     Verdicts: TypeAlias = Mapping[str, RequirementVerdict]  # of a mission, by requirement
 
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.catalog.units import parse_unit
 from btq_lang.evidence.compare.comparison import Change, Comparison, is_time
+from btq_lang.evidence.compare.requirements import Newly
 from btq_lang.evidence.verdicts import VIOLATED
 from btq_lang.evidence.wording import duration, quantity
 from btq_lang.util.text import counted
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.compare.requirements import Newly
 
 
 def heading(comparison: Comparison, sides: tuple[str, str]) -> str:

@@ -8,16 +8,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
+from types import ModuleType
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import NamedLog, Series, Session
 from btq_lang.evidence.readers import bag, btlog, sqlite, tree_log
+from btq_lang.evidence.readers.topics import Clock
 from btq_lang.evidence.readers.tree import NotALog as NotALog
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
-    from btq_lang.evidence.readers.topics import Clock
     from btq_lang.workspace.project_evidence import SignalSource
 
 SUFFIXES: Final = (".btlog", ".db3", ".btdb", ".mcap")  # of the files read below a folder

@@ -11,14 +11,11 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from struct import Struct
-from typing import TYPE_CHECKING, BinaryIO, Final
+from typing import BinaryIO, Final
 
-from btq_lang.evidence.model import Session
+from btq_lang.evidence.model import Session, Transition
 from btq_lang.evidence.readers import klein
 from btq_lang.evidence.readers.tree import NotALog, read_tree
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.model import Transition
 
 MAGIC: Final = b"BTCPP4-FileLogger2"
 

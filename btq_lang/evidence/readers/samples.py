@@ -11,12 +11,11 @@ import os
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.model import Series, is_sample
+from btq_lang.evidence.model import SampleValue, Series, is_sample
 from btq_lang.evidence.readers import parquet
 from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.model import SampleValue
     from btq_lang.workspace.project_evidence import SignalSource
 
 

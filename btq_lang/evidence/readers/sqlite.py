@@ -13,14 +13,11 @@ import os
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Final
+from typing import Final
 from urllib.request import pathname2url
 
-from btq_lang.evidence.model import Series, Session, is_sample
+from btq_lang.evidence.model import Series, Session, Transition, is_sample
 from btq_lang.evidence.readers.tree import NotALog, read_tree
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.model import Transition
 
 
 def read(path: str) -> Iterator[Session]:

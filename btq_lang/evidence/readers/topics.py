@@ -11,7 +11,7 @@ from array import array
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
-from btq_lang.evidence.model import Series, is_sample
+from btq_lang.evidence.model import SampleValue, Series, is_sample
 from btq_lang.evidence.readers.samples import scaled
 from btq_lang.evidence.readers.tree import NotALog
 from btq_lang.util.spelling import did_you_mean, near
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
-    from btq_lang.evidence.model import SampleValue
     from btq_lang.workspace.project_evidence import SignalSource
 
     Times = NDArray[int64]

@@ -9,22 +9,20 @@ from collections.abc import Callable, Iterator, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.compare.comparison import WORSE
+from btq_lang.evidence.compare.comparison import WORSE, Change, Comparison
+from btq_lang.evidence.compare.requirements import Newly
 from btq_lang.evidence.compare.words import difference, heading, remarks, subject, turn, untestable
 from btq_lang.evidence.report.parts import NO_NAME, REPORT_STYLE, bars
 from btq_lang.evidence.sentences import explained, result, worst_violation
-from btq_lang.evidence.verdicts import NEVER, VIOLATED, WORST_FIRST
+from btq_lang.evidence.verdicts import NEVER, VIOLATED, WORST_FIRST, ClauseVerdict, RequirementVerdict
 from btq_lang.evidence.wording import period, share
 from btq_lang.render.page_style import PAGE_STYLE
 from btq_lang.util.record import replace
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.compare.comparison import Change, Comparison
-    from btq_lang.evidence.compare.requirements import Newly
     from btq_lang.evidence.report.overview import MissionOverview, Node, Overview, Part
     from btq_lang.evidence.report.trends import Values
-    from btq_lang.evidence.verdicts import ClauseVerdict, RequirementVerdict
 
 
 def render(overview: Overview) -> str:

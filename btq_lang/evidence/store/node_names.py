@@ -5,12 +5,8 @@ One invariant: two trees have a name in common only if both have equally many no
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from btq_lang.evidence.identity import without_number
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.model import LoggedTree
+from btq_lang.evidence.model import LoggedTree
 
 
 def node_names(tree: LoggedTree) -> dict[int, str]:

@@ -15,15 +15,14 @@ from contextlib import ExitStack
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from btq_lang.evidence.identity import without_number
+from btq_lang.evidence.identity import Joined, without_number
+from btq_lang.evidence.model import Activation
 from btq_lang.evidence.store.node_names import node_names
 from btq_lang.evidence.store.tables import ROWS
 from btq_lang.evidence.verdicts import OUTCOMES, SATISFIED, UNKNOWN, VIOLATED
 
 if TYPE_CHECKING:
     from btq_lang.evidence.clause import JudgedClause
-    from btq_lang.evidence.identity import Joined
-    from btq_lang.evidence.model import Activation
     from btq_lang.evidence.verbs import Judgement
 
 

@@ -10,10 +10,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
-from btq_lang.catalog.units import parse_unit
+from btq_lang.catalog.units import Unit, parse_unit
 from btq_lang.diagnostics.model import Place
 from btq_lang.evidence.clause import verdict_of
 from btq_lang.evidence.conditions import Measure
+from btq_lang.evidence.odds import Limits
 from btq_lang.evidence.store.queries import QUERIES
 from btq_lang.evidence.tally import Run, Tally
 from btq_lang.evidence.verbs import Judgement
@@ -36,9 +37,6 @@ from btq_lang.requirements.model import Odds, Value
 from btq_lang.util.text import Span, counted
 
 if TYPE_CHECKING:
-    from btq_lang.catalog.units import Unit
-    from btq_lang.evidence.odds import Limits
-
     Row: TypeAlias = Mapping[str, Any]
     Ask: TypeAlias = Callable[[str], Sequence[Row]]  # the rows of a question, by the names of their columns
 

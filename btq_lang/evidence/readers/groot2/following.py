@@ -8,18 +8,15 @@ does not follow from the transitions.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.btcpp.reader import read as read_xml
-from btq_lang.evidence.model import GAP, IDLE, PAUSE, RUNNING, LoggedTree
+from btq_lang.evidence.model import GAP, IDLE, PAUSE, RUNNING, LoggedTree, SampleValue, Transition
 from btq_lang.evidence.readers.groot2 import messages
 from btq_lang.evidence.readers.groot2.messages import BadReply, Reply
 from btq_lang.evidence.readers.groot2.publisher import NoAnswer
 from btq_lang.evidence.readers.tree import NotALog, read_tree
 from btq_lang.util.record import Record
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.model import SampleValue, Transition
 
 
 class Began(Record):

@@ -10,13 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from struct import Struct
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from btq_lang.evidence.model import IDLE, SKIPPED, by_entry, is_sample
+from btq_lang.evidence.model import IDLE, SKIPPED, SampleValue, Transition, by_entry, is_sample
 from btq_lang.util.record import Record
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.model import SampleValue, Transition
 
 TREE: Final = "T"  # the types of requests that are sent; others would change what the robot does
 STATUS: Final = "S"

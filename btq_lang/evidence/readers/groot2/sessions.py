@@ -10,15 +10,12 @@ import time
 from collections.abc import Callable, Collection, Iterator
 from threading import Event as Flag
 from threading import Thread
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from btq_lang.evidence.model import Series, Session
+from btq_lang.evidence.model import Series, Session, Transition
 from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Notice, Sampled
 from btq_lang.evidence.readers.groot2.publisher import Publisher
 from btq_lang.evidence.runs import Oddities
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.model import Transition
 
 
 def sessions(
