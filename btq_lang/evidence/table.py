@@ -11,9 +11,8 @@ from btq_lang.evidence.sentences import explained, headline, result, worst_viola
 from btq_lang.evidence.signals import NO_SAMPLES
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
 from btq_lang.evidence.wording import duration, period
-from btq_lang.render.cells import printable
+from btq_lang.render.cells import broken, cells_of, narrowed, printable
 from btq_lang.render.colour import Paint, painter
-from btq_lang.render.columns import broken, cells_of, narrowed
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Characters on a terminal: which are safe to print, and how many cells each takes.
+"""Characters on a terminal: which are safe to print, how many cells each takes, and columns of a table that fit it.
 
 Invariant: the result contains no control character of the input: no escape sequence, no line end, no reordering of the
 text (Trojan Source, CVE-2021-42574).  Cells are counted by code point, using Unicode's East Asian Width; emoji joined
@@ -15,6 +15,7 @@ TAB = 4
 
 _BIDI = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
 _REPLACEMENT = "\ufffd"
+_NARROWEST = 8  # cells of a column
 
 
 def printable(text: str) -> str:
@@ -54,6 +55,48 @@ def laid_out(line: str) -> tuple[Sequence[str], Sequence[int]]:
         pieces.append(" " * width if character == "\t" else _sign(character))
         columns.append(columns[-1] + width)
     return pieces, columns
+
+
+def cells_of(text: str) -> int:
+    """How many cells a text takes."""
+    return laid_out(text)[1][-1]
+
+
+def narrowed(widths: list[int], room: int) -> list[int]:
+    """Shrink the widest columns until all fit."""
+    widths = list(widths)
+    while sum(widths) > room and max(widths) > _NARROWEST:
+        widths[widths.index(max(widths))] -= 1
+    return widths
+
+
+def broken(text: str, room: int) -> list[str]:
+    """A text in lines, broken at blanks, and long words at `.`, `-`, `/` or, where there is none, anywhere; all lines
+    are indented like the first.
+    """
+    words = text.lstrip(" ")
+    indent = len(text) - len(words)
+    room -= indent
+    lines: list[str] = []
+    for word in words.split(" "):
+        if lines and cells_of(lines[-1]) + 1 + cells_of(word) <= room:
+            lines[-1] += f" {word}"
+            continue
+        while cells_of(word) > room:
+            at = _fitting(word, room)
+            lines.append(word[:at])
+            word = word[at:]
+        lines.append(word)
+    return [" " * indent + line for line in lines]
+
+
+def _fitting(word: str, room: int) -> int:
+    """How many characters of a word fit on a line."""
+    fits = 1
+    while fits < len(word) and cells_of(word[: fits + 1]) <= room:
+        fits += 1
+    at = max(word.rfind(mark, 0, fits) for mark in ".-/")
+    return at + 1 if at > 0 else fits
 
 
 def _sign(character: str) -> str:

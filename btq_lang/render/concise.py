@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from btq_lang.render.cells import printable
 from btq_lang.render.colour import painter
-from btq_lang.render.location import location
-from btq_lang.render.report import Report
+from btq_lang.render.report import Report, location
 from btq_lang.render.summary import summary
 
 

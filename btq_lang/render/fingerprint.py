@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from hashlib import sha256
 
-from btq_lang.render.location import clamped, line_index
-from btq_lang.render.report import Finding
+from btq_lang.render.report import Finding, clamped, line_index
 
 
 def fingerprint(finding: Finding) -> str:

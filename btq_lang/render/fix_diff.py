@@ -11,8 +11,7 @@ from itertools import pairwise
 from btq_lang.diagnostics.model import Fix
 from btq_lang.render.cells import cut, printable
 from btq_lang.render.frame import Row
-from btq_lang.render.location import clamped, line_index, text_of
-from btq_lang.render.report import Finding, Report
+from btq_lang.render.report import Finding, Report, clamped, line_index, text_of
 from btq_lang.util.text import Edit, LineIndex, Position, alike, apply_edits
 
 _MOST = 12

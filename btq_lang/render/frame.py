@@ -10,7 +10,7 @@ from collections.abc import Callable
 from functools import lru_cache
 
 from btq_lang.render.cells import cut, laid_out
-from btq_lang.render.location import clamped, line_index
+from btq_lang.render.report import clamped, line_index
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Position, Span
 

@@ -19,8 +19,7 @@ from btq_lang.diagnostics.model import Place
 from btq_lang.render.cells import printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.render.frame import Row, frame
-from btq_lang.render.location import line_index, location, text_of
-from btq_lang.render.report import Finding, Report
+from btq_lang.render.report import Finding, Report, line_index, location, text_of
 from btq_lang.render.summary import summary
 
 _LEAST_ROOM = 20  # lines are not cut below this width

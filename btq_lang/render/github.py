@@ -12,8 +12,7 @@ from collections.abc import Iterator
 
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.render.cells import printable
-from btq_lang.render.location import location
-from btq_lang.render.report import Finding, Report, Trouble
+from btq_lang.render.report import Finding, Report, Trouble, location
 
 _COMMANDS = {
     Severity.ERROR: "error",

@@ -14,8 +14,7 @@ from collections.abc import Iterator
 
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.render.fingerprint import digest, fingerprint
-from btq_lang.render.location import location
-from btq_lang.render.report import Finding, Report, Trouble
+from btq_lang.render.report import Finding, Report, Trouble, location
 
 _SEVERITIES = {Severity.ERROR: "major", Severity.WARNING: "minor", Severity.INFO: "info", Severity.HINT: "info"}
 

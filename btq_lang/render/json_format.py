@@ -26,8 +26,7 @@ from collections.abc import Iterator
 
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.render.location import location
-from btq_lang.render.report import Finding, Report, Trouble
+from btq_lang.render.report import Finding, Report, Trouble, location
 from btq_lang.render.summary import count, is_fixable
 from btq_lang.util.version import __version__
 

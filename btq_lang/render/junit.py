@@ -11,8 +11,7 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.render.cells import printable
-from btq_lang.render.location import location
-from btq_lang.render.report import Finding, Report, Trouble
+from btq_lang.render.report import Finding, Report, Trouble, location
 from btq_lang.render.summary import counted_by_severity
 
 _FAILURES = (Severity.ERROR, Severity.WARNING)

@@ -14,8 +14,7 @@ from urllib.parse import quote
 
 from btq_lang.diagnostics.model import Fix, Place
 from btq_lang.diagnostics.rules import RULES, Severity, page
-from btq_lang.render.location import location
-from btq_lang.render.report import Finding, Report, Trouble
+from btq_lang.render.report import Finding, Report, Trouble, location
 from btq_lang.util.version import __version__
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"

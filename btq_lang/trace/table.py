@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import os.path
 from collections.abc import Iterator, Sequence
+from itertools import zip_longest
 from typing import Final
 
 from btq_lang.evidence.table import VERDICT_STYLES
-from btq_lang.render.cells import cut, printable
+from btq_lang.render.cells import broken, cells_of, cut, narrowed, printable
 from btq_lang.render.colour import Paint, painter
-from btq_lang.render.columns import broken, cells_of, narrowed
 from btq_lang.trace.overview import At, Overview, RequirementRow
 from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
 
@@ -116,8 +116,7 @@ def _table(
         in_lines = [
             [part for line in cell for part in broken(line, room)] for cell, room in zip(row, widths, strict=True)
         ]
-        for at in range(max(map(len, in_lines))):
-            line = [cell[at] if at < len(cell) else "" for cell in in_lines]
+        for at, line in enumerate(zip_longest(*in_lines, fillvalue="")):
             yield _row(line, widths, numbers_from, paint, "message" if at == 0 else "")
 
 

@@ -7,8 +7,7 @@ from typing import Final
 
 from btq_lang.evidence.compare.comparison import WORSE, Comparison
 from btq_lang.evidence.compare.words import difference, heading, remarks, subject, turn
-from btq_lang.render.cells import printable
-from btq_lang.render.columns import cells_of
+from btq_lang.render.cells import cells_of, printable
 
 
 def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
