@@ -7,6 +7,7 @@ does with entries, and whether a name is right, is not known here.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from typing import TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
@@ -123,11 +124,6 @@ class Blackboards:
 
     def of(self, tree: str, name: str) -> list[Touch]:
         """All uses of an entry, wherever it is passed."""
-        if self._merged is None:
-            merged: dict[Name, list[Touch]] = {}
-            for key, uses in self._uses.items():
-                merged.setdefault(self._first(key), []).extend(uses)
-            self._merged = merged
         return self._merged.get(self._first(self.place(tree, name)), [])
 
     def is_port(self, tree: str, name: str) -> bool:
@@ -153,7 +149,12 @@ class Blackboards:
         """Whether the tree's own blackboard is that of the root."""
         return tree in self._roots
 
-    _merged: dict[Name, list[Touch]] | None = None
+    @cached_property
+    def _merged(self) -> dict[Name, list[Touch]]:
+        merged: dict[Name, list[Touch]] = {}
+        for key, uses in self._uses.items():
+            merged.setdefault(self._first(key), []).extend(uses)
+        return merged
 
     def _add(self, tree: str, handling: Handling, trees: Mapping[str, Handling]) -> None:
         self._ports.update(self.place(tree, port) for port in handling.ports)

@@ -8,10 +8,11 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.qualities import other_word
-from btq_lang.checks.view import COUNTS, View
+from btq_lang.checks.view import COUNTS, View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Related, Tag, replace_fix
-from btq_lang.syntax.tree import Claim, Context, OnViolation, Requirement, Signal, Word, written
+from btq_lang.syntax.tree import Claim, Context, OnViolation, Requirement, Signal, Tree, Word, written
 from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.symbols import Symbol, same_requirement
 from btq_lang.workspace.workspace import Workspace
@@ -69,15 +70,16 @@ def unused_requirement(view: View) -> Iterator[Diagnostic]:
         return  # a file of requirements, or a library: its users may be anywhere
     if not view.defines_here(Kind.REQUIREMENT, requirement.name.text):
         return
-    if view.is_used(Kind.REQUIREMENT, requirement.name.text) or view.is_meant_as_requirement(requirement.name.text):
-        return
+    name = requirement.name.text
+    if view.is_used(Kind.REQUIREMENT, name) or view.is_used(Kind.QUALITY, name) or view.ask(_is_misspelt_use, name):
+        return  # a quality or a node of this name, which probably means it, is reported
     if not view.is_read or view.look_up(lookups.names_unknown_requirements):
         return  # its user may be on a line that could not be read, or misspell it
     yield Diagnostic(
         "unused-requirement",
         requirement.name.span,
-        f"unused requirement `{requirement.name.text}`: no `satisfies` or `apply` attaches it to a node",
-        notes=(f"attach it to a node with `satisfies {written(requirement.name.text)}` or `apply`",),
+        f"unused requirement `{name}`: no `satisfies` or `apply` attaches it to a node",
+        notes=(f"attach it to a node with `satisfies {written(name)}` or `apply`",),
         tags=(Tag.UNNECESSARY,),
     )
 
@@ -156,6 +158,15 @@ def _is_meant(store: Store[Workspace], viewpoint: str, name: str) -> bool:
     if len(asked) * declared > _MOST_COMPARED:
         return True  # among so many unknown names there is a similar one to any
     return bool(near(name, asked, limit=1))
+
+
+def _is_misspelt_use(store: Store[Workspace], viewpoint: str, name: str) -> bool:
+    return any(name in store.ask(_misspelt_uses, facts) for facts in lookups.trees(store, viewpoint))
+
+
+def _misspelt_uses(_: Store[Workspace], facts: Facts) -> frozenset[str]:
+    nodes = facts.item.walk() if isinstance(facts.item, Tree) else ()
+    return frozenset(node.label.text for node in nodes if node.label is not None and misspelt_clause(node))
 
 
 _MOST_COMPARED = 200_000  # pairs of names: some tenths of a second

@@ -22,20 +22,8 @@ def script_error(view: View) -> Iterator[Diagnostic]:
     for seen in view.seen.given:
         for pair in seen.node.attributes:
             expects_value = _expects_value(seen, pair)
-            if expects_value is None or pair.value is None:
-                continue
-            for problem in _problems(view, pair.value.text, expects_value):
-                found = moved(problem, pair.value)
-                if problem.rule == "empty-script":
-                    yield _empty(seen, pair.key.text, pair.value, found)
-                elif problem.rule == "script-version" and not view.is_pinned:
-                    pin = f'if you run {view.target}, set `engine = "{view.target}"` in btq.toml'
-                    yield replace(found, notes=(*found.notes, pin))
-                else:
-                    older: tuple[str, ...] = ()
-                    if problem.rule == "script-error" and _is_in_double_quotes(pair.value.text, problem):
-                        older = view.pin_note(lambda version: not NEW_SCRIPTS.holds(version))
-                    yield replace(found, notes=(*found.notes, *older)) if older else found
+            if expects_value is not None and pair.value is not None:
+                yield from _problems(view, seen, pair.key.text, pair.value, expects_value)
 
 
 def is_script(seen: ResolvedNode, pair: Pair) -> bool:
@@ -55,17 +43,19 @@ def _expects_value(seen: ResolvedNode, pair: Pair) -> bool | None:
     return seen.flow != "succeeds"  # else the node succeeds whatever the value
 
 
-def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic, ...]:
-    from btq_lang.syntax.script.check import check_script  # most files have no script, and it is large
+def _problems(view: View, seen: ResolvedNode, key: str, value: Word, expects_value: bool) -> Iterator[Diagnostic]:
+    from btq_lang.syntax.script.check import check_script, is_in_double_quotes  # few files have a script; it is large
 
-    versions = view.engines
-    return check_script(view.script(script), versions=versions, expects_value=expects_value)
-
-
-def _is_in_double_quotes(script: str, problem: Diagnostic) -> bool:
-    from btq_lang.syntax.script.check import is_in_double_quotes  # as above
-
-    return is_in_double_quotes(script, problem.span)
+    for problem in check_script(view.script(value.text), versions=view.engines, expects_value=expects_value):
+        found = moved(problem, value)
+        notes: tuple[str, ...] = ()
+        if problem.rule == "empty-script":
+            found = _empty(seen, key, value, found)
+        elif problem.rule == "script-version" and not view.is_pinned:
+            notes = (f'if you run {view.target}, set `engine = "{view.target}"` in btq.toml',)
+        elif problem.rule == "script-error" and is_in_double_quotes(value.text, problem.span):
+            notes = view.pin_note(lambda version: not NEW_SCRIPTS.holds(version))
+        yield replace(found, notes=(*found.notes, *notes))
 
 
 def _empty(seen: ResolvedNode, key: str, value: Word, found: Diagnostic) -> Diagnostic:

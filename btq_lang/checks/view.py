@@ -292,10 +292,6 @@ class View:
         """Whether something in the file refers to a name."""
         return self.ask(_is_used, kind, name)
 
-    def is_meant_as_requirement(self, name: str) -> bool:
-        """Whether a name in the place of a quality or a node seems to be a requirement's; each is reported."""
-        return self.is_used(Kind.QUALITY, name) or self.ask(_is_misspelt_use, name)
-
     def spelt(self, symbol: str) -> str:
         """A built-in node as the language of the file writes it: `R->`, in XML `<ReactiveSequence>`."""
         kind = lookup(symbol)
@@ -413,15 +409,6 @@ def _near_names(store: Store[Workspace], viewpoint: str, kind: Kind, word: str) 
 
 def _is_used(store: Store[Workspace], viewpoint: str, kind: Kind, name: str) -> bool:
     return name in View(store, viewpoint).look_up(lookups.used, kind)
-
-
-def _is_misspelt_use(store: Store[Workspace], viewpoint: str, name: str) -> bool:
-    return any(name in store.ask(_misspelt_uses, facts) for facts in View(store, viewpoint).look_up(lookups.trees))
-
-
-def _misspelt_uses(_: Store[Workspace], facts: Facts) -> frozenset[str]:
-    nodes = facts.item.walk() if isinstance(facts.item, Tree) else ()
-    return frozenset(node.label.text for node in nodes if node.label is not None and misspelt_clause(node))
 
 
 def _script(_: Store[Workspace], text: str) -> Script:

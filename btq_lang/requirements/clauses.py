@@ -29,8 +29,12 @@ def with_clauses(
     once: dict[str, object] = {}
     reasons: list[str] = []
     goals: list[syntax.Goal] = []
+
+    def keep(field: str, value: object) -> None:
+        if value is not None:
+            once.setdefault(field, value)
+
     for clause in clauses:
-        found: dict[str, object] = {}
         if isinstance(clause, syntax.Claim):
             claim = claim_of(reader, clause)
             claims += [claim] if claim is not None else []
@@ -40,22 +44,19 @@ def with_clauses(
                 word = "while" if clause.word.raw == "while" else "when"
                 scopes.append(model.Scope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
         elif isinstance(clause, syntax.Odds):
-            found["odds"] = _odds(reader, clause)
+            keep("odds", _odds(reader, clause))
         elif isinstance(clause, syntax.Confidence):
-            found["confidence"] = _confidence(reader, clause)
+            keep("confidence", _confidence(reader, clause))
         elif isinstance(clause, syntax.Window):
-            found["window"] = _window(reader, clause)
+            keep("window", _window(reader, clause))
         elif isinstance(clause, syntax.OnViolation) and clause.action is not None:
-            found = {"action": clause.action.raw}
+            keep("action", clause.action.raw)
         elif isinstance(clause, syntax.Goal):
             goals.append(clause)
         elif isinstance(clause, syntax.Because) and clause.text is not None:
             reasons.append(clause.text.text)
         elif isinstance(clause, syntax.How) and clause.method is not None:
-            found["method"] = clause.method.raw
-        for key, value in found.items():
-            if value is not None:
-                once.setdefault(key, value)
+            keep("method", clause.method.raw)
     if goals:
         once["goal"] = reader.bounded(goals[0].value, _of_goal(claims, "odds" in once))
     return replace(
