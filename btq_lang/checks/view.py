@@ -9,7 +9,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Callable, Iterator
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, lookup, port_type, spellings
@@ -17,7 +17,7 @@ from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.checks import lookups
 from btq_lang.checks.engines import engines_of
-from btq_lang.checks.lookups import Declaration, Meaning
+from btq_lang.checks.lookups import Declaration
 from btq_lang.checks.sorted_nodes import NO_NODES, SortedNodes, sorted_nodes
 from btq_lang.diagnostics.model import Related
 from btq_lang.grammar.attributes import meant_clause
@@ -26,7 +26,6 @@ from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.config import Project
-from btq_lang.workspace.inputs import Placed
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
@@ -38,10 +37,29 @@ if TYPE_CHECKING:
     from btq_lang.syntax.script.tree import Script
     from btq_lang.workspace.factories import Factory
 
-    T = TypeVar("T")
-
+P = ParamSpec("P")
+T = TypeVar("T")
 
 COUNTS = "first definition, which takes effect"
+
+
+class _OfFile(Generic[T]):
+    """An attribute of a view that is an input of its file."""
+
+    def __init__(self, read: Callable[[Store[Workspace], str], T]) -> None:
+        self._read = read
+
+    def __get__(self, view: View, _: type[View]) -> T:
+        return self._read(view.store, view.path)
+
+
+def _at(read: Callable[Concatenate[Store[Workspace], str, P], T]) -> Callable[Concatenate[View, P], T]:
+    """A method of a view that looks something up from its file."""
+
+    def look_up(view: View, /, *key: P.args, **named: P.kwargs) -> T:
+        return read(view.store, view.path, *key, **named)
+
+    return look_up
 
 
 class View:
@@ -142,25 +160,17 @@ class View:
 
     # ---- names ----
 
-    def defines(self, kind: Kind, name: str) -> bool:
-        """Whether a name in scope is defined."""
-        return self.look_up(lookups.is_defined, kind, name)
+    defines = _at(lookups.is_defined)
+    find = _at(lookups.meaning)
+    definition = _at(inputs.definition)
+    declaration = _at(lookups.declaration)
+    is_repeated = _at(lookups.is_repeated)
+    names = _at(inputs.names)
+    is_complete = _OfFile(inputs.is_complete)
 
     def is_pooled(self, kind: Kind, name: str) -> bool:
         """Whether a name of this XML file is defined in its pool, once or several times."""
         return self.is_xml and self.look_up(lookups.is_pooled, kind, name)
-
-    def find(self, kind: Kind, name: str) -> Meaning | None:
-        """What a name in scope means, or in the pool of an XML file."""
-        return self.look_up(lookups.meaning, kind, name)
-
-    def definition(self, kind: Kind, name: str) -> Placed | None:
-        """The item that defines a name, and the path of its file."""
-        return self.look_up(inputs.definition, kind, name)
-
-    def declaration(self, kind: Kind, name: str) -> Declaration | None:
-        """Where a name is defined; an edit of that item changes it."""
-        return self.look_up(lookups.declaration, kind, name)
 
     def declared_at(self, kind: Kind, name: str, message: str) -> tuple[Related, ...]:
         """The place where a name is defined, to be shown beside a diagnostic."""
@@ -180,22 +190,9 @@ class View:
             return first, COUNTS
         return self.look_up(lookups.another_declaration, symbol.kind, symbol.name), "second definition"
 
-    def is_repeated(self, kind: Kind, name: str) -> bool:
-        """Whether a name has several definitions."""
-        return self.look_up(lookups.is_repeated, kind, name)
-
-    def names(self, kind: Kind) -> tuple[str, ...]:
-        """All names of a kind, in the order of their definitions."""
-        return self.look_up(inputs.names, kind)
-
     def has_names(self, kind: Kind) -> bool:
         """Whether there is any name of a kind in scope."""
         return self.ask(_has_names, kind)
-
-    @property
-    def is_complete(self) -> bool:
-        """Whether a name that is not in scope does not exist."""
-        return self.look_up(inputs.is_complete)
 
     def clashes(self, *kinds: Kind) -> list[tuple[Declaration, Declaration]]:
         """The names that the file of this include and one included before it both define, each with the definition that
@@ -223,6 +220,12 @@ class View:
 
     # ---- the file and the project ----
 
+    workspace = _OfFile(inputs.everything)
+    edition = _OfFile(lookups.edition)
+    is_xml = _OfFile(lookups.is_xml)
+    is_included = _OfFile(inputs.is_included)
+    is_read = _OfFile(lookups.is_read)
+
     @property
     def project(self) -> Project:
         """What holds for all files."""
@@ -244,19 +247,9 @@ class View:
         return self.engines != VERSIONS
 
     @property
-    def is_xml(self) -> bool:
-        """Whether the file is XML that the engine loads as it is, without a build."""
-        return self.look_up(lookups.is_xml)
-
-    @property
     def has_trees(self) -> bool:
         """Whether there is a tree in the file."""
         return self.ask(_has_trees)
-
-    @property
-    def is_included(self) -> bool:
-        """Whether another file includes this one."""
-        return self.look_up(inputs.is_included)
 
     @property
     def is_used_elsewhere(self) -> bool:
@@ -274,19 +267,9 @@ class View:
         main = self.look_up(lookups.main_tree)
         return main[0] if main is not None else None
 
-    @property
-    def edition(self) -> str:
-        """The edition of the quality model that holds for the file."""
-        return self.look_up(lookups.edition)
-
     def quality(self, name: str) -> QualityMatch | None:
         """The catalog's match of a quality name; None for a quality that a file in scope declares."""
         return self.ask(_quality, name)
-
-    @property
-    def is_read(self) -> bool:
-        """Whether the whole file could be read: else what seems missing may be on a line that could not."""
-        return self.look_up(lookups.is_read)
 
     def is_used(self, kind: Kind, name: str) -> bool:
         """Whether something in the file refers to a name."""
@@ -311,13 +294,6 @@ class View:
     def script(self, text: str) -> Script:
         """A parsed script; several checks need each."""
         return self.store.ask(_script, text)
-
-    # ---- what runs again after each edit of a linked file ----
-
-    @property
-    def workspace(self) -> Workspace:
-        """Everything."""
-        return self.look_up(inputs.everything)
 
     def constraints(self, requirement: Requirement) -> tuple[tuple[Constraint, bool], ...]:
         """What follows SuccessIf and FailureIf in a description, and whether it is more than prose."""
