@@ -153,12 +153,6 @@ def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 
 
 @of_viewpoint
-def distribution(workspace: Workspace, viewpoint: str) -> str | None:
-    """The distribution whose nodes of Nav2 are declared for a file."""
-    return _distribution(workspace, viewpoint)
-
-
-@of_viewpoint
 def outside_entries(workspace: Workspace, viewpoint: str) -> tuple[OutsideEntry, ...]:
     """The entries of the root blackboard that the program sets or reads, as far as they are known."""
     if workspace.factory is not None and workspace.factory.entries:
@@ -521,4 +515,8 @@ def _declaration(workspace: Workspace, found: Definition) -> Declaration:
 
 
 def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
+    """The distribution whose nodes of Nav2 are declared for a file."""
     return distribution_among(workspace.scope(viewpoint).node_paths)
+
+
+distribution = of_viewpoint(_distribution)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import lru_cache
 
@@ -15,7 +16,7 @@ from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
 from btq_lang.syntax.tree import Node, Pair, Tree, Word, is_name, quote
 from btq_lang.util.spelling import near
-from btq_lang.util.text import Span
+from btq_lang.util.text import LINE_END, Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.node_names import is_placeholder
@@ -24,7 +25,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 _BLANKS = " \t"
-_WHITE = " \t\r\n"
+_AFTER_NAME = r"[ \t]*(?:,[ \t]*)?(?P<closing>[ \t\r\n]*\))?"  # compiled when the first file needs it
 # Words that mean something else in the place of a node's kind or label.
 _NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERB_WORDS | {"xml"}
 
@@ -160,25 +161,13 @@ def _replace_head(text: str, node: Node, head: str) -> tuple[Change, ...] | None
 def _without_name(text: str, kind: Word, name: Pair, head: str) -> tuple[Change, ...] | None:
     """The changes that replace the kind and remove the name from the brackets, where it comes first; empty brackets go
     too."""
-    start, end = name.span.start, name.span.end
-    if text[kind.end : start].strip(_WHITE) != "(":
+    before, after = text[kind.end : name.span.start], re.compile(_AFTER_NAME).match(text, name.span.end)
+    if before.strip() != "(" or after is None:
         return None
-    end = _behind(text, end, _BLANKS)
-    if text[end : end + 1] == ",":
-        end = _behind(text, end + 1, _BLANKS)
-    following = _behind(text, end, _WHITE)
-    if text[following : following + 1] == ")":
-        return (Change(Place(Span(kind.start, following + 1)), head),)
-    line = start
-    while line > 0 and text[line - 1] in _BLANKS:
-        line -= 1
-    if text[end : end + 1] in ("\r", "\n") and text[line - 1] in "\r\n":
-        start = line  # the name has a line of its own
-        end += 2 if text.startswith("\r\n", end) else 1
+    if after["closing"]:
+        return (Change(Place(Span(kind.start, after.end())), head),)
+    start, end = name.span.start, after.end()
+    above, line_end = before.rstrip(_BLANKS), LINE_END.match(text, end)
+    if line_end is not None and above.endswith(("\r", "\n")):
+        start, end = kind.end + len(above), line_end.end()  # the name has a line of its own
     return Change(Place(kind.span), head), Change(Place(Span(start, end)), "")
-
-
-def _behind(text: str, at: int, blanks: str) -> int:
-    while at < len(text) and text[at] in blanks:
-        at += 1
-    return at

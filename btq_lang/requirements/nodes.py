@@ -82,11 +82,8 @@ class Nodes:
 
     def __init__(self, trees: Sequence[ResolvedTree]) -> None:
         self.trees = tuple(trees)
-        self._counting: dict[str, ResolvedTree] = {}  # by name, the first tree of each
-        for tree in trees:
-            if tree.name is not None:
-                self._counting.setdefault(tree.name, tree)
-        self._roots = {name: tree.root for name, tree in self._counting.items() if tree.root is not None}
+        roots = {tree.name: tree.root for tree in reversed(trees)}  # of trees with one name the first one counts
+        self._roots = {name: root for name, root in roots.items() if name is not None and root is not None}
 
     @cached_property
     def all(self) -> tuple[ResolvedNode, ...]:
