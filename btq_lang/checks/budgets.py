@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from math import ceil, inf, log
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found, found_at, highest, seconds, summed
+from btq_lang.checks.demanded import Demanded, Found, found_at, seconds, summed
 from btq_lang.diagnostics.model import Related
 from btq_lang.requirements.budget_parts import Budget, port_seconds
 from btq_lang.requirements.budgets import Budgets
@@ -19,7 +19,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
     """The children may take more than their parent may: in the worst case, or always."""
     for applied, claim, node, place in demanded.claims:
-        most = highest(claim) if VERBS[claim.verb].limits else None
+        most = claim.highest if VERBS[claim.verb].limits else None
         if most is None or not (node.children or node.category == "SubTree"):
             continue
         allowed = _held_against(claim, demanded.budgets.composed(node))
@@ -119,7 +119,7 @@ def _ensured(
 ) -> tuple[float, list[tuple[ResolvedNode, float]], str] | None:
     """The probability that the demands below a node make a claim true, what each child may miss, and what that leaves
     out; None if it is unknown, or the duration is too long anyway."""
-    most = highest(claim)
+    most = claim.highest
     limit = most[0] if most is not None else inf
     limits = VERBS[claim.verb].limits
     if limits == "success":

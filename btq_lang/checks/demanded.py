@@ -12,7 +12,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.durations import Term
-from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, Span, Table, Value
+from btq_lang.requirements.model import Applied, Claim, Signal, Span
 from btq_lang.requirements.nodes import mission
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
@@ -91,30 +91,6 @@ def found_at(
 ) -> Found:
     """A finding of a rule, with its place."""
     return place, Diagnostic(rule, place.span, message, related, notes, severity=severity)
-
-
-def highest(claim: Claim) -> tuple[float, str] | None:
-    """The longest that a claim allows in any situation, in SI and as typed; None if it has no upper limit."""
-    limit = claim.limit
-    if limit is None or limit.relation in (">=", ">"):
-        return None
-    bounded = limit.value if limit.upper is None else limit.upper
-    return max(values(bounded), key=lambda each: each[0], default=None)
-
-
-def lowest(claim: Claim) -> tuple[float, str] | None:
-    """The least that a claim demands in any situation, in SI and as typed; None if it has no lower limit."""
-    limit = claim.limit
-    if limit is None or limit.relation in ("<=", "<"):
-        return None
-    return min(values(limit.value), key=lambda each: each[0], default=None)
-
-
-def values(bounded: Bounded) -> list[tuple[float, str]]:
-    """The values of a bound, in SI and as typed; empty if one of them is a signal's."""
-    simple = [case.value for case in bounded.cases] if isinstance(bounded, Table) else [bounded]
-    found = [(value.si, value.text) for value in simple if isinstance(value, Value)]
-    return found if len(found) == len(simple) else []
 
 
 def seconds(value: float) -> str:

@@ -8,7 +8,7 @@ from math import inf, prod
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found, found_at, highest, lowest, seconds
+from btq_lang.checks.demanded import Demanded, Found, found_at, seconds
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Place, Related
 from btq_lang.diagnostics.rules import Severity
@@ -24,7 +24,7 @@ from btq_lang.workspace.resolved import ResolvedNode
 def limit_too_small(demanded: Demanded) -> Iterator[Found]:
     """A limit that has no effect in the engine: it counts whole milliseconds, and 0 means no limit."""
     for applied, claim, _, place in demanded.claims:
-        most = highest(claim) if VERBS[claim.verb].limits and applied.requirement.is_enforceable else None
+        most = claim.highest if VERBS[claim.verb].limits and applied.requirement.is_enforceable else None
         if most is None or most[0] >= 0.001:
             continue
         yield found_at(
@@ -38,7 +38,7 @@ def limit_too_small(demanded: Demanded) -> Iterator[Found]:
 def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
     """A limit on a node that completes within one tick: the time is not checked while it runs."""
     for applied, claim, node, place in demanded.claims:
-        if not VERBS[claim.verb].limits or not applied.requirement.is_enforceable or highest(claim) is None:
+        if not VERBS[claim.verb].limits or not applied.requirement.is_enforceable or claim.highest is None:
             continue
         if demanded.budgets.composed(node).waits:
             continue
@@ -58,7 +58,7 @@ def dead_bound(demanded: Demanded) -> Iterator[Found]:
     """A bound beyond what a Timeout around the node allows: it is never reached.  A Timeout that never succeeds is
     reported instead."""
     for _, claim, node, place in demanded.claims:
-        most = highest(claim) if VERBS[claim.verb].limits else None
+        most = claim.highest if VERBS[claim.verb].limits else None
         timeout = _tightest_timeout(node) if most is not None else None
         if most is None or timeout is None or most[0] <= timeout[1]:
             continue
@@ -78,7 +78,7 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
         if claim.limit is not None and Table in (type(claim.limit.value), type(claim.limit.upper)):
             continue  # each of its values is for another situation
         is_counted = VERBS[claim.verb].operand == "count"
-        for limit in [((claim.per,), lowest(claim), highest(claim))] if is_counted else _limits(claim):
+        for limit in [((claim.per,), claim.lowest, claim.highest)] if is_counted else _limits(claim):
             kinds.setdefault((id(node), applied.requirement.name, claim.verb, limit[0]), []).append(
                 (claim, limit, place)
             )
@@ -112,7 +112,7 @@ def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
         return
     dimension = goal.unit.dimension
     for claim in requirement.claims:
-        most, least = highest(claim), lowest(claim)
+        most, least = claim.highest, claim.lowest
         if _dimension(claim) != dimension:
             continue
         if most is not None and goal.si > most[0]:
@@ -129,7 +129,7 @@ def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
 def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
     """`tries at most` and the number of attempts of Retry and Repeat do not match."""
     for _, claim, node, place in demanded.claims:
-        most = highest(claim) if VERBS[claim.verb].operand == "count" else None
+        most = claim.highest if VERBS[claim.verb].operand == "count" else None
         if most is None or most[0] == inf or not isinstance(claim.per, Target):
             continue
         loops = _loops(node, claim.per.node)
@@ -178,9 +178,9 @@ def _limits(claim: Claim) -> Iterator[_Limit]:
     """What a claim bounds, with its lower and its upper limit."""
     if VERBS[claim.verb].limits:
         # Every value of a table would have to contradict: the most lenient one is compared with the other bound.
-        yield ("duration",), lowest(claim), highest(claim)
+        yield ("duration",), claim.lowest, claim.highest
     elif claim.signal is not None:
-        yield (claim.verb, claim.signal.name), lowest(claim), highest(claim)
+        yield (claim.verb, claim.signal.name), claim.lowest, claim.highest
     elif claim.verb != "never" and isinstance(claim.condition, Compare):  # the condition is what must not hold
         yield from _compared(claim.verb, claim.condition)
 
@@ -238,5 +238,5 @@ def _dimension(claim: Claim) -> Dimension | None:
 
 
 def _typed(claim: Claim) -> str:
-    most = highest(claim)
+    most = claim.highest
     return f"`{most[1]}`" if most is not None and most[0] < inf else "its limit"

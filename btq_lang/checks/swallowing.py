@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found, found_at, highest
+from btq_lang.checks.demanded import Demanded, Found, found_at
 from btq_lang.diagnostics.model import Related
 from btq_lang.requirements.budget_parts import port_count
 from btq_lang.requirements.nodes import callers, mission
@@ -25,7 +25,7 @@ def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
         requirement = applied.requirement
         if requirement.action != "fail" or not requirement.is_enforceable or not VERBS[claim.verb].enforced:
             continue
-        if claim.limit is not None and highest(claim) is None:
+        if claim.limit is not None and claim.highest is None:
             continue  # too short a time is only noticed afterwards
         swallower = _in_tree(node) or (demanded.view.ask(_above, node.tree) if node.tree is not None else None)
         if swallower is None:

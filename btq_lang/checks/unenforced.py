@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import lookups
-from btq_lang.checks.demanded import Demanded, Found, highest, judge_of, reported_at
+from btq_lang.checks.demanded import Demanded, Found, judge_of, reported_at
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
@@ -75,7 +75,7 @@ def _is_reported_otherwise(
         return claim.signal.behaviour == "gauge"
     if not applied.requirement.is_enforceable or place == node.place:
         return False
-    most = highest(claim) if VERBS[claim.verb].limits else None
+    most = claim.highest if VERBS[claim.verb].limits else None
     return most is not None and (most[0] < 0.001 or not demanded.budgets.composed(node).waits)
 
 

@@ -17,7 +17,7 @@ from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.budget_parts import Budget, mapped, opened, port_count, port_seconds, unknown
 from btq_lang.requirements.composition import compose
 from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
-from btq_lang.requirements.model import Applied, Bounded, Claim, Limit, Table, Target, Value
+from btq_lang.requirements.model import Applied, Claim, Target
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store, on_circle
@@ -266,8 +266,7 @@ class TreeBudgets:
         for applied, claim in self._claims.get(id(node), ()):
             if VERBS[claim.verb].limits == "success":
                 odds = applied.requirement.odds
-                high = _range(claim.limit).high if claim.limit is not None else inf
-                found.append(Success(high, odds.probability if odds is not None else 1.0))
+                found.append(Success(_range(claim).high, odds.probability if odds is not None else 1.0))
         if found:
             return max(found, key=lambda each: (each.probability, -each.seconds))
         return self.composed_success(node)
@@ -348,12 +347,9 @@ def _with_claims(composed: Budget, claims: list[tuple[Applied, Claim]]) -> Budge
 def _with_attributes(node: ResolvedNode, budget: Budget) -> Budget:
     """What a node's pre-conditions add: it may end at once, and with `_while` at any time."""
     keys = {pair.key.text for pair in node.node.attributes}
-    if "_failureIf" in keys:
-        budget = replace(budget, failure=hull(budget.failure, ZERO))
-    if "_successIf" in keys:
-        budget = replace(budget, success=hull(budget.success, ZERO))
-    if "_skipIf" in keys:
-        budget = replace(budget, skip=hull(budget.skip, ZERO))
+    for key, outcome in (("_failureIf", "failure"), ("_successIf", "success"), ("_skipIf", "skip")):
+        if key in keys:
+            budget = replace(budget, **{outcome: hull(getattr(budget, outcome), ZERO)})
     if "_while" in keys:
         budget = replace(budget, skip=hull(budget.skip, budget.running if budget.waits else ZERO))
     return budget
@@ -370,7 +366,7 @@ def _narrowed(budget: Budget, claim: Claim) -> Budget:
     limits = VERBS[claim.verb].limits
     if claim.limit is None or not limits:
         return budget
-    allowed = _range(claim.limit)
+    allowed = _range(claim)
     if limits == "success":
         return replace(budget, success=_within(budget.success, allowed))
     skip = budget.skip
@@ -388,22 +384,11 @@ def _within(each: Range | None, allowed: Range) -> Range | None:
     return Range(low, high, each.terms if high == each.high else ()) if low <= high else allowed
 
 
-def _range(limit: Limit) -> Range:
-    """The durations that a bound allows in any situation."""
-    if limit.relation in ("<=", "<"):
-        return Range(0.0, _extreme(limit.value, highest=True))
-    if limit.relation in (">=", ">"):
-        return Range(max(_extreme(limit.value, highest=False), 0.0), inf)
-    upper = limit.upper if limit.upper is not None else limit.value
-    low, high = _extreme(limit.value, highest=False), _extreme(upper, highest=True)
-    return Range(max(low, 0.0), high) if low <= high else ANY
-
-
-def _extreme(bounded: Bounded, *, highest: bool) -> float:
-    """The highest or lowest value of a bound; that of a signal is unknown."""
-    values = [case.value for case in bounded.cases] if isinstance(bounded, Table) else [bounded]
-    numbers = [value.si if isinstance(value, Value) else inf if highest else 0.0 for value in values]
-    return max(0.0, max(numbers)) if highest else min(numbers)
+def _range(claim: Claim) -> Range:
+    """The durations that a claim's bound allows in any situation."""
+    least = max(claim.lowest[0], 0.0) if claim.lowest is not None else 0.0
+    most = max(claim.highest[0], 0.0) if claim.highest is not None else inf
+    return Range(least, most) if least <= most else ANY
 
 
 _MOST_GAPS: Final = 5

@@ -7,6 +7,7 @@ something was written is not known here: places lead back to that.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from operator import itemgetter
 from typing import Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import Dimension, Unit
@@ -309,6 +310,28 @@ class Claim(Record):
     per: Target | Value | None = None
     event: Event | None = None
     every: bool = False
+
+    @property
+    def highest(self) -> tuple[float, str] | None:
+        """The most that its bound allows in any situation, in SI and as typed; None if it has no upper limit, or
+        perhaps none."""
+        if self.limit is None or self.limit.relation in (">=", ">"):
+            return None
+        return max(_values(self.limit.upper or self.limit.value), key=itemgetter(0), default=None)
+
+    @property
+    def lowest(self) -> tuple[float, str] | None:
+        """The least that its bound demands in any situation, as `highest`."""
+        if self.limit is None or self.limit.relation in ("<=", "<"):
+            return None
+        return min(_values(self.limit.value), key=itemgetter(0), default=None)
+
+
+def _values(bounded: Bounded) -> list[tuple[float, str]]:
+    """The values of a bound, in SI and as typed; empty if one of them is a signal's."""
+    simple = [case.value for case in bounded.cases] if isinstance(bounded, Table) else [bounded]
+    found = [(value.si, value.text) for value in simple if isinstance(value, Value)]
+    return found if len(found) == len(simple) else []
 
 
 class Scope(Record):
