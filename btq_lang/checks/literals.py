@@ -4,7 +4,7 @@ SubTree passes to text ports."""
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from math import isfinite
 
 from btq_lang.catalog.kinds import RESULT
@@ -19,7 +19,7 @@ from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import BRACED, QUANTITY
-from btq_lang.syntax.tree import Pair, Port, Tree, Word, models_in, port_named, quote, written
+from btq_lang.syntax.tree import Pair, Port, Tree, Word, port_named, quote, written
 from btq_lang.util.record import Record
 from btq_lang.workspace.port_types import is_number
 from btq_lang.workspace.resolved import ResolvedNode
@@ -163,7 +163,7 @@ def _quantity(target: _Target, value: Word, version: str) -> Iterator[Diagnostic
 
 def _values(view: View) -> Iterator[tuple[_Target, Word]]:
     """Each literal that is assigned to a port with a type or a unit, with that target."""
-    for port in _declared_ports(view):
+    for port in [port for owner in view.owners for port in owner.ports]:
         value = port.default
         if value is not None and value.kind != BRACED and value.text and (target := _declared(port, False)) is not None:
             yield target, value
@@ -176,13 +176,6 @@ def _values(view: View) -> Iterator[tuple[_Target, Word]]:
                 continue
             if (target := _target(view, seen, pair, value)) is not None:
                 yield target, value
-
-
-def _declared_ports(view: View) -> Sequence[Port]:
-    item = view.item
-    if isinstance(item, Tree):
-        return item.ports
-    return [port for model in models_in(item) for port in model.ports]
 
 
 def _target(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> _Target | None:
@@ -278,9 +271,6 @@ def _number_for_text(value: Word, met: tuple[Place, str, str], severity: Severit
 
 
 def _ports_of_trees(view: View) -> Iterator[tuple[Word, Port]]:
-    item = view.item
-    if isinstance(item, Tree) and item.name is not None:
-        yield from ((item.name, port) for port in item.ports)
-    for model in models_in(item):
-        if model.category.raw == "SubTree" and model.name is not None:
-            yield from ((model.name, port) for port in model.ports)
+    for owner in view.owners:
+        if owner.name is not None and (isinstance(owner, Tree) or owner.category.raw == "SubTree"):
+            yield from ((owner.name, port) for port in owner.ports)

@@ -158,10 +158,7 @@ def duplicate_attribute(view: View) -> Iterator[Diagnostic]:
 
 def duplicate_port(view: View) -> Iterator[Diagnostic]:
     """Two ports of one name in a model or a tree: the engine takes the last one, and tools the first."""
-    item = view.item
-    for owner in (item,) if isinstance(item, Tree) else models_in(item):
-        if len(owner.ports) < 2:
-            continue
+    for owner in view.owners:
         first: dict[str, Word] = {}
         for port in owner.ports:
             name = port.name
@@ -179,8 +176,7 @@ def duplicate_port(view: View) -> Iterator[Diagnostic]:
 
 def misspelt_type(view: View) -> Iterator[Diagnostic]:
     """`strng`: not a type of C++ and probably not one of the robot's program; its values then are not checked."""
-    item = view.item
-    for owner in (item,) if isinstance(item, Tree) else models_in(item):
+    for owner in view.owners:
         for port in owner.ports:
             name = port.type.text if port.type is not None else ""
             if not name.islower() or len(name) < 4 or is_known_type(plain_type(name)):

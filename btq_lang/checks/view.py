@@ -7,7 +7,7 @@ not belong here.
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 
@@ -21,7 +21,20 @@ from btq_lang.checks.lookups import Declaration
 from btq_lang.checks.sorted_nodes import NO_NODES, SortedNodes, sorted_nodes
 from btq_lang.diagnostics.model import Related
 from btq_lang.grammar.attributes import meant_clause
-from btq_lang.syntax.tree import Entry, Include, Item, Node, Port, Requirement, Tree, Word, is_name, port_named
+from btq_lang.syntax.tree import (
+    Entry,
+    Include,
+    Item,
+    Model,
+    Node,
+    Port,
+    Requirement,
+    Tree,
+    Word,
+    is_name,
+    models_in,
+    port_named,
+)
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
@@ -116,6 +129,11 @@ class View:
     def nodes(self) -> tuple[ResolvedNode, ...]:
         """The nodes of a tree, depth first, in document order; empty for any other item."""
         return self.seen.all
+
+    @property
+    def owners(self) -> Sequence[Tree | Model]:
+        """The tree, or the models, whose ports the item declares."""
+        return (self.item,) if isinstance(self.item, Tree) else models_in(self.item)
 
     def uses(self, kind: Kind) -> list[Use]:
         """What the item refers to, of one kind."""

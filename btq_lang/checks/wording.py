@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from functools import cache
 
 from btq_lang.catalog.units import Dimension, parse_unit
+from btq_lang.requirements.terms import TIME
 
 
 def as_clause(sentence: str, *, violates: bool, signals: Mapping[str, Dimension]) -> str | None:
@@ -36,7 +37,7 @@ def as_clause(sentence: str, *, violates: bool, signals: Mapping[str, Dimension]
     if unit is None:
         return None
     quantity = f"{found['number']} {unit.symbol}"
-    if unit.dimension != _time():
+    if unit.dimension != TIME:
         return _measured(words, relation, quantity, [name for name, of in signals.items() if of == unit.dimension])
     if comparison == "within":
         return f"succeeds within {quantity}" if relation == "<=" else None
@@ -66,13 +67,6 @@ def _bound_pattern() -> re.Pattern[str]:
         r"(?P<unit>%|[^\W\d_](?:[\w/^*]*\w)?)",
         re.IGNORECASE,
     )
-
-
-@cache
-def _time() -> Dimension:
-    unit = parse_unit("s")
-    assert unit is not None, "the second is in the unit table"
-    return unit.dimension
 
 
 _OPPOSITE = {"<=": ">", "<": ">=", ">=": "<", ">": "<="}
