@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import fsum, inf
+from typing import Final
 
 from btq_lang.catalog.kinds import Role
 from btq_lang.catalog.units import to_si
@@ -23,8 +24,6 @@ class Budget(Record):
         skip: until it is skipped.
         waits: whether it may return RUNNING, so that it can be interrupted.
         probability: at least this, that all holds on which the ranges depend (by the union bound).
-        reason: why the node itself has no upper bound, in words to follow its name; empty if its children are the
-            reason.
         endless: whether it may run for ever, without an outcome.
     """
 
@@ -33,7 +32,6 @@ class Budget(Record):
     skip: Range | None = None
     waits: bool = True
     probability: float = 1.0
-    reason: str = ""
     endless: bool = False
 
     @property
@@ -60,11 +58,11 @@ class Budget(Record):
 
 
 def mapped(budget: Budget, change: Callable[[Range | None], Range | None]) -> Budget:
-    """The budget with changed ranges, and without its reason; an absent skip stays absent."""
+    """The budget with changed ranges; an absent skip stays absent."""
     success = change(budget.success)
     failure = success if budget.failure is budget.success else change(budget.failure)
     skip = change(budget.skip) if budget.skip is not None else None
-    return Budget(success, failure, skip, budget.waits, budget.probability, "", budget.endless)
+    return Budget(success, failure, skip, budget.waits, budget.probability, budget.endless)
 
 
 def opened(budget: Budget) -> Budget:
@@ -77,14 +75,12 @@ def inverted(budget: Budget) -> Budget:
     return replace(budget, success=budget.failure, failure=budget.success)
 
 
-def unknown(reason: str) -> Budget:
-    """The budget of a node that may do anything and take any time."""
-    return Budget(ANY, ANY, ANY, reason=reason, endless=True)
+UNKNOWN: Final = Budget(ANY, ANY, ANY, endless=True)  # of a node that may do anything and take any time
 
 
-def without_limit(reason: str, *children: Budget) -> Budget:
+def without_limit(children: Sequence[Budget]) -> Budget:
     """The budget of a node that may tick its children again without limit."""
-    return replace(unknown(reason), probability=likelihood([child.probability for child in children], None))
+    return replace(UNKNOWN, probability=likelihood([child.probability for child in children], None))
 
 
 def port_seconds(node: ResolvedNode) -> float | None:
@@ -97,6 +93,12 @@ def port_seconds(node: ResolvedNode) -> float | None:
         found = to_si(quantity[0], quantity[1])
         return max(round(found * 1000), 0) / 1000 if found < inf else None
     return int(word.text) / 1000 if word.text.isdecimal() and len(word.text) < 12 else None
+
+
+def port_range(node: ResolvedNode) -> Range:
+    """How long it waits by its time; any time, if that is not a literal number."""
+    seconds = port_seconds(node)
+    return ANY if seconds is None else Range(seconds, seconds)
 
 
 def port_count(node: ResolvedNode, role: Role) -> int | None:

@@ -14,7 +14,7 @@ from typing import Final
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements import nodes
 from btq_lang.requirements.attach import applied_in
-from btq_lang.requirements.budget_parts import Budget, mapped, opened, port_count, port_seconds, unknown
+from btq_lang.requirements.budget_parts import UNKNOWN, Budget, mapped, opened, port_count, port_seconds
 from btq_lang.requirements.composition import compose
 from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
 from btq_lang.requirements.model import Applied, Claim, Target
@@ -24,7 +24,7 @@ from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree, tree_named, tree_nodes, trees_called
 from btq_lang.workspace.workspace import Workspace
 
-__all__ = ["Budget", "Budgets", "Gap", "Range", "Success", "Term"]
+__all__ = ["Budget", "Budgets", "Range", "Success", "Term"]
 
 
 class Success(Record):
@@ -37,13 +37,6 @@ class Success(Record):
     seconds: float
     probability: float
     parts: tuple[tuple[ResolvedNode, float], ...] = ()
-
-
-class Gap(Record):
-    """Why no bound is known: the node, and the reason, which reads well after its name."""
-
-    node: ResolvedNode
-    reason: str
 
 
 class Outcome(Record):
@@ -74,7 +67,7 @@ def outcome(store: Store[Workspace], viewpoint: str, name: str) -> Outcome:
     if tree is None or tree.root is None:
         return _UNKNOWN_TREE
     if store.ask(_contains_itself, viewpoint, name):
-        return Outcome(unknown("is a tree that contains itself"))
+        return Outcome(UNKNOWN)
     budgets = store.ask(tree_budgets, viewpoint, tree.path, tree.facts)
     success = budgets.success(tree.root)
     seen = Success(success.seconds, success.probability) if success is not None else None
@@ -120,26 +113,6 @@ class Budgets:
     def success_of_known(self, node: ResolvedNode) -> Success | None:
         """The same, if unknown nodes always succeed, at once: an upper bound."""
         return self.success(node) or self._in_tree(node).success_of_known(node)
-
-    def gaps(self, node: ResolvedNode) -> tuple[Gap, ...]:
-        """Why a node has no bound, if all below it meet their requirements; the first reasons, if there are many."""
-        found: dict[Gap, None] = {}
-        seen: set[int] = set()  # a tree may be run from many places
-        waiting = [node]
-        while waiting and len(found) < _MOST_GAPS:
-            at = waiting.pop()
-            if id(at) in seen:
-                continue
-            seen.add(id(at))
-            composed = self.composed(at)
-            if composed.is_bounded:
-                continue
-            if composed.reason:
-                found[Gap(at, composed.reason)] = None
-            root, _ = self._run_by(at)
-            below = at.children if root is None else [root]
-            waiting += [child for child in reversed(below) if not self.of(child).is_bounded]
-        return tuple(found)
 
     def _in_tree(self, node: ResolvedNode) -> TreeBudgets:
         return self._store.ask(tree_budgets, self._viewpoint, node.path, node.facts)
@@ -194,7 +167,7 @@ class TreeBudgets:
         if node.category == "SubTree" or node.behavior is None or not node.children or _is_sure(composed):
             return composed if _is_sure(composed) else _shortest(composed)
         parts = {id(child.node): _as_part(child, self._known(child)) for child in node.children}
-        found = compose(node, [parts.get(id(child), _shortest(_XML)) for child in node.node.children])
+        found = compose(node, [parts.get(id(child), _shortest(UNKNOWN)) for child in node.node.children])
         return found if found.is_bounded else _shortest(composed)
 
     def success_of_known(self, node: ResolvedNode) -> Success | None:
@@ -247,11 +220,11 @@ class TreeBudgets:
         if node.behavior is None and not node.node.children:
             return _CONDITION if node.category == "Condition" else _NO_CLAUSE
         if node.behavior is None:
-            return unknown("is a custom control or decorator node")
+            return UNKNOWN
         if not node.node.children:
             return compose(node, ())
         parts = {id(child.node): _as_part(child, self._held[id(child)]) for child in node.children}
-        return compose(node, [parts.get(id(child), _XML) for child in node.node.children])
+        return compose(node, [parts.get(id(child), UNKNOWN) for child in node.node.children])
 
     def _known(self, node: ResolvedNode) -> Budget:
         held = self.of(node)
@@ -331,7 +304,7 @@ def _without_terms(budget: Budget) -> Budget:
 def _with_claims(composed: Budget, claims: list[tuple[Applied, Claim]]) -> Budget:
     """What is demanded of a node; of bounds with odds the likeliest, and only if there is no certain bound."""
     sure = [claim for applied, claim in claims if applied.requirement.odds is None]
-    without_odds = replace(opened(composed), probability=1.0, reason=composed.reason)
+    without_odds = replace(opened(composed), probability=1.0)
     held = _all_narrowed(composed if composed.probability == 1.0 else without_odds, sure)
     if held.is_bounded:
         return held
@@ -391,10 +364,8 @@ def _range(claim: Claim) -> Range:
     return Range(least, most) if least <= most else ANY
 
 
-_MOST_GAPS: Final = 5
 _CONDITION: Final = Budget(ZERO, ZERO, None, False)
-_NO_CLAUSE: Final = Budget(ANY, ANY, None, reason="has no `takes` clause")
+_NO_CLAUSE: Final = Budget(ANY, ANY)
 _SURE: Final = Success(0.0, 1.0)
-_XML: Final = unknown("has a child in XML")
 _CHANGING: Final = frozenset(("_failureIf", "_successIf", "_skipIf", "_while"))
-_UNKNOWN_TREE: Final = Outcome(unknown("is an unknown tree"))
+_UNKNOWN_TREE: Final = Outcome(UNKNOWN)

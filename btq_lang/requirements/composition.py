@@ -12,8 +12,8 @@ from typing import Final
 
 from btq_lang.catalog.kinds import Flow
 from btq_lang.requirements import control_budgets, decorator_budgets, nav2_budgets
-from btq_lang.requirements.budget_parts import Budget, inverted, port_seconds, unknown
-from btq_lang.requirements.durations import ANY, ZERO, Range, from_zero, hull
+from btq_lang.requirements.budget_parts import UNKNOWN, Budget, inverted, port_range
+from btq_lang.requirements.durations import ANY, ZERO, from_zero, hull
 from btq_lang.util.record import replace
 from btq_lang.workspace.resolved import ResolvedNode
 
@@ -28,26 +28,17 @@ def compose(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     if node.flow in _LEAVES:
         return _LEAVES[node.flow]
     if node.flow == "sleeps":
-        return _sleep(node)
+        return Budget(port_range(node), None)
     found: Budget | None = None
     if node.flow in _DECORATORS and len(children) == 1:
         found = _DECORATORS[node.flow](node, children[0])
     elif node.flow in _CONTROLS and children and node.category != "Decorator":
         found = _CONTROLS[node.flow](node, children)
-    else:
-        return unknown("is a node of unknown duration")
     if found is None:
-        return unknown("has the wrong number of children")
+        return UNKNOWN
     if found.waits or node.behavior is None or node.behavior.execution != "asynchronous":
         return found
     return replace(found, waits=True)
-
-
-def _sleep(node: ResolvedNode) -> Budget:
-    seconds = port_seconds(node)
-    if seconds is None:
-        return Budget(ANY, None, reason="reads from the blackboard how long it waits")
-    return Budget(Range(seconds, seconds), None)
 
 
 _LEAVES: Final[Mapping[Flow, Budget]] = {
@@ -55,7 +46,7 @@ _LEAVES: Final[Mapping[Flow, Budget]] = {
     "fails": Budget(None, ZERO, None, False),
     "answers": Budget(ZERO, ZERO, None, False),
     "notices": Budget(ZERO, ZERO, None, False),
-    "waits": Budget(ANY, ANY, reason="has no `takes` clause"),
+    "waits": Budget(ANY, ANY),
 }
 _CONTROLS: Final[Mapping[Flow, Callable[[ResolvedNode, Sequence[Budget]], Budget | None]]] = {
     "sequence": control_budgets.sequence,

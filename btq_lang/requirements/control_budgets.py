@@ -36,12 +36,11 @@ def _with_memory(children: Sequence[Budget]) -> Budget:
 
 
 def _reactive(children: Sequence[Budget], found: Budget, ends: str) -> Budget:
-    """A child before the running one is ticked at every tick, and may end the whole."""
+    """A child before the running one is ticked at every tick, and may end the whole; each of several that take time may
+    be restarted without limit."""
     waiting = [index for index, child in enumerate(children) if child.waits]
     if len(waiting) > 1:
-        reason = "has several children that take time, and may restart each of them without limit"
-        likely = likelihood([found.probability], None)
-        return replace(opened(found), probability=likely, reason=reason, endless=True)
+        return replace(opened(found), probability=likelihood([found.probability], None), endless=True)
     before = children[: waiting[0]] if waiting else ()
     if any(getattr(child, ends) is not None for child in before):
         running = children[waiting[0]].running
@@ -88,7 +87,7 @@ def _with_skips(node: ResolvedNode, children: Sequence[Budget], asks_again: bool
     if not skips:
         return None
     if asks_again or any(child.endless for child in children) or sum(skip.high > 0.0 for skip in skips) > 1:
-        return without_limit("ticks a skipped child without limit", *children)
+        return without_limit(children)
     longest = total(child.running for child in children)
     return made(children, longest, longest, longest)
 
@@ -147,8 +146,7 @@ def _rechecking(children: Sequence[Budget], found: Budget) -> Budget:
     condition, *branches = children
     changes = condition.success is not None and condition.failure is not None
     if condition.waits or (changes and len(branches) == 2 and all(branch.waits for branch in branches)):
-        reason = "checks its condition at every tick, so it may restart its branches without limit"
-        return without_limit(reason, *children)
+        return without_limit(children)
     if not changes:
         return found
     running = total(branch.running if branch.waits else ZERO for branch in branches)

@@ -14,37 +14,37 @@ from btq_lang.requirements.budget_parts import (
     mapped,
     port_count,
     port_of,
+    port_range,
     port_seconds,
     without_limit,
 )
-from btq_lang.requirements.durations import ANY, ZERO, Range, cut, hull, plus, times, without_end
+from btq_lang.requirements.durations import ZERO, Range, cut, hull, plus, times, without_end
 from btq_lang.util.record import replace
 from btq_lang.workspace.resolved import ResolvedNode
 
 
 def repeat(node: ResolvedNode, child: Budget) -> Budget:
     count = port_count(node, "count")
-    go, end, skip, reason = _again(child.success, child.failure, child.skip, count)
+    go, end, skip = _again(child.success, child.failure, child.skip, count)
     has_no_end = child.endless or (child.success is not None and count in (-1, None))
-    return Budget(go, end, skip, True, likelihood([child.probability], count), reason, has_no_end)
+    return Budget(go, end, skip, True, likelihood([child.probability], count), has_no_end)
 
 
 def _again(
     go: Range | None, end: Range | None, skip: Range | None, count: int | None
-) -> tuple[Range | None, Range | None, Range | None, str]:
+) -> tuple[Range | None, Range | None, Range | None]:
     """Repeats while the child goes on, `count` times at most: the ranges of having gone on so often, of ending before,
     and of being skipped; a skip keeps the count, so that the next activation has fewer repetitions left."""
     if count == 0 or (count is not None and count < -1):
-        return ZERO, None, ZERO, ""
-    if count is None or count == -1:
-        reason = "has no limit" if count == -1 else "reads from the blackboard how often it runs its child"
-        if count == -1:
-            return None, end_after(go, end, inf), end_after(go, skip, inf), reason
-        return without_end(hull(go, ZERO)), end_after(go, end, inf), hull(end_after(go, skip, inf), ZERO), reason
+        return ZERO, None, ZERO
+    if count == -1:
+        return None, end_after(go, end, inf), end_after(go, skip, inf)
+    if count is None:
+        return without_end(hull(go, ZERO)), end_after(go, end, inf), hull(end_after(go, skip, inf), ZERO)
     all_of_it = times(count, go)
     if skip is not None and all_of_it is not None and go is not None:
         all_of_it = replace(all_of_it, low=go.low)
-    return all_of_it, end_after(go, end, count - 1), end_after(go, skip, count - 1), ""
+    return all_of_it, end_after(go, end, count - 1), end_after(go, skip, count - 1)
 
 
 def timeout(node: ResolvedNode, child: Budget) -> Budget:
@@ -62,18 +62,15 @@ def timeout(node: ResolvedNode, child: Budget) -> Budget:
 
 
 def delay(node: ResolvedNode, child: Budget) -> Budget:
-    seconds = port_seconds(node)
-    wait = ANY if seconds is None else Range(seconds, seconds)
-    reason = "" if seconds is not None else "reads from the blackboard how long it waits"
-    return replace(mapped(child, lambda each: plus(wait, each)), waits=True, reason=reason)
+    wait = port_range(node)
+    return replace(mapped(child, lambda each: plus(wait, each)), waits=True)
 
 
 def until_failure(node: ResolvedNode, child: Budget) -> Budget:
     again = child.success is not None or child.skip is not None
     failure = without_end(child.failure) if again else child.failure
     likely = child.probability if child.probability == 1.0 or not again else 0.0
-    reason = "repeats its child until it fails" if again else ""
-    return Budget(None, failure, None, True, likely, reason, child.endless or again)
+    return Budget(None, failure, None, True, likely, child.endless or again)
 
 
 def once(node: ResolvedNode, child: Budget) -> Budget:
@@ -100,8 +97,8 @@ def precondition(node: ResolvedNode, child: Budget) -> Budget:
 def for_each(node: ResolvedNode, child: Budget) -> Budget:
     if child.running.high == 0.0:
         return Budget(ZERO, ZERO, ZERO, True, child.probability)
-    return without_limit("runs its child for each item of a queue of unknown length", child)
+    return without_limit([child])  # the queue's length is unknown
 
 
 def wait_until_updated(node: ResolvedNode, child: Budget) -> Budget:
-    return replace(mapped(child, without_end), waits=True, reason="waits until an entry is written", endless=True)
+    return replace(mapped(child, without_end), waits=True, endless=True)

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from math import inf
 
 from btq_lang.requirements.budget_parts import (
+    UNKNOWN,
     Budget,
     end_after,
     in_order,
@@ -16,7 +17,6 @@ from btq_lang.requirements.budget_parts import (
     made,
     port_count,
     port_of,
-    unknown,
     without_limit,
 )
 from btq_lang.requirements.durations import ZERO, from_zero, hull, plus, times, total
@@ -39,8 +39,7 @@ def pipeline(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
 def together(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     """A child that has ended starts again as long as another one runs."""
     if sum(child.waits for child in children) > 1:
-        reason = "restarts children that have ended until all succeed in one tick"
-        return replace(without_limit(reason, *children), skip=None)
+        return replace(without_limit(children), skip=None)
     success = total(child.success for child in children)
     fails = any(child.failure is not None for child in children)
     return made(children, success, total(child.running for child in children) if fails else None, None)
@@ -51,7 +50,7 @@ def resume(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     every tick."""
     word, _ = port_of(node, "index")
     if word is not None and word.kind != BRACED:
-        return unknown("begins with the same child at every tick")
+        return UNKNOWN
     go, end, _ = in_order([(each.success, each.failure, each.skip) for each in children])
     return made(children, hull(from_zero(go), ZERO), from_zero(end), None)
 
@@ -78,16 +77,15 @@ def recover(node: ResolvedNode, children: Sequence[Budget]) -> Budget | None:
         hull(last, end_after(cycle, gives_up, most - 1) if most > 0 else None),
         end_after(cycle, first.skip, most),
     )
-    reason = "" if count is not None or cycle is None else "has no known limit of its retries"
     likely = likelihood([child.probability for child in children], None if count is None else count + 1)
-    return replace(found, probability=likely, reason=reason, endless=found.endless or bool(reason))
+    return replace(found, probability=likely, endless=found.endless or (count is None and cycle is not None))
 
 
 def rotate(node: ResolvedNode, children: Sequence[Budget]) -> Budget:
     """It may begin with any child; one that was skipped it ticks again, if its first follows its last."""
     goes_round = node.behavior is not None and wraps(node.behavior, node.node) is not False
     if goes_round and any(child.skip is not None and child.skip.high > 0.0 for child in children):
-        return replace(unknown("ticks a skipped child without limit"), waits=any(child.waits for child in children))
+        return replace(UNKNOWN, waits=any(child.waits for child in children))
     longest = total(child.running for child in children)
     succeeds = [child.success for child in children if child.success is not None]
     return made(

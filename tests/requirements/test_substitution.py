@@ -100,7 +100,7 @@ def compared(workspace: Workspace) -> object:
 def budgeted(workspace: Workspace) -> object:
     found = requirements(workspace, MAIN)
     budgets = Budgets(found.store, found.viewpoint)
-    first = budgets.gaps(found.nodes.all[0])
+    first = budgets.of(found.nodes.all[0])
     return first, [(budgets.composed_of_known(each), budgets.success_of_known(each)) for each in found.nodes.all]
 
 

@@ -247,7 +247,6 @@ def said(workspace: Workspace, found: Requirements) -> Iterator[object]:
     budgets = Budgets(found.store, found.viewpoint)
     for node in found.nodes.all:
         yield shown(budgets.of(node), named), shown(budgets.composed(node), named), likely(budgets.success(node), named)
-        yield [(named(gap.node), gap.reason) for gap in budgets.gaps(node)]
 
 
 def shown(budget: Budget, named: Callable[[ResolvedNode], object]) -> object:
@@ -255,7 +254,7 @@ def shown(budget: Budget, named: Callable[[ResolvedNode], object]) -> object:
         return each and (each.low, each.high, [(named(term.node), term.times, term.seconds) for term in each.terms])
 
     ranges = [one(each) for each in (budget.success, budget.failure, budget.skip)]
-    return ranges, budget.waits, budget.probability, budget.reason, budget.endless
+    return ranges, budget.waits, budget.probability, budget.endless
 
 
 def likely(found: Success | None, named: Callable[[ResolvedNode], object]) -> object:
@@ -337,8 +336,6 @@ def test_a_tree_that_contains_itself_has_no_budget_whoever_is_asked_first() -> N
         tops = {tree.name: tree.root for tree in found.nodes.trees if tree.root is not None}
         budgets.of(tops[first])
         assert [name for name, root in tops.items() if budgets.of(root).is_bounded] == ["D"]
-        gaps = budgets.gaps(tops["C"])
-        assert [(gap.node.shown, gap.reason) for gap in gaps] == [("`A`", "is a tree that contains itself")]
 
 
 @pytest.mark.parametrize("is_circle", [False, True])
