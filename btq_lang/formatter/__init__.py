@@ -126,8 +126,8 @@ def _stretches(parsed: Parsed, options: FormatOptions) -> list[_Stretch]:
     marks = Marks(parsed)
     parts = tuple(sections(logical_lines(parsed.text, parsed.tokens, marks.atoms), marks, options))
     items = {entry.start + entry.item.start for entry in parsed.entries}
-    _part_items([line for section in parts for line in section.lines], items)
-    written = [[part for line in section.lines for part in _written(line, marks, options)] for section in parts]
+    _part_items([line for _, lines in parts for line in lines], items)
+    written = [[part for line in lines for part in _written(line, marks, options)] for _, lines in parts]
     above = -1  # the level of the part above
     for part in chain.from_iterable(written):
         if part.blank and part.level <= above:
@@ -137,12 +137,12 @@ def _stretches(parsed: Parsed, options: FormatOptions) -> list[_Stretch]:
     line_end = _line_end(parsed.text)
     return [
         _Stretch(
-            *section.span,
-            section.lines[0].level,
+            *span,
+            lines[0].level,
             any(part.is_moved for part in inside),
             "".join(f"{row.text}\n" for part in inside for row in part.rows).replace("\n", line_end),
         )
-        for section, inside in zip(parts, written, strict=True)
+        for (span, lines), inside in zip(parts, written, strict=True)
     ]
 
 

@@ -7,20 +7,15 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
+from typing import TypeAlias
 
 from btq_lang.formatter.layout import FormatOptions, fits
 from btq_lang.formatter.lines import Line
 from btq_lang.formatter.marks import Clauses, Marks
 from btq_lang.syntax.tokens import NAME
-from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
-
-class Section(Record):
-    """Lines written together, and the span of the file that they come from."""
-
-    span: Span
-    lines: tuple[Line, ...]
+Section: TypeAlias = tuple[Span, tuple[Line, ...]]  # lines written together, and the span of the file they come from
 
 
 def sections(lines: Sequence[Line], marks: Marks, options: FormatOptions) -> Iterator[Section]:
@@ -46,11 +41,11 @@ def sections(lines: Sequence[Line], marks: Marks, options: FormatOptions) -> Ite
         start, middle, end = head.start, head.end, block[-1].end if block else head.end
         if clauses is not None and _is_too_long(head, clauses, marks, options):
             head, trailing = _parted(head, clauses)
-            yield Section(Span(start, end), (head, *_arranged([trailing, *block], clauses)))
+            yield Span(start, end), (head, *_arranged([trailing, *block], clauses))
         else:
-            yield Section(Span(start, middle), (head,))
+            yield Span(start, middle), (head,)
             if clauses is not None and block:
-                yield Section(Span(middle, end), _arranged(block, clauses))
+                yield Span(middle, end), _arranged(block, clauses)
 
 
 def _is_too_long(head: Line, clauses: Clauses, marks: Marks, options: FormatOptions) -> bool:

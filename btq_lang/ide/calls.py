@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.ide.meaning import Found, Subject, at, definition, everywhere, home_of, subject
+from btq_lang.ide.meaning import Found, Subject, at, definition, entry_at, everywhere, home_of, subject
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
@@ -57,18 +57,17 @@ def callers(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
 
 def called(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
     """The trees that a tree runs, in the order of their first call."""
-    file = workspace.files.get(tree.path)
+    start = tree.name_span.start
+    entry = entry_at(workspace, tree.path, start) if tree.path in workspace.files else None
+    item = entry.item if entry is not None else None
+    if entry is None or not isinstance(item, Tree) or item.name is None or entry.start + item.name.start != start:
+        return ()
     found: dict[str, tuple[Definition, list[Span]]] = {}
-    for entry in file.parsed.entries if file is not None else ():
-        item = entry.item
-        if not isinstance(item, Tree) or item.name is None or entry.start + item.name.start != tree.name_span.start:
-            continue
-        for mention in workspace.files[tree.path].mentions_of(entry):
-            if mention.what is What.TREE and mention.node is not None:
-                place = workspace.scope(tree.path).find(Kind.TREE, mention.name)
-                if place is not None:
-                    known = found.setdefault(home_of(place), (place, []))
-                    known[1].append(mention.span.shifted(entry.start))
+    for mention in workspace.files[tree.path].mentions_of(entry):
+        is_run = mention.what is What.TREE and mention.node is not None
+        place = workspace.scope(tree.path).find(Kind.TREE, mention.name) if is_run else None
+        if place is not None:
+            found.setdefault(home_of(place), (place, []))[1].append(mention.span.shifted(entry.start))
     return tuple(Call(_item(place), tree.path, tuple(spans)) for place, spans in found.values())
 
 

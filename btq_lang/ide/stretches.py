@@ -31,7 +31,7 @@ from btq_lang.ide.meaning import match_of
 from btq_lang.lexer import pieces
 from btq_lang.syntax.tokens import COMMENT, OPERATOR, SYMBOL
 from btq_lang.syntax.tree import Node, Pair, Requirement, Word
-from btq_lang.util.text import LINE_END, Encoding, Span, width_of
+from btq_lang.util.text import LINE_END, Encoding, LineIndex, Span
 from btq_lang.workspace.inputs import definition
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
@@ -170,40 +170,19 @@ def encode(text: str, tokens: list[Token], encoding: Encoding) -> tuple[list[str
     Args:
         tokens: in the order of the text; one that crosses a line end becomes one on each line.
     """
-    is_plain = encoding == "code-points" or text.isascii()
-    has_returns = "\r" in text
+    lines = LineIndex(text)
     found: list[str] = []
     line = column = 0  # of the last token
-    at = begin = 0  # the line where the next one is looked for, and its start
-    end = _next_line(text, 0, has_returns)
     waiting = tokens[::-1]
     while waiting:
         start, stop, appearance = waiting.pop()
-        while end <= start:
-            begin, end, at = end, _next_line(text, end, has_returns), at + 1
-        if stop >= end:
+        at, place, last, end = lines.ends((start, stop), encoding)
+        if at < last:
             waiting += [(first, last, appearance) for first, last in reversed(_lines(text, start, stop))]
             continue
-        if is_plain:
-            place, length = start - begin, stop - start
-        else:
-            place, length = width_of(text[begin:start], encoding), width_of(text[start:stop], encoding)
-        if at == line:
-            found.append(f"0,{place - column},{length}{appearance}")
-        else:
-            found.append(f"{at - line},{place},{length}{appearance}")
+        found.append(f"{at - line},{place - column if at == line else place},{end - place}{appearance}")
         line, column = at, place
     return found, line
-
-
-def _next_line(text: str, at: int, has_returns: bool) -> int:
-    """Where the next line begins; for the last one, an offset after the text."""
-    if has_returns:
-        found = LINE_END.search(text, at)
-        end = found.end() if found else 0
-    else:
-        end = text.find("\n", at) + 1
-    return end or len(text) + 1
 
 
 def _lines(text: str, start: int, end: int) -> list[tuple[int, int]]:

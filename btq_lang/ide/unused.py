@@ -13,7 +13,6 @@ from collections.abc import Iterable, Sequence
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
 from btq_lang.checks.lookups import is_read
-from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.ide.refactor import names_of_nodes
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
@@ -147,11 +146,8 @@ def _changes_nothing(workspace: Workspace, path: str, removed: Sequence[Include]
     if len(requirements(workspace, path).applied) != len(requirements(after, path).applied):
         return False
     before = [each for each in check(workspace, path) if not any(span.contains(each.span) for span in spans)]
-    return Counter(map(_said, before)) == Counter(map(_said, check(after, path)))
-
-
-def _said(found: Diagnostic) -> tuple[str, str]:
-    return found.rule, found.message
+    said = (Counter((each.rule, each.message) for each in found) for found in (before, check(after, path)))
+    return next(said) == next(said)
 
 
 def _without(file: File, spans: Iterable[Span]) -> tuple[Edit, ...]:

@@ -6,7 +6,7 @@ One invariant: reporting raises nothing.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from types import FrameType
+from traceback import walk_tb
 
 WHERE = "report it in btq's issue tracker"
 
@@ -28,7 +28,7 @@ def internal_error(error: BaseException, otherwise: str = "") -> str:
 
 def place(error: BaseException) -> object:
     """Where an exception was raised: equal for the same bug, however often it occurs."""
-    frames = [*_frames(error)][:_FRAMES]
+    frames = [*walk_tb(error.__traceback__)][:_FRAMES]
     return type(error), tuple((frame.f_code, line) for frame, line in frames)
 
 
@@ -36,17 +36,10 @@ def _files(error: BaseException) -> Iterator[str]:
     """The files in use in the traceback, innermost first."""
     from btq_lang.workspace.file import SUFFIXES  # as above
 
-    for frame, _ in reversed([*_frames(error)]):
+    for frame, _ in reversed([*walk_tb(error.__traceback__)]):
         path = frame.f_locals.get("path")
         if isinstance(path, str) and path.endswith((*SUFFIXES, ".xml")):
             yield path
-
-
-def _frames(error: BaseException) -> Iterator[tuple[FrameType, int]]:
-    at = error.__traceback__
-    while at is not None:
-        yield at.tb_frame, at.tb_lineno
-        at = at.tb_next
 
 
 _FRAMES = 40  # the innermost frames of an infinite recursion differ each time
