@@ -31,21 +31,21 @@ _ALL = types.FileOperationFilter(types.FileOperationPattern("**/*"), scheme="fil
 
 
 def register(server: Server) -> None:
-    session, convert = server.session, server.convert
+    convert = server.convert
 
     @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(code_action_kinds=KINDS), [])
     def actions(params: types.CodeActionParams) -> list[Plain]:
         workspace, path = server.at(params.text_document, reads=True)
         only = [str(getattr(kind, "value", kind)) for kind in params.context.only or ()]
         found = features.actions.code_actions(
-            workspace, path, convert.span(workspace, path, params.range), only, session.diagnostics(path)
+            workspace, path, convert.span(workspace, path, params.range), only, server.session.diagnostics(path)
         )
         return [convert.action(workspace, path, action, server.versions_for_edits()) for action in found]
 
     @server.feature(types.WORKSPACE_WILL_RENAME_FILES, types.FileOperationRegistrationOptions([_ALL]))
     def will_rename(params: types.RenameFilesParams) -> types.WorkspaceEdit | None:
         moves = {convert.path(file.old_uri): convert.path(file.new_uri) for file in params.files}
-        found = [(workspace, features.moves.moved_files(workspace, moves)) for workspace in session.workspaces()]
+        found = [(workspace, features.moves.moved_files(workspace, moves)) for workspace in server.session.workspaces()]
         edits = [convert.workspace_edit(*each, server.versions_for_edits()) for each in found if each[1]]
         return convert.merged(edits) if edits else None
 

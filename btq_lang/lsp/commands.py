@@ -26,7 +26,7 @@ USES = "btq.server.uses"
 
 
 def register(server: Server) -> None:
-    session, convert = server.session, server.convert
+    convert = server.convert
 
     @server.command(NODE_PATH)
     def path_of_node(place: types.TextDocumentPositionParams) -> str | None:
@@ -70,7 +70,7 @@ def register(server: Server) -> None:
         workspace, path = mission(document, reads=True)
         from btq_lang.trace.missions import trace_tables  # as above
 
-        evidence = session.evidence(workspace)
+        evidence = server.session.evidence(workspace)
         verdicts_of = evidence.verdicts_of if evidence is not None else None
         return trace_tables([(workspace, (path,))], verdicts_of=verdicts_of).write("html")
 
@@ -82,7 +82,7 @@ def register(server: Server) -> None:
             raise Refused("save this document to a file first")
         from btq_lang.commands.for_editors import build_open  # as above
 
-        code, files, output = build_open(path, session.open)
+        code, files, output = build_open(path, server.session.open)
         if code:
             raise Refused(output)
         return {"files": [convert.uri(file) for file in files], "said": output}
@@ -114,6 +114,6 @@ def register(server: Server) -> None:
             return
         from btq_lang.workspace.config import Project  # as above
 
-        shown = Project(folders=session.folders).shown
+        shown = Project(folders=server.session.folders).shown
         named = [f"{shown(convert.path(place.uri))}:{place.range.start.line + 1}" for place in places]
         server.window_show_message(types.ShowMessageParams(types.MessageType.Info, "\n".join(named)))

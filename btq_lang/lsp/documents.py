@@ -14,50 +14,45 @@ from btq_lang.lsp.protocol import Json
 
 
 def register(server: Server) -> None:
-    session, convert = server.session, server.convert
+    convert = server.convert
     _diagnostics(server)
 
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
     def did_open(params: types.DidOpenTextDocumentParams) -> None:
         path = convert.path(params.text_document.uri)
-        if _is_cpp(path):
+        if server.session.is_cpp(path):
             return
         if convert.uri(path) != params.text_document.uri:
             server.withdraw(path)
             convert.learn_uri(path, params.text_document.uri)
         server.versions[path] = params.text_document.version
-        server.check_soon(session.edit(path, params.text_document.text))
+        server.check_soon(server.session.edit(path, params.text_document.text))
 
     @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
     def did_change(params: types.DidChangeTextDocumentParams) -> None:
         path = convert.path(params.text_document.uri)
-        if _is_cpp(path):
+        if server.session.is_cpp(path):
             return
         server.versions[path] = params.text_document.version
-        server.check_soon(session.edit(path, convert.changed(session.lines(path), params.content_changes)))
+        server.check_soon(
+            server.session.edit(path, convert.changed(server.session.lines(path), params.content_changes))
+        )
         server.last_keystroke = asyncio.get_running_loop().time()  # now: handling the edit may have taken long
 
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     def did_close(params: types.DidCloseTextDocumentParams) -> None:
         path = convert.path(params.text_document.uri)
-        if _is_cpp(path):
+        if server.session.is_cpp(path):
             return
         server.versions.pop(path, None)
-        workspace = session.workspace_of(path)
+        workspace = server.session.workspace_of(path)
         if server.tokens.pop(path, None) is not None and workspace is not None:
             features.colours.forget(workspace, path, convert.encoding)
-        server.check_soon((path, *session.close(path)))
-
-
-def _is_cpp(path: str) -> bool:
-    """Whether a file is C++, which counts as it is on the disk: it is read when it is saved."""
-    from btq_lang.workspace.file import CPP_SUFFIXES  # the server must start fast
-
-    return path.endswith(CPP_SUFFIXES)
+        server.check_soon((path, *server.session.close(path)))
 
 
 def _diagnostics(server: Server) -> None:
-    session, convert = server.session, server.convert
+    convert = server.convert
 
     @server.feature(
         types.TEXT_DOCUMENT_DIAGNOSTIC,
@@ -75,10 +70,10 @@ def _diagnostics(server: Server) -> None:
             server.pulls_all = True
             server.publish_projects()
         await server.scanned.wait()
-        paths = session.paths() if session.setting("checkClosedFiles", True) else ()
+        paths = server.session.paths() if server.session.setting("checkClosedFiles", True) else ()
         # Diagnostics of files that are deleted, or no longer wanted, disappear only after an empty report, also for
         # files whose result id the editor has forgotten, as VS Code does when a document is closed.
-        gone = (known.keys() | server.shown) - set(paths) - session.open.keys()
+        gone = (known.keys() | server.shown) - set(paths) - server.session.open.keys()
         items = [_about(convert.uri(path), None, EMPTY_REPORT) for path in sorted(gone)]
         spelt = [one.uri for one in params.previous_result_ids if convert.uri(convert.path(one.uri)) != one.uri]
         items += [_about(uri, None, EMPTY_REPORT) for uri in spelt]  # the file's URI has changed since then
@@ -88,7 +83,7 @@ def _diagnostics(server: Server) -> None:
             for done, path in enumerate(paths, 1):
                 report = server.report(path, known.get(path))
                 items.append(_about(convert.uri(path), server.versions.get(path), report))
-                session.let_go()
+                server.session.let_go()
                 if done % BATCH == 0:
                     report_done(done)
                     if params.partial_result_token is not None:

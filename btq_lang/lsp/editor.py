@@ -30,12 +30,12 @@ from btq_lang import ide as features
 from btq_lang.lsp import failures
 from btq_lang.lsp.convert import Converter
 from btq_lang.lsp.protocol import Json, Messages, Protocol
-from btq_lang.lsp.session import Session
 from btq_lang.util.version import __version__
 from btq_lang.workspace.queries import Cancelled
 
 if TYPE_CHECKING:
     from btq_lang.ide.colours import Colours
+    from btq_lang.lsp.session import Session
     from btq_lang.workspace.workspace import Workspace
 
 T = TypeVar("T")
@@ -92,7 +92,7 @@ class Server(LanguageServer):
 
     def __init__(self) -> None:
         super().__init__("btq", __version__, protocol_cls=Protocol)
-        self.session = Session()
+        self.initial_settings: object = None
         self.convert = Converter()
         self.versions: dict[str, int] = {}
         self.published: dict[str, tuple[int | None, int | None]] = {}  # hashes of what was published, and versions
@@ -115,6 +115,13 @@ class Server(LanguageServer):
         self.protocol.log_failure = self.log_failure
         self._watching: asyncio.Task[None] | None = None
         self.is_outdated: Callable[[], bool] = lambda: False  # whether an edit waits to be handled
+
+    @functools.cached_property
+    def session(self) -> Session:
+        """The open files.  Not used before `initialize` is answered: what a session needs takes long to import."""
+        from btq_lang.lsp.session import Session
+
+        return Session()
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
         """As in pygls, except for how messages are read."""

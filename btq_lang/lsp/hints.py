@@ -23,7 +23,7 @@ SHOW_REFERENCES = "btq.showReferences"  # a command of the editor, which opens i
 
 
 def register(server: Server) -> None:
-    session, convert = server.session, server.convert
+    convert = server.convert
 
     def item(workspace: Workspace, tree: features.calls.TreeItem) -> types.CallHierarchyItem:
         return types.CallHierarchyItem(
@@ -40,7 +40,7 @@ def register(server: Server) -> None:
         feature: Callable[[Workspace, features.calls.TreeItem], tuple[features.calls.Call, ...]],
     ) -> Iterator[tuple[types.CallHierarchyItem, list[types.Range]]]:
         data = given.data if isinstance(given.data, dict) else {}
-        workspace = session.workspace_of(str(data.get("path")))
+        workspace = server.session.workspace_of(str(data.get("path")))
         if workspace is not None:
             tree = features.calls.TreeItem(given.name, data["path"], Span(*data["span"]), Span(*data["name"]))
             for call in feature(workspace, tree):
@@ -62,7 +62,7 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_INLAY_HINT, otherwise=[])
     def hints(params: types.InlayHintParams) -> list[types.InlayHint]:
         workspace, path = server.at(params.text_document)
-        if not session.setting("inlayHints", True):
+        if not server.session.setting("inlayHints", True):
             return []
         return [
             types.InlayHint(
@@ -78,10 +78,12 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS, otherwise=[])
     def lenses(params: types.CodeLensParams) -> list[types.CodeLens]:
         workspace, path = server.at(params.text_document, reads=True)
-        if not session.setting("codeLens", True):
+        if not server.session.setting("codeLens", True):
             return []
         found = []
-        for lens in features.hints.code_lenses(workspace, path, session.side_file(path), session.evidence(workspace)):
+        for lens in features.hints.code_lenses(
+            workspace, path, server.session.side_file(path), server.session.evidence(workspace)
+        ):
             range_ = convert.range(workspace, path, lens.span)
             uses = [convert.location(workspace, *use) for use in lens.places]
             if not uses:
@@ -95,9 +97,11 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     def show(params: types.HoverParams) -> Json | None:
-        side = session.side_file(convert.path(params.text_document.uri))
+        side = server.session.side_file(convert.path(params.text_document.uri))
         workspace, path, found = server.ask(
-            params, lambda *at: features.hover.hover(at[0], at[1], at[2], side, session.evidence(at[0])), reads=True
+            params,
+            lambda *at: features.hover.hover(at[0], at[1], at[2], side, server.session.evidence(at[0])),
+            reads=True,
         )
         return convert.hover(workspace, path, found) if found else None
 
@@ -128,7 +132,7 @@ def register(server: Server) -> None:
     def resolve(item: types.CompletionItem) -> types.CompletionItem:
         data = item.data if isinstance(item.data, dict) else {}
         path = str(data.get("path"))
-        workspace = session.workspace_of(path)
+        workspace = server.session.workspace_of(path)
         if workspace is not None:
             text = features.describe.documentation(workspace, path, str(data.get("kind")), str(data.get("name")))
             item.documentation = markdown(text) if text else None

@@ -9,17 +9,16 @@ from lsprotocol import types
 
 from btq_lang.lsp.editor import Server
 from btq_lang.lsp.progress import checking
-from btq_lang.lsp.session import Session
 
 
 def register(server: Server) -> None:
-    session, convert = server.session, server.convert
+    convert = server.convert
 
     @server.feature(types.INITIALIZE)
     def initialize(params: types.InitializeParams) -> None:
         convert.agree(server.workspace.position_encoding)
         server.protocol.trace = params.trace or types.TraceValue.Off
-        _settle(session, params.initialization_options)
+        server.initial_settings = params.initialization_options
         if params.process_id is not None:
             server.end_with(params.process_id)
 
@@ -27,7 +26,8 @@ def register(server: Server) -> None:
     async def initialized(_: types.InitializedParams) -> None:
         # Not in `initialize`: the editor waits for its result, and modules that read files take long to import.
         folders = [*server.workspace.folders] or [root for root in (server.workspace.root_uri,) if root]
-        _work_in(session, tuple(map(convert.path, folders)))
+        server.session.settle(server.initial_settings)
+        server.session.work_in(tuple(map(convert.path, folders)))
         gc.freeze()  # imported objects stay alive
         gc.set_threshold(100_000, 50, 10)  # most objects of an edit stay alive: collect less often
         try:
@@ -45,39 +45,31 @@ def register(server: Server) -> None:
             await _ask_settings(server)
         else:
             settings = params.settings
-            _settle(session, settings.get("btq", settings) if isinstance(settings, dict) else None)
+            server.session.settle(settings.get("btq", settings) if isinstance(settings, dict) else None)
         server.reload()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
     def did_change_workspace_folders(params: types.DidChangeWorkspaceFoldersParams) -> None:
         gone = {convert.path(folder.uri) for folder in params.event.removed}
         new = [convert.path(folder.uri) for folder in params.event.added]
-        _work_in(session, (*(folder for folder in session.folders if folder not in gone), *new))
+        session = server.session
+        session.work_in((*(folder for folder in session.folders if folder not in gone), *new))
         server.reload()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     def did_change_watched_files(params: types.DidChangeWatchedFilesParams) -> None:
         changed = {convert.path(change.uri) for change in params.changes}
-        if _concerns(session, changed):
+        if server.session.concerns(changed):
             server.reload()
-        elif any(map(_is_side_file, changed)) and server.can_refresh("code_lens"):
+        elif any(map(server.session.is_side_file, changed)) and server.can_refresh("code_lens"):
             server.workspace_code_lens_refresh(None)  # nothing else is asked for again, or depends on it
-
-
-def _work_in(session: Session, folders: tuple[str, ...]) -> None:
-    from btq_lang.workspace.loader import work_in  # the server must start fast
-
-    session.folders = folders
-    work_in(folders[0] if folders else "")
 
 
 async def _register_watchers(server: Server) -> None:
     """Register file watchers with the editor, if it supports that."""
     if not server.supports("workspace.did_change_watched_files.dynamic_registration"):
         return
-    from btq_lang.workspace.file import CPP_SUFFIXES, SIDE_SUFFIX, YAML_SUFFIXES  # as in `_endings`
-
-    endings = (*_endings(), SIDE_SUFFIX, *YAML_SUFFIXES, *CPP_SUFFIXES)
+    endings = server.session.watched
     patterns = [f"**{ending}" if ending[0] == "/" else f"**/*{ending}" for ending in endings]
     watchers = [types.FileSystemWatcher(pattern) for pattern in patterns]
     # If a folder is deleted as a whole, an editor reports only the folder.
@@ -87,22 +79,10 @@ async def _register_watchers(server: Server) -> None:
     await server.client_register_capability_async(types.RegistrationParams([wanted]))
 
 
-def _concerns(session: Session, changed: set[str]) -> bool:
-    """Whether changes on the disk may concern the session: most deleted files and folders do not, nor does most C++."""
-    if any(path.endswith(_endings()) for path in changed) or not changed.isdisjoint(session.places()):
-        return True
-    return any(map(session.reads_cpp, changed))
-
-
 async def _ask_settings(server: Server) -> None:
     wanted = types.ConfigurationParams([types.ConfigurationItem(section="btq")])
     answer = await server.workspace_configuration_async(wanted)
-    _settle(server.session, answer[0] if answer else None)
-
-
-def _settle(session: Session, settings: object) -> None:
-    if isinstance(settings, dict):
-        session.settings = {str(name): value for name, value in settings.items()}
+    server.session.settle(answer[0] if answer else None)
 
 
 async def _first_check(server: Server) -> None:
@@ -119,21 +99,6 @@ async def _first_check(server: Server) -> None:
         while server.task is not None and not server.task.done():
             report_done(len(paths) - len(server.waiting))
             await asyncio.wait((server.task,), timeout=0.2)
-
-
-def _endings() -> tuple[str, ...]:
-    """The suffixes of the names of missions and project files."""
-    from btq_lang.workspace.file import (
-        SUFFIXES,  # it imports the parser, and the server must start fast
-    )
-
-    return *SUFFIXES, ".xml", "/btq.toml", "/pyproject.toml"
-
-
-def _is_side_file(path: str) -> bool:
-    from btq_lang.workspace.file import SIDE_SUFFIX  # as above
-
-    return path.endswith(SIDE_SUFFIX)
 
 
 _TO_OPEN = 0.02  # seconds, in which an editor opens its visible files: these are checked first

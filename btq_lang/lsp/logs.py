@@ -36,7 +36,6 @@ RUN = "btq.server.run"
 
 
 def register(server: Server) -> None:
-    session, convert = server.session, server.convert
     logs = Logs(server)
     server.on_scanned, server.on_end = logs.watch, logs.stop
 
@@ -46,12 +45,12 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
     def did_save(params: types.DidSaveTextDocumentParams) -> None:
-        logs.saved(convert.path(params.text_document.uri))
+        logs.saved(server.convert.path(params.text_document.uri))
 
     def judged(document: types.TextDocumentIdentifier) -> tuple[Workspace, str, Evidence]:
         with suppress(Unknown):
             workspace, path = server.at(document, reads=True)
-            if (evidence := session.evidence(workspace)) is not None:
+            if (evidence := server.session.evidence(workspace)) is not None:
                 return workspace, path, evidence
         raise Refused("no logs of this mission have been judged; name them with `logs` in [evidence] of btq.toml")
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def register(server: Server) -> None:
-    session, convert = server.session, server.convert
+    convert = server.convert
 
     def links(
         params: Asked, feature: Callable[[Workspace, str, int], tuple[features.navigation.Target, ...]]
@@ -29,7 +29,7 @@ def register(server: Server) -> None:
 
             targets = feature(workspace, path, offset)
             if any(each.path in FILES.values() for each in targets):  # the code says more than the table
-                workspace = session.with_code_of_nav2(workspace)
+                workspace = server.session.with_code_of_nav2(workspace)
                 targets = feature(workspace, path, offset)
             return workspace, targets
 
@@ -91,7 +91,7 @@ def register(server: Server) -> None:
     def symbols(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
         return [
             convert.symbol(workspace, match)
-            for workspace in session.workspaces()
+            for workspace in server.session.workspaces()
             for match in features.outline.workspace_symbols(workspace, params.query)
         ]
 

@@ -9,26 +9,35 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Set
 from time import perf_counter
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 from weakref import ReferenceType, ref
 
+from btq_lang.btcpp.opening import file_of
+from btq_lang.btcpp.recognition import is_mission
+from btq_lang.btcpp.side_file import side_path
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.checks import check, findings, forget, keep, let_go
+from btq_lang.commands.files import Files, lacking_names
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import RULES, Severity
+from btq_lang.util.globs import path_matcher
 from btq_lang.util.record import replace
 from btq_lang.util.text import LineIndex
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.factories import merged
+from btq_lang.workspace.file import CPP_SUFFIXES, SIDE_SUFFIX, SUFFIXES, YAML_SUFFIXES, File
 from btq_lang.workspace.findings import Findings, Reported
+from btq_lang.workspace.inputs import advance
+from btq_lang.workspace.item_index import Name
+from btq_lang.workspace.loader import LoadProblem, find_project, is_project_file, read, stamp, work_in
 from btq_lang.workspace.overrides import Override
+from btq_lang.workspace.workspace import Workspace
 
-if TYPE_CHECKING:  # imported on use: the server must start fast
-    from btq_lang.commands.files import Files
-    from btq_lang.diagnostics.model import Diagnostic
+if TYPE_CHECKING:
     from btq_lang.ide.verdicts import Evidence
-    from btq_lang.workspace.config import Project
-    from btq_lang.workspace.file import File
-    from btq_lang.workspace.item_index import Name
-    from btq_lang.workspace.loader import LoadProblem
-    from btq_lang.workspace.workspace import Workspace
 
-    Severities: TypeAlias = tuple[tuple[str, Severity | None], ...]
+_ENDINGS: Final = (*SUFFIXES, ".xml", "/btq.toml", "/pyproject.toml")  # of missions and project files
+Severities: TypeAlias = tuple[tuple[str, Severity | None], ...]
 
 
 class Session:
@@ -43,6 +52,8 @@ class Session:
             that these refer to.
         check_seconds: the duration of the last check of an open file, by path.
     """
+
+    watched: Final = (*_ENDINGS, SIDE_SUFFIX, *YAML_SUFFIXES, *CPP_SUFFIXES)  # how names of files end that may matter
 
     def __init__(self) -> None:
         self.folders: tuple[str, ...] = ()
@@ -64,6 +75,16 @@ class Session:
 
     # ---- what changes ----
 
+    def work_in(self, folders: tuple[str, ...]) -> None:
+        """Set the editor's folders; paths are shown relative to the first."""
+        self.folders = folders
+        work_in(folders[0] if folders else "")
+
+    def settle(self, settings: object) -> None:
+        """Set what the editor's user has set, if it is a table."""
+        if isinstance(settings, dict):
+            self.settings = {str(name): value for name, value in settings.items()}
+
     def edit(self, path: str, text: str) -> tuple[str, ...]:
         """Change the text of an open file; returns the files to check again, the most important first."""
         is_new = path not in self.open
@@ -75,9 +96,6 @@ class Session:
         old = before.files[path]
         if old.source == text and (old.origin is None or not is_new):  # opened, and equal to the file on the disk
             return (path,)
-        from btq_lang.btcpp.opening import file_of
-        from btq_lang.workspace.inputs import advance
-
         new = file_of(path, text)
         if (is_new and new.origin is not None) or not _is_xml_alike(old, new):
             return (path, *self.reload())  # open XML has a pool, in which it finds what it lacks
@@ -102,13 +120,9 @@ class Session:
 
     def close(self, path: str) -> tuple[str, ...]:
         """Close a file: the one on the disk counts again."""
-        from btq_lang.workspace.loader import read
-
         text = self.open.pop(path, None)
         is_xml = path in self._home and self._workspaces[self._home[path]].files[path].origin is not None
         for workspace in self.workspaces_of(path):
-            from btq_lang.checks import forget
-
             forget(workspace, path)
         self.check_seconds.pop(path, None)
         self._checked.pop(path, None)  # its offsets count from items that are no longer kept
@@ -119,11 +133,6 @@ class Session:
 
     def reload(self) -> tuple[str, ...]:
         """Read folders and projects again; returns all files."""
-        from btq_lang.commands.files import Files
-        from btq_lang.workspace.file import YAML_SUFFIXES
-        from btq_lang.workspace.inputs import advance
-        from btq_lang.workspace.loader import is_project_file
-
         self._read_for = self.folders, {**self.settings}
         if self._files is None:
             self._files = Files()
@@ -160,8 +169,6 @@ class Session:
 
     def _read_projects(self, problems: Iterable[LoadProblem]) -> None:
         """Store the problems of project files, those of missions and open ones."""
-        from btq_lang.workspace.loader import find_project, is_project_file, read
-
         found = {path: find_project(path, self.open) for path in self.open if is_project_file(path)}
         of_open = [each for one in found.values() for each in one.problems]
         by_path: dict[str, dict[LoadProblem, None]] = {path: {} for path in found}
@@ -177,7 +184,6 @@ class Session:
         if self._files is None or not self._files.parameter_files:
             return
         from btq_lang.commands.nav2_check import nav2_findings  # few projects are for Nav2
-        from btq_lang.workspace.workspace import Workspace
 
         read = self._files.parameter_files
         found, texts = nav2_findings(read, self._files, (), lambda project: _with_severities(project, severities))
@@ -217,8 +223,6 @@ class Session:
         they are most of the memory of a large folder, and few are needed again.  After a request about all files there
         are many, so only a few are released each time, to stay responsive.
         """
-        from btq_lang.checks import let_go
-
         for workspace in self._workspaces:
             let_go(workspace)
         if any(home.files[path].last_read for path in self.open if (home := self.workspace_of(path))):
@@ -235,8 +239,6 @@ class Session:
         """The open files, those linked with them, and those in which linked XML finds what it lacks, in any workspace:
         workspaces may share files.
         """
-        from btq_lang.catalog.name_kinds import Kind  # the server must start fast
-
         found: set[str] = set()
         for workspace in self.workspaces():
             missions = {workspace.missions.get(path) for path in self.open} - {None}
@@ -276,7 +278,7 @@ class Session:
             origin is None
             or workspace.files[path].is_cpp
             or path in workspace.included_files
-            or (path in workspace.registered or _is_mission(origin.text))
+            or (path in workspace.registered or is_mission(origin.text))
         )
 
     def workspaces(self) -> tuple[Workspace, ...]:
@@ -297,11 +299,22 @@ class Session:
 
     def reads_cpp(self, path: str) -> bool:
         """Whether a project may name a C++ source, which may be new."""
-        from btq_lang.util.globs import path_matcher
-        from btq_lang.workspace.file import CPP_SUFFIXES
-
         projects = [workspace.project for workspace in self._workspaces] if path.endswith(CPP_SUFFIXES) else ()
         return any(path_matcher(each.cpp_patterns, each.root)(path) for each in projects)
+
+    def concerns(self, changed: Set[str]) -> bool:
+        """Whether changes on the disk may matter: most deleted files and folders do not, nor does most C++."""
+        if any(path.endswith(_ENDINGS) for path in changed) or not changed.isdisjoint(self.places()):
+            return True
+        return any(map(self.reads_cpp, changed))
+
+    def is_side_file(self, path: str) -> bool:
+        """Whether a path is that of a side file, on which only lenses and hovers depend."""
+        return path.endswith(SIDE_SUFFIX)
+
+    def is_cpp(self, path: str) -> bool:
+        """Whether a file is C++, which counts as it is on the disk: it is read when it is saved."""
+        return path.endswith(CPP_SUFFIXES)
 
     def places(self) -> set[str]:
         """All known files, and all folders above them."""
@@ -340,8 +353,6 @@ class Session:
         known = self._checked.get(path)
         if known is not None and [id(each()) for each in known[0]] == [*map(id, workspaces)]:
             return known[1]
-        from btq_lang.checks import check, findings, keep
-
         if path in self.open:
             begin = perf_counter()
             for workspace in workspaces:
@@ -381,8 +392,6 @@ class Session:
 
     def _merged(self, workspaces: Iterable[Workspace], found: Iterable[tuple[Diagnostic, ...]]) -> Findings:
         """What is found in one file in each of its factories."""
-        from btq_lang.workspace.factories import merged
-
         of_each = [(workspace.factory, each) for workspace, each in zip(workspaces, found, strict=True)]
         return Findings.placed(merged(of_each))
 
@@ -398,9 +407,6 @@ class Session:
         """The text of the side file of an XML file, empty if it cannot be read; None if there is none."""
         if not path.endswith(".xml"):
             return None
-        from btq_lang.btcpp.side_file import side_path
-        from btq_lang.workspace.loader import read, stamp
-
         side = side_path(path)
         return None if stamp(side) is None else read(side)[0] or ""
 
@@ -417,13 +423,6 @@ def _with_severities(project: Project, severities: Severities) -> Project:
     return replace(project, overrides=(*project.overrides, Override(("*",), severities)))  # for all files, and the last
 
 
-def _is_mission(xml: str) -> bool:
-    """Whether XML is the engine's: an editor may send any XML file."""
-    from btq_lang.btcpp.recognition import is_mission  # as below
-
-    return is_mission(xml)
-
-
 def _is_xml_alike(old: File, new: File) -> bool:
     """Whether both texts of a file, or neither, look like XML, so that it has a pool."""
     of_each = [each.origin is not None and each.source.lstrip()[:1] for each in (old, new)]
@@ -432,8 +431,6 @@ def _is_xml_alike(old: File, new: File) -> bool:
 
 def _lacking(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:
     """The names that those of the paths that are XML look up in their pool."""
-    from btq_lang.commands.files import lacking_names  # the server must start fast
-
     xml = workspace.origins.keys() & paths if workspace.project.pools else ()
     return lacking_names(workspace, xml) if xml else frozenset()
 
