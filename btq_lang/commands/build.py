@@ -6,7 +6,7 @@ import glob
 import os
 import sys
 from argparse import Namespace
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import Final
 
 from btq_lang.btcpp.enforcement import ClauseEnforcement, Enforcement
@@ -168,7 +168,7 @@ def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
     return True
 
 
-def _print_remarks(remarks: tuple[Remark, ...], word: str, groups: tuple[Group, ...]) -> int:
+def _print_remarks(remarks: Collection[Remark], word: str, groups: tuple[Group, ...]) -> int:
     """Print an export's remarks; returns how many."""
     for remark in remarks:
         file = next(group.workspace.files[remark.path] for group in groups if remark.path in group.workspace.files)
@@ -196,15 +196,13 @@ def _print_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: 
         remark = Remark(*_absolute(each.place, groups), f"{each.requirement}, `{each.clause}`{where}{why}")
         _print_remarks((remark,), way, groups)
     known = {(each.requirement, each.clause, each.place.path, each.place.span) for each in clauses.values()}
-    loose = {
-        (requirement.name, claim.text, claim.place.path, claim.place.span): claim.place
+    loose = {  # without those whose node another file has
+        found: Remark(*_absolute(claim.place, groups), f"{requirement.name}, `{claim.text}` applies to no node")
         for done in made
         for requirement, claim in done.loose
+        if (found := (requirement.name, claim.text, claim.place.path, claim.place.span)) not in known
     }
-    loose = {key: place for key, place in loose.items() if key not in known}  # another file may have its node
-    for (requirement, clause, *_), place in loose.items():
-        remark = Remark(*_absolute(place, groups), f"{requirement}, `{clause}` applies to no node")
-        _print_remarks((remark,), "not checked", groups)
+    _print_remarks(loose.values(), "not checked", groups)
     if clauses:
         ways = [each.way for each in clauses.values()]
         counted = [f"{ways.count(way)} {way}" for way in ("enforced", "monitored", "reviewed") if way in ways]

@@ -198,15 +198,8 @@ def _overview() -> str:
 def _names() -> list[str]:
     words = [spelling for kind in BUILTINS.values() for spelling in spellings(kind)]
     ports = {port.name for kind in BUILTINS.values() for port in kind.ports}
-    known = [
-        *RULES,
-        *words,
-        *ports,
-        *nav2_nodes(),
-        *VERDICTS,
-        *RESERVED_ATTRIBUTES,
-        *(unit.symbol for unit in symbols()),
-    ]
+    units = (unit.symbol for unit in symbols())
+    known = [*RULES, *words, *ports, *nav2_nodes(), *VERDICTS, *RESERVED_ATTRIBUTES, *units]
     return [*known, *(quality.id for quality in qualities()), *(phrase.words for phrase in PHRASES)]
 
 

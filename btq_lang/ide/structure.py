@@ -32,7 +32,6 @@ def folding_ranges(workspace: Workspace, path: str) -> tuple[Fold, ...]:
     text = file.text
     found: list[Fold] = []
     blocks: list[int] = []  # where the line above each open block begins
-    brackets: list[int] = []
     line = end = 0  # where the current logical line begins, and where its last word ends
     at_start = True
     for token in file.parsed.tokens:
@@ -46,11 +45,8 @@ def folding_ranges(workspace: Workspace, path: str) -> tuple[Fold, ...]:
         elif token.kind not in (BLANK, COMMENT):
             if at_start:
                 line, at_start = token.start, False
-            if token.kind == OPEN:
-                brackets.append(token.start)
-            elif token.kind == CLOSE and brackets:
-                found.append(Fold(Span(brackets.pop(), token.end), "brackets"))
             end = token.end
+    found += [Fold(span, "brackets") for span in _brackets(workspace, path)]
     found += _comment_runs(workspace, path)
     includes = [entry for entry in file.parsed.entries if isinstance(entry.item, Include)]
     if len(includes) > 1:
@@ -104,7 +100,8 @@ def selection_range(workspace: Workspace, path: str, offset: int) -> tuple[Span,
                 spans.add(node.span.shifted(entry.start))
                 spans.add(Span(node.start, node.block_end).shifted(entry.start))
                 spans.update(pair.span.shifted(entry.start) for pair in node.attributes)
-    spans.update(_brackets(workspace, path))
+    for start, end in _brackets(workspace, path):
+        spans.update((Span(start, end), Span(start + 1, max(end - 1, start + 1))))
     around = [span for span in spans if span.start <= offset <= span.end]
     around.sort(key=lambda span: (span.end - span.start, span.start))
     nested: list[Span] = []
@@ -120,9 +117,7 @@ def _brackets(workspace: Workspace, path: str) -> Iterator[Span]:
         if token.kind == OPEN:
             opened.append(token.start)
         elif token.kind == CLOSE and opened:
-            start = opened.pop()
-            yield Span(start, token.end)
-            yield Span(start + 1, max(token.end - 1, start + 1))
+            yield Span(opened.pop(), token.end)
 
 
 def document_links(workspace: Workspace, path: str) -> tuple[Link, ...]:

@@ -167,11 +167,10 @@ def _without(file: File, spans: Iterable[Span]) -> tuple[Edit, ...]:
     for first in sorted(gone):
         if first - 1 in gone:
             continue  # not the first of its run
-        end = _past(lines, gone, first)
-        if first == 0 or _is_blank(lines, first - 1):
-            while end < lines.line_count and _is_blank(lines, end):
-                end += 1
-                end = _past(lines, gone, end)
+        end = first
+        was_blank = first == 0 or _is_blank(lines, first - 1)
+        while end < lines.line_count and (end in gone or (was_blank and _is_blank(lines, end))):
+            end += 1
         gone.update(range(first, end))
         if end < lines.line_count:
             edits.append(Edit(Span(_start(text, lines, first), lines.offset(Position(end, 0))), ""))
@@ -183,12 +182,6 @@ def _without(file: File, spans: Iterable[Span]) -> tuple[Edit, ...]:
             start = lines.offset(Position(first - 1, len(lines.line(first - 1))))
         edits.append(Edit(Span(start, len(text)), ""))
     return tuple(sorted(edits, key=lambda edit: edit.span))
-
-
-def _past(lines: LineIndex, gone: set[int], line: int) -> int:
-    while line < lines.line_count and line in gone:
-        line += 1
-    return line
 
 
 def _is_blank(lines: LineIndex, line: int) -> bool:
