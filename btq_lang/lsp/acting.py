@@ -45,9 +45,9 @@ def register(server: Server) -> None:
     @server.feature(types.WORKSPACE_WILL_RENAME_FILES, types.FileOperationRegistrationOptions([_ALL]))
     def will_rename(params: types.RenameFilesParams) -> types.WorkspaceEdit | None:
         moves = {convert.path(file.old_uri): convert.path(file.new_uri) for file in params.files}
-        found = [(workspace, features.moves.moved_files(workspace, moves)) for workspace in server.session.workspaces()]
-        edits = [convert.workspace_edit(*each, server.versions_for_edits()) for each in found if each[1]]
-        return convert.merged(edits) if edits else None
+        found = [(each, features.moves.moved_files(each, moves)) for each in server.session.workspaces()]
+        edits = [each for each in found if each[1]]
+        return convert.workspace_edit(server.versions_for_edits(), *edits) if edits else None
 
     @server.feature(types.TEXT_DOCUMENT_ON_TYPE_FORMATTING, types.DocumentOnTypeFormattingOptions("\n", [")"]), [])
     def typed(params: types.DocumentOnTypeFormattingParams) -> list[types.TextEdit]:

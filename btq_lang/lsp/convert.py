@@ -120,10 +120,10 @@ class Converter:
         return [types.TextEdit(self.plain_range(lines, edit.span), edit.text) for edit in edits]
 
     def workspace_edit(
-        self, workspace: Workspace, edits: Mapping[str, Iterable[Edit]], versions: Mapping[str, int] | None
+        self, versions: Mapping[str, int] | None, *edits: tuple[Workspace, Mapping[str, Iterable[Edit]]]
     ) -> types.WorkspaceEdit:
         """A workspace edit of several files, with the versions of open ones, if the editor supports versions here."""
-        changes = {path: self.edits(workspace, path, made) for path, made in edits.items()}
+        changes = {path: self.edits(of, path, made) for of, of_files in edits for path, made in of_files.items()}
         if versions is None:
             return types.WorkspaceEdit(changes={self.uri(path): made for path, made in changes.items()})
         documents = [
@@ -174,21 +174,16 @@ class Converter:
         """
         written: list[str] = []
         numbers: list[int] = []
-        encoding, files, uri = self.encoding, workspace.files, self.uri(path)
+        encoding, files = self.encoding, workspace.files
         ends = files[path].source_lines.ends
         for one in found:
             numbers += ends(one.span, encoding)
             related: list[tuple[str, str]] = []
             for each in one.related:
-                place = each.place
-                if place.path is None or place.path == path:
-                    numbers += ends(place.span, encoding)
-                    related.append((uri, each.message))
-                else:
-                    # The place in a log is its start: a log has no lines.
-                    is_text = place.path in files
-                    numbers += files[place.path].source_lines.ends(place.span, encoding) if is_text else (0, 0, 0, 0)
-                    related.append((self.uri(place.path), each.message))
+                at = each.place.path or path
+                # The place in a log is its start: a log has no lines.
+                numbers += files[at].source_lines.ends(each.place.span, encoding) if at in files else (0, 0, 0, 0)
+                related.append((self.uri(at), each.message))
             written.append(_template(one.rule, one.message, one.notes, one.severity, one.tags, tuple(related)))
         return ", ".join(written) % tuple(numbers)
 
@@ -198,18 +193,8 @@ class Converter:
     def action(self, workspace: Workspace, path: str, action: Action, versions: Mapping[str, int] | None) -> Plain:
         mends, preferred = action.diagnostic, {"isPreferred": True} if action.preferred else {}
         found = {"diagnostics": [json.loads(self._diagnostics(workspace, path, [mends]))]} if mends is not None else {}
-        edit = self.workspace_edit(workspace, action.edits, versions)
+        edit = self.workspace_edit(versions, (workspace, action.edits))
         return {"title": action.title, "kind": action.kind, **preferred, **found, "edit": edit}
-
-    def merged(self, edits: Iterable[types.WorkspaceEdit]) -> types.WorkspaceEdit:
-        """Merge edits of different files."""
-        merged = types.WorkspaceEdit()
-        for edit in edits:
-            if edit.changes is not None:
-                merged.changes = {**(merged.changes or {}), **edit.changes}
-            if edit.document_changes is not None:
-                merged.document_changes = [*(merged.document_changes or ()), *edit.document_changes]
-        return merged
 
     def outline(self, workspace: Workspace, path: str, outline: Outline) -> types.DocumentSymbol:
         children = [self.outline(workspace, path, child) for child in outline.children]

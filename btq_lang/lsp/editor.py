@@ -102,8 +102,7 @@ class Server(LanguageServer):
         self.count = 0
         self.waiting: dict[str, None] = {}
         self.last_keystroke = -MAX_REST  # the time of the last keystroke
-        self._pause: asyncio.TimerHandle | None = None
-        self._preparing: asyncio.Task[None] | None = None
+        self._pause: asyncio.Task[None] | None = None  # waits for a pause, and uses it
         self.answering = 0  # how many requests are being answered in steps
         self._ready: set[str] = set()  # the files prepared for first requests
         self.task: asyncio.Task[None] | None = None
@@ -121,7 +120,9 @@ class Server(LanguageServer):
         """The open files.  Not used before `initialize` is answered: what a session needs takes long to import."""
         from btq_lang.lsp.session import Session
 
-        return Session()
+        session = Session()
+        session.settle(self.initial_settings)
+        return session
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
         """As in pygls, except for how messages are read."""
@@ -311,9 +312,8 @@ class Server(LanguageServer):
     def check_soon(self, paths: Iterable[str]) -> None:
         """Schedule files, in their order, for checking and publishing, before those already waiting."""
         self.waiting = dict.fromkeys((*paths, *self.waiting))
-        for idle in (self._pause, self._preparing):
-            if idle is not None:
-                idle.cancel()
+        if self._pause is not None:
+            self._pause.cancel()
         if self.task is None or self.task.done():
             self.task = asyncio.ensure_future(self._check())
 
@@ -372,25 +372,17 @@ class Server(LanguageServer):
             await asyncio.sleep(0)
         for path in [path for path in self.published if not self.session.knows(path)]:
             self.publish(path)
-        self._await_pause()
+        self._pause = asyncio.ensure_future(self._use_pause())
 
-    def _await_pause(self) -> None:
-        if self._pause is not None:
-            self._pause.cancel()
-        self._pause = asyncio.get_running_loop().call_later(PAUSE, self._use_pause)
-
-    def _use_pause(self) -> None:
-        """Do pending maintenance while the editor is idle."""
-        if self.answering:
-            self._await_pause()
-            return
+    async def _use_pause(self) -> None:
+        """While the editor is idle, do pending maintenance, and prepare for the first requests about open files,
+        handling messages between steps; an edit ends it."""
+        await asyncio.sleep(PAUSE)
+        while self.answering:
+            await asyncio.sleep(PAUSE)
         if self.scanned.is_set() and not self._is_settled:
             gc.freeze()  # the first objects stay alive: scanning them would delay an answer
             self._is_settled = True
-        self._preparing = asyncio.ensure_future(self._prepare())
-
-    async def _prepare(self) -> None:
-        """Prepare for the first requests about open files, handling messages between steps; an edit ends it."""
         self._ready.intersection_update(self.session.open)
         for path in [path for path in self.session.open if path not in self._ready]:
             with suppress(Unknown):

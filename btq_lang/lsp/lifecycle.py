@@ -26,7 +26,6 @@ def register(server: Server) -> None:
     async def initialized(_: types.InitializedParams) -> None:
         # Not in `initialize`: the editor waits for its result, and modules that read files take long to import.
         folders = [*server.workspace.folders] or [root for root in (server.workspace.root_uri,) if root]
-        server.session.settle(server.initial_settings)
         server.session.work_in(tuple(map(convert.path, folders)))
         gc.freeze()  # imported objects stay alive
         gc.set_threshold(100_000, 50, 10)  # most objects of an edit stay alive: collect less often

@@ -85,7 +85,7 @@ def register(server: Server) -> None:
         workspace, _, found = server.ask(params, partial(features.rename.rename, name=params.new_name), reads=True)
         if isinstance(found, features.rename.Refusal):
             raise Refused(found.reason)
-        return convert.workspace_edit(workspace, found.edits, server.versions_for_edits())
+        return convert.workspace_edit(server.versions_for_edits(), (workspace, found.edits))
 
     @server.feature(types.WORKSPACE_SYMBOL)
     def symbols(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:

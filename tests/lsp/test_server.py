@@ -1195,8 +1195,8 @@ def test_a_key_ends_a_pause() -> None:
         assert pause is not None
         assert not pause.cancelled()
         server.check_soon(("open",))
-        assert pause.cancelled()
         await server.task
+        assert pause.cancelled()
 
     asyncio.run(press())
 
