@@ -32,10 +32,10 @@ def compare(old: Workspace, old_paths: Iterable[str], new: Workspace, new_paths:
         old_paths: the files of the old mission, as `Workspace.closure` gives them: its own file is the last.
         new_paths: those of the new one.
     """
-    before, after = contents(old, old_paths), contents(new, new_paths)
-    renamed = renamed_items(before.items, after.items)
-    forests = Forest(before.trees), Forest(after.trees)
+    (trees, items), (new_trees, new_items) = contents(old, old_paths), contents(new, new_paths)
+    renamed = renamed_items(items, new_items)
+    forests = Forest(trees), Forest(new_trees)
     match(*forests, renamed)
-    of_items = item_changes(before.items, after.items, renamed, tuple(forest.parts for forest in forests))
+    of_items = item_changes(items, new_items, renamed, tuple(forest.parts for forest in forests))
     changes = [*of_items, *tree_changes(*forests, renamed)]
     return tuple(sorted(changes, key=lambda change: [*TITLES].index(section(change))))  # a stable sort

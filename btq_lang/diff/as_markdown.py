@@ -42,20 +42,12 @@ def code(text: str) -> str:
 
 
 def _change(comparison: Comparison, change: Change) -> Iterator[str]:
-    thing, name, happened = headline(change)
+    thing, name, happened = headline(change, code)
     what, _, more = happened.partition(" ")
-    said = [thing, code(name) if name else "", f"**{what}**", _more(more), f"({code(comparison.line(change))})"]
+    said = [thing, code(name) if name else "", f"**{what}**", more, f"({code(comparison.line(change))})"]
     yield f"- {' '.join(word for word in said if word)}"
     for sign, text in lines(change):
         yield f"  - {_WORDS[sign]}{code(text)}"
-
-
-def _more(more: str) -> str:
-    for before in ("from around ", "around ", "from ", "to "):
-        head, found, names = more.partition(before)
-        if found:
-            return f"{head}{before}{code(names)}"
-    return more
 
 
 _WORDS = {"+": "added ", "-": "removed ", "~": ""}

@@ -92,15 +92,8 @@ class Item(Record):
     place: Place
 
 
-class Contents(Record):
-    """The contents of a mission: its trees, and all else."""
-
-    trees: tuple[Part, ...]
-    items: tuple[Item, ...]
-
-
-def contents(workspace: Workspace, paths: Iterable[str]) -> Contents:
-    """The contents of some files of a workspace together; of duplicates the first counts, as in the language.
+def contents(workspace: Workspace, paths: Iterable[str]) -> tuple[list[Part], list[Item]]:
+    """The trees of some files together, and all else in them; of duplicates the first counts, as in the language.
 
     Args:
         paths: the mission's own file is the last; the Roots of the others have no effect.
@@ -132,7 +125,7 @@ def contents(workspace: Workspace, paths: Iterable[str]) -> Contents:
             ports = {aspect: value for aspect, value in model.values.items() if aspect.startswith("port ")}
             tree.values = {**ports, **tree.values}
             del items[model.thing, model.name]
-    return Contents(tuple(trees), tuple(items.values()))
+    return trees, [*items.values()]
 
 
 class _Reader:

@@ -6,7 +6,7 @@ One invariant: the words are complete; colour and marks add nothing.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
 from btq_lang.diff.changes import Change, Detail
@@ -18,17 +18,17 @@ _IN_WORDS: Final = ("title", "quality", "attached to", "category", "kind", "tree
 _MOST: Final = 3  # names in a list
 
 
-def headline(change: Change) -> tuple[str, str, str]:
-    """The thing, its name, and what happened to it."""
+def headline(change: Change, shown: Callable[[str], str] = str) -> tuple[str, str, str]:
+    """The thing, its name, and what happened to it; `shown`: renders the names in that."""
     if change.what == "renamed":
-        return change.thing, change.earlier or "", f"renamed to {change.name}"
+        return change.thing, change.earlier or "", f"renamed to {shown(change.name)}"
     words: list[str] = [change.what]
     if change.below:
         words.append(f"with {counted(change.below, 'node')} below")
     if change.around:
-        words.append(f"{'around' if change.what == 'added' else 'from around'} {_row(change.around)}")
-    if change.what == "moved" and change.earlier != change.name:
-        words.append(f"from {change.earlier}")
+        words.append(f"{'around' if change.what == 'added' else 'from around'} {shown(_row(change.around))}")
+    if change.what == "moved" and change.earlier is not None and change.earlier != change.name:
+        words.append(f"from {shown(change.earlier)}")
     return change.thing, change.name.removeprefix("apply ") if change.thing == "apply" else change.name, " ".join(words)
 
 

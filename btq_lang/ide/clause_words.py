@@ -84,7 +84,7 @@ def is_count(words: Sequence[str]) -> bool:
     head = _begins_last(words, _CLAUSES)
     if head not in _COUNTED:
         return False
-    behind = words[_last_index(words, head) + 1 :]
+    behind = words[last_index(words, head) + 1 :]
     return not {"per", "every"} & set(behind) and _begins_last(behind, ("if", "else", ",")) != "if"
 
 
@@ -129,11 +129,11 @@ def _begins_last(words: Sequence[str], heads: Sequence[str]) -> str:
 
 def _behind_value(words: Sequence[str]) -> tuple[str, ...]:
     head = _begins_last(words, _CLAUSES)
-    if head in _USES and "of" not in words[_last_index(words, head) :]:
+    if head in _USES and "of" not in words[last_index(words, head) :]:
         return ("of",)
     if is_count(words):
         return ("per", "if")
-    if head in _REACTIONS and "after" not in words[_last_index(words, head) :]:
+    if head in _REACTIONS and "after" not in words[last_index(words, head) :]:
         return ("after", "if")
     if head in ("in", "with"):
         return ("of runs", "of activations")
@@ -146,8 +146,9 @@ def _behind_value(words: Sequence[str]) -> tuple[str, ...]:
     return ("if",) if head in _TIMED or head == "goal" else ()
 
 
-def _last_index(words: Sequence[str], word: str) -> int:
-    return len(words) - 1 - list(reversed(words)).index(word)
+def last_index(words: Sequence[str], word: str) -> int:
+    """The last index of a word; -1 if there is none."""
+    return next((index for index in reversed(range(len(words))) if words[index] == word), -1)
 
 
 _BOUNDS = ("at most", "at least", "less than", "more than", "between")

@@ -6,7 +6,7 @@ from btq_lang.catalog.measured import measured
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import parse_unit
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.ide.clause_words import is_window
+from btq_lang.ide.clause_words import is_window, last_index
 from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.place import Place
 from btq_lang.syntax.tokens import NAME
@@ -71,20 +71,15 @@ def parameters_at(place: Place) -> dict[str, str]:
 def _of_argument(workspace: Workspace, path: str, place: Place) -> str | None:
     """The unit of the parameter whose argument or default is being written."""
     words = [word.text for word in place.group] if place.callee else []
-    at = _last(words, "=")
+    at = last_index(words, "=")
     if at < 1 or next((word for word in reversed(words[at:]) if word in ("if", "else", ",")), "") == "if":
         return None  # operands of a condition are not arguments
     if place.is_of_parameters:
-        return parameters_at(place).get(words[_last(words[:at], ":") - 1])
+        return parameters_at(place).get(words[last_index(words[:at], ":") - 1])
     found = workspace.scope(path).find(Kind.REQUIREMENT, place.callee)
     item = found.symbol.target if found is not None else None
     parameters = item.parameters if isinstance(item, Requirement) else ()
     return next((one.unit.text for one in parameters if one.unit and one.name.text == words[at - 1]), None)
-
-
-def _last(words: list[str], word: str) -> int:
-    """The last index of a word; -1 if there is none."""
-    return next((index for index in reversed(range(len(words))) if words[index] == word), -1)
 
 
 def _of_first_value(workspace: Workspace, path: str, place: Place) -> str | None:

@@ -7,7 +7,7 @@ from functools import partial
 
 from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import Record
-from btq_lang.util.text import Span
+from btq_lang.util.text import Placed, Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.node_names import meaning_of
 from btq_lang.workspace.symbols import requirements_at
@@ -179,10 +179,8 @@ def _ports(ports: tuple[syntax.Port, ...], by: int) -> tuple[Outline, ...]:
     return tuple(_named(port.name, "port", detail, port, by) for port, detail in zip(ports, details, strict=True))
 
 
-def _named(word: syntax.Word | None, kind: str, detail: str, item: object, by: int) -> Outline:
-    start: int = item.start  # type: ignore[attr-defined]  # every item has both
-    end: int = item.end  # type: ignore[attr-defined]  # as above
-    whole = Span(start, max(end, word.end if word is not None else end))
+def _named(word: syntax.Word | None, kind: str, detail: str, item: Placed, by: int) -> Outline:
+    whole = Span(item.start, max(item.end, word.end if word is not None else 0))
     return Outline(
         word.text if word is not None and word.text else kind, kind, detail, whole.shifted(by), _placed(word, whole, by)
     )

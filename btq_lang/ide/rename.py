@@ -57,13 +57,11 @@ def prepare_rename(workspace: Workspace, path: str, offset: int) -> Renamable | 
 
 def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming | Refusal:
     """The edits that rename what the word at a place means; the new name gets quotes where needed."""
-    ready = prepare_rename(workspace, path, offset)
     found = at(workspace, path, offset)
-    if isinstance(ready, Refusal) or found is None:
-        return ready if isinstance(ready, Refusal) else Refusal("nothing to rename here")
+    if found is None:
+        return Refusal("nothing to rename here")
     wanted = subject(workspace, found)
-    reason = _unfit(wanted, name)
-    reason = reason or _is_the_other(workspace, path, wanted, name)
+    reason = _refusal(workspace, wanted, found) or _unfit(wanted, name) or _is_the_other(workspace, path, wanted, name)
     if reason:
         return Refusal(reason)
     places = tuple(everywhere(workspace, wanted))

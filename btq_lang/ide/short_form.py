@@ -95,7 +95,8 @@ def _head(file: File, entry: Entry, node: Node) -> Iterator[Edit]:
     text = file.text
     opened = text.find("(", entry.start + head.end)
     if len(moved) == len(node.attributes) and (closed := _closing(file, opened)) is not None:
-        inside = _without(text[opened + 1 : closed], moved, entry.start - opened - 1)
+        gone = [Edit(pair.span.shifted(entry.start - opened - 1), "") for pair in moved]
+        inside = apply_edits(text[opened + 1 : closed], gone)
         if not inside.strip(" ,\t\r\n"):
             before = len(text[:opened]) - len(text[:opened].rstrip(" \t"))
             yield Edit(Span(opened - before, closed + 1), "")
@@ -105,13 +106,6 @@ def _head(file: File, entry: Entry, node: Node) -> Iterator[Edit]:
         rest = text[end:].lstrip(" \t")
         rest = rest[1:].lstrip(" \t") if rest.startswith(",") else rest
         yield Edit(Span(start, len(text) - len(rest)), "")
-
-
-def _without(text: str, pairs: list[Pair], by: int) -> str:
-    for pair in sorted(pairs, key=lambda pair: pair.key.start, reverse=True):
-        start, end = pair.span.shifted(by)
-        text = text[:start] + text[end:]
-    return text
 
 
 def _closing(file: File, opened: int) -> int | None:
