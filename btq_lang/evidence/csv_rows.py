@@ -40,12 +40,7 @@ def _rows(report: Report) -> Iterator[dict[str, str | float]]:
                     "mission": mission.name,
                     "clause": clause.text,
                     "path": clause.path,
-                    "verdict": clause.verdict,
-                    "unit": clause.unit,
-                    "counted": clause.counted,
-                    "violated": clause.violated,
-                    "unknown": clause.unknown,
-                    "cut_off": clause.cut_off,
+                    **{name: getattr(clause, name) for name in _AS_THEY_ARE},
                     "worst": worst.text if worst is not None else "",
                     "worst_si": worst.si if worst is not None else "",
                     "worst_run": worst.run if worst is not None and worst.run is not None else "",
@@ -58,7 +53,8 @@ def _rows(report: Report) -> Iterator[dict[str, str | float]]:
                 }
 
 
+_AS_THEY_ARE: Final = ("verdict", "unit", "counted", "violated", "unknown", "cut_off")
 _COLUMNS: Final = (
-    *("requirement", "title", "mission", "clause", "path", "verdict", "unit", "counted", "violated", "unknown"),
-    *("cut_off", "worst", "worst_si", "worst_run", "low", "high", "more", "result", "look_at", "limits"),
+    *("requirement", "title", "mission", "clause", "path", *_AS_THEY_ARE),
+    *("worst", "worst_si", "worst_run", "low", "high", "more", "result", "look_at", "limits"),
 )

@@ -97,7 +97,11 @@ class Listener(Protocol):
 
 
 class MissionEvaluation:
-    """Judges a mission's requirements while its logs are read; gives listeners all that is found."""
+    """Judges a mission's requirements while its logs are read; gives listeners all that is found.
+
+    Attributes:
+        found: what the verdicts need of the logs so far.
+    """
 
     def __init__(
         self,
@@ -122,7 +126,7 @@ class MissionEvaluation:
         self._with_measures: Final = with_measures
         self._clauses: Final = clauses
         self._contexts: Final = Contexts(found.contexts)
-        self._found: Final = Findings([each.found for each in clauses], self._contexts.counts)
+        self.found: Final = Findings([each.found for each in clauses], self._contexts.counts)
         self._open_run: Final = OpenRun() if with_timelines else None
 
     def read(self, session: Session, joined: Joined, given: Mapping[str, Series], first_run: int, source: str) -> int:
@@ -150,7 +154,7 @@ class MissionEvaluation:
         for listener in self.listeners:
             listener.join(joined, self._clauses)
         self._contexts.join(joined, signals, history)
-        coverage = self._found.coverage
+        coverage = self.found.coverage
         coverage.expect(tree, joined.written())
         begin: int | None = None
         end = 0
@@ -179,7 +183,7 @@ class MissionEvaluation:
                 runs += 1
                 begin = activation.begin if begin is None else begin
                 end = activation.end
-                self._found.outcomes[activation.outcome] += 1
+                self.found.outcomes[activation.outcome] += 1
                 began = origin.uid if origin is not None else None
                 repeats = coverage.retries.now, coverage.recoveries.now
                 coverage.end_run(run.number, began)
@@ -191,11 +195,11 @@ class MissionEvaluation:
                 history.clear()
                 explainer.end_run()
                 if self._open_run is not None:
-                    self._open_run.end(run, tree, self._found.clauses)
+                    self._open_run.end(run, tree, self.found.clauses)
                 signals.forget_before(end)
                 self._ran(run.number)
         session.remarks.extend([found for each in self._clauses if (found := each.remark(tree, log.keeping))])
-        self._found.add_source(
+        self.found.add_source(
             Source(
                 file=source,
                 runs=runs,
@@ -214,14 +218,6 @@ class MissionEvaluation:
         """Tell the listeners that the log has been read."""
         for listener in self.listeners:
             listener.end(self._clauses)
-
-    def findings(self) -> Findings:
-        """What the verdicts need of the logs so far."""
-        return self._found
-
-    def add(self, findings: Findings, runs: int) -> None:
-        """Add what was found in later logs, as `Findings.add`."""
-        self._found.add(findings, runs)
 
     def verdicts(self, open_run: Run | None = None) -> tuple[RequirementVerdict, ...]:
         """The verdict on each requirement so far, with the open run if that is given."""
@@ -242,7 +238,7 @@ class MissionEvaluation:
 
     def result(self) -> MissionVerdicts:
         """All that was found so far."""
-        requirements, found = self.mission.requirements, self._found
+        requirements, found = self.mission.requirements, self.found
         held, unknown = found.contexts
         return MissionVerdicts(
             name=self.mission.name,

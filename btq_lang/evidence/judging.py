@@ -148,7 +148,7 @@ def _judged(
         problems = (f"{shown(log)}: cannot be read: {error.strerror or error}",)
     for evaluation in evaluations.values():
         evaluation.end()
-    findings = tuple((path, evaluation.findings()) for (path, _), evaluation in evaluations.items())
+    findings = tuple((path, evaluation.found) for (path, _), evaluation in evaluations.items())
     return JudgedLog(runs, findings, tuple(foreign.values()), problems)
 
 
@@ -166,7 +166,7 @@ class Judging:
     def add(self, log: JudgedLog) -> None:
         """Add the next log."""
         for path, findings in log.findings:
-            self._evaluations[path].add(findings, self.runs)
+            self._evaluations[path].found.add(findings, self.runs)
         self.runs += log.runs
         for each in log.foreign:
             known = self._foreign.get((each.file, each.of))

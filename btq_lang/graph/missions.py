@@ -55,7 +55,7 @@ def figures(workspace: Workspace, path: str, with_qualities: bool = False) -> tu
     """
     found = requirements(workspace, path)
     notes = _notes(found) if with_qualities else {}
-    mine = _keyed(found, path)
+    mine = keyed(workspace, path)
     keys = {id(node): key for key, node in mine}
     return tuple(figure(nodes, keys, notes) for nodes in by_tree(node for _, node in mine))
 
@@ -66,11 +66,7 @@ def keyed(workspace: Workspace, path: str) -> tuple[tuple[str, ResolvedNode], ..
     Raises:
         KeyError: there is no such file.
     """
-    return _keyed(requirements(workspace, path), path)
-
-
-def _keyed(found: Requirements, path: str) -> tuple[tuple[str, ResolvedNode], ...]:
-    mine = (node for node in found.nodes.all if node.path == path)
+    mine = (node for node in requirements(workspace, path).nodes.all if node.path == path)
     return tuple((f"n{number}", node) for number, node in enumerate(mine))
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
+from btq_lang.btcpp.enforcement import unasked
 from btq_lang.graph.missions import clauses_in_words
 from btq_lang.requirements.model import Applied
 from btq_lang.requirements.resolve import Requirements
@@ -34,9 +35,7 @@ def _clauses(applied: Applied, because: str) -> tuple[Clause, ...]:
     requirement = applied.requirement
     if not requirement.claims:
         return tuple(Clause(text, "reviewed", "it is not measurable") for text in clauses_in_words(applied)[:1])
-    if requirement.is_verified_by_people:
-        why = f"verified by {requirement.method}"
-        return tuple(Clause(claim.text, "reviewed", why) for claim in requirement.claims)
-    is_demanded = requirement.demands_enforcement
-    why = because or f"nothing enforces `on violation {requirement.action}`" if is_demanded else ""
-    return tuple(Clause(claim.text, "monitored", why, is_demanded) for claim in requirement.claims)
+    is_demanded = unasked(requirement) is None
+    not_enforced = because or f"nothing enforces `on violation {requirement.action}`"
+    way, why = unasked(requirement) or ("monitored", not_enforced)
+    return tuple(Clause(claim.text, way, why, is_demanded) for claim in requirement.claims)

@@ -38,8 +38,8 @@ def added(made: Case) -> MissionVerdicts:
     for number, rows in enumerate(made.sessions):
         one = MissionEvaluation(made.mission, with_timelines=True)
         read = one.read(Session(made.joined.tree, iter(rows)), made.joined, made.series, 1, f"log {number}")
-        findings: Findings = pickle.loads(pickle.dumps(one.findings()))
-        evaluation.add(findings, runs)
+        findings: Findings = pickle.loads(pickle.dumps(one.found))
+        evaluation.found.add(findings, runs)
         runs += read
     return evaluation.result()
 

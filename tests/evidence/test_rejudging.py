@@ -38,7 +38,7 @@ def judged(made: Case, mission: Candidate) -> MissionVerdicts:
     for number, session in enumerate(made.sessions):
         one = MissionEvaluation(mission, with_measures=True)
         read = one.read(Session(made.joined.tree, iter(session)), joined, made.series, 1, f"log {number}")
-        evaluation.add(one.findings(), runs)
+        evaluation.found.add(one.found, runs)
         runs += read
     return evaluation.result()
 

@@ -41,7 +41,7 @@ def judged_and_kept(made: Case, store: Path) -> MissionVerdicts:
             read = one.read(Session(made.joined.tree, iter(transitions)), made.joined, made.series, 1, "log")
             one.end()
         engine.write_parquet(str(folder), {"log": folder.name, "label": "", "source": f"log {number}"})
-        evaluation.add(one.findings(), runs)
+        evaluation.found.add(one.found, runs)
         runs += read
     return evaluation.result()
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from btq_lang.evidence.store.queries import OVERVIEW
+from btq_lang.evidence.store.summary import grouped
 from btq_lang.util.record import Record
 from btq_lang.util.text import counted
 
@@ -64,22 +66,13 @@ def steps_of(first: int, last: int) -> Steps:
 def trends(ask: Ask, steps: Steps) -> Mapping[str, Trends]:
     """The trends of each mission."""
     words = {"origin": steps.origin, "step": steps.length}
-    runs, verdicts = (by_mission(ask(OVERVIEW[name].format(**words))) for name in ("runs", "verdicts"))
+    runs, verdicts = (
+        grouped(ask(OVERVIEW[name].format(**words)), itemgetter("mission")) for name in ("runs", "verdicts")
+    )
     return {mission: _trends(rows, verdicts.get(mission, ()), steps) for mission, rows in runs.items()}
 
 
-def by_mission(rows: Sequence[Row]) -> dict[str, list[Row]]:
-    """The rows of each mission."""
-    found: dict[str, list[Row]] = {}
-    for row in rows:
-        found.setdefault(row["mission"], []).append(row)
-    return found
-
-
 def _trends(runs: Sequence[Row], verdicts: Sequence[Row], steps: Steps) -> Trends:
-    of_requirement: dict[str, list[Row]] = {}
-    for row in verdicts:
-        of_requirement.setdefault(row["requirement"], []).append(row)
     return Trends(
         runs=_values(runs, steps, lambda row: row["runs"]),
         failed=_values(runs, steps, lambda row: row["failed"] / row["runs"]),
@@ -87,7 +80,7 @@ def _trends(runs: Sequence[Row], verdicts: Sequence[Row], steps: Steps) -> Trend
         recoveries=_values(runs, steps, lambda row: row["recoveries"] / row["runs"]),
         violated={
             name: _values(rows, steps, lambda row: row["violated"] / row["judged"])
-            for name, rows in of_requirement.items()
+            for name, rows in grouped(verdicts, itemgetter("requirement")).items()
         },
     )
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import groupby
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from btq_lang.catalog.units import Unit, parse_unit
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
     Row: TypeAlias = Mapping[str, Any]
     Ask: TypeAlias = Callable[[str], Sequence[Row]]  # the rows of a question, by the names of their columns
 
-PARTS: Final = ("label", "robot")  # what a summary may be parted by
 _VIOLATIONS: Final = 10  # named of each clause
 
 
@@ -50,7 +50,7 @@ def summary(ask: Ask, store: str, parts: Sequence[str] = ()) -> Report:
     Args:
         ask: gives an engine a question.
         store: its name, as people read it.
-        parts: of PARTS, those that have verdicts of their own.
+        parts: `label` and `robot`, as far as those have verdicts of their own.
     """
     return Report(tuple(mission for _, mission in parted(ask, store, parts)), (), ())
 
@@ -67,15 +67,15 @@ def parted(
     columns = {"by": ", ".join(by), "by_verdicts": ", ".join(f"verdicts.{each}" for each in by)}
     columns["violations"] = str(violations)
     found = {name: ask(text.format(**columns)) for name, text in QUERIES.items()}
-    at_clause = (*by, "requirement", "clause", "node")
-    counts = {_key(row, at_clause): row for row in found["verdicts"]}
-    broken, recent = (_grouped(found[name], at_clause) for name in ("violations", "recent"))
-    clauses = _grouped(found["clauses"], by)
+    part_of, clause_of = itemgetter(*by), itemgetter(*by, "requirement", "clause", "node")
+    counts = {clause_of(row): row for row in found["verdicts"]}
+    broken, recent = (grouped(found[name], clause_of) for name in ("violations", "recent"))
+    clauses = grouped(found["clauses"], part_of)
     for part in found["runs"]:
         judged: dict[str, list[ClauseVerdict]] = {}
         titles = {}
-        for row in clauses.get(_key(part, by), ()):
-            key = _key(row, at_clause)
+        for row in clauses.get(part_of(part), ()):
+            key = clause_of(row)
             verdict = _verdict(row, counts.get(key), broken.get(key, ()), recent.get(key, ()))
             judged.setdefault(row["requirement"], []).append(verdict)
             titles[row["requirement"]] = row["title"] or ""
@@ -225,15 +225,12 @@ def _measure(row: Row, unit: Unit) -> Measure | None:
     return Measure(si, relation, Value(quantity(bound, unit), bound, unit), unit)
 
 
-def _grouped(rows: Sequence[Row], columns: Sequence[str]) -> dict[tuple[Any, ...], list[Row]]:
-    found: dict[tuple[Any, ...], list[Row]] = {}
+def grouped(rows: Sequence[Row], key: Callable[[Row], Any]) -> dict[Any, list[Row]]:
+    """The rows that have the same key, by it."""
+    found: dict[Any, list[Row]] = {}
     for row in rows:
-        found.setdefault(_key(row, columns), []).append(row)
+        found.setdefault(key(row), []).append(row)
     return found
-
-
-def _key(row: Row, columns: Sequence[str]) -> tuple[Any, ...]:
-    return tuple(row[each] for each in columns)
 
 
 _SAME: Final = 1e-9  # of the larger value: what subtracting and adding a bound may round off
