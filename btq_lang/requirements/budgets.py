@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import fsum, inf
-from typing import Final
+from typing import Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements import nodes
@@ -24,8 +24,6 @@ from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.resolved import ResolvedNode, ResolvedTree, tree_named, tree_nodes, trees_called
 from btq_lang.workspace.workspace import Workspace
 
-__all__ = ["Budget", "Budgets", "Range", "Success", "Term"]
-
 
 class Success(Record):
     """A node succeeds within a number of seconds, with at least a probability.
@@ -39,16 +37,8 @@ class Success(Record):
     parts: tuple[tuple[ResolvedNode, float], ...] = ()
 
 
-class Outcome(Record):
-    """What other trees see of a tree: how long it takes, and how likely it succeeds, without its nodes.
-
-    Attributes:
-        is_run: whether the tree exists and does not contain itself.
-    """
-
-    budget: Budget
-    success: Success | None = None
-    is_run: bool = False
+# What other trees see of a tree: how long it takes, and how likely it succeeds, without its nodes.
+Outcome: TypeAlias = tuple[Budget, Success | None]
 
 
 # ---- queries ----
@@ -64,14 +54,12 @@ def tree_budgets(store: Store[Workspace], viewpoint: str, path: str, facts: Fact
 def outcome(store: Store[Workspace], viewpoint: str, name: str) -> Outcome:
     """What other trees see of the tree with a name."""
     tree = store.ask(tree_named, viewpoint, name)
-    if tree is None or tree.root is None:
+    if tree is None or tree.root is None or store.ask(_contains_itself, viewpoint, name):
         return _UNKNOWN_TREE
-    if store.ask(_contains_itself, viewpoint, name):
-        return Outcome(UNKNOWN)
     budgets = store.ask(tree_budgets, viewpoint, tree.path, tree.facts)
     success = budgets.success(tree.root)
     seen = Success(success.seconds, success.probability) if success is not None else None
-    return Outcome(_without_terms(budgets.of(tree.root)), seen, is_run=True)
+    return _without_terms(budgets.of(tree.root)), seen
 
 
 @on_circle(True)
@@ -97,8 +85,8 @@ class Budgets:
 
     def composed(self, node: ResolvedNode) -> Budget:
         """How long a node takes, if all below it meet their requirements: what its own bounds are compared with."""
-        root, seen = self._run_by(node)
-        return self._in_tree(node).composed(node) if root is None else _as_part(root, seen.budget)
+        root, (budget, _) = self._run_by(node)
+        return self._in_tree(node).composed(node) if root is None else _as_part(root, budget)
 
     def composed_of_known(self, node: ResolvedNode) -> Budget:
         """The same, if nodes without a known bound take no longer than they must: the time of the others alone."""
@@ -107,8 +95,8 @@ class Budgets:
     def success(self, node: ResolvedNode) -> Success | None:
         """How likely a node succeeds, and within which time, if all below it meet their requirements; None if
         unknown."""
-        root, seen = self._run_by(node)
-        return self._in_tree(node).composed_success(node) if root is None else _success_as_part(root, seen.success)
+        root, (_, success) = self._run_by(node)
+        return self._in_tree(node).composed_success(node) if root is None else _success_as_part(root, success)
 
     def success_of_known(self, node: ResolvedNode) -> Success | None:
         """The same, if unknown nodes always succeed, at once: an upper bound."""
@@ -118,12 +106,12 @@ class Budgets:
         return self._store.ask(tree_budgets, self._viewpoint, node.path, node.facts)
 
     def _run_by(self, node: ResolvedNode) -> tuple[ResolvedNode | None, Outcome]:
-        """The root of the tree that a SubTree node runs, unless that tree contains itself, and its outcome."""
+        """The root of the tree that a SubTree node runs, and its outcome."""
         name = node.node.id
         if node.category != "SubTree" or name is None:
             return None, _UNKNOWN_TREE
         seen = self._store.ask(outcome, self._viewpoint, name.text)
-        return self._store.ask(nodes.root, self._viewpoint, name.text) if seen.is_run else None, seen
+        return self._store.ask(nodes.root, self._viewpoint, name.text), seen
 
 
 # ---- one tree ----
@@ -184,7 +172,7 @@ class TreeBudgets:
     def composed_success(self, node: ResolvedNode) -> Success | None:
         """A node's success as far as it follows from its children's."""
         if node.category == "SubTree":
-            return self._outcome_of(node).success
+            return self._outcome_of(node)[1]
         budget = self.composed(node)
         if not node.children:
             sure = budget.success is not None and budget.failure is None and budget.success.high < inf
@@ -216,7 +204,7 @@ class TreeBudgets:
 
     def _compose(self, node: ResolvedNode) -> Budget:
         if node.category == "SubTree":
-            return self._outcome_of(node).budget
+            return self._outcome_of(node)[0]
         if node.behavior is None and not node.node.children:
             return _CONDITION if node.category == "Condition" else _NO_CLAUSE
         if node.behavior is None:
@@ -368,4 +356,4 @@ _CONDITION: Final = Budget(ZERO, ZERO, None, False)
 _NO_CLAUSE: Final = Budget(ANY, ANY)
 _SURE: Final = Success(0.0, 1.0)
 _CHANGING: Final = frozenset(("_failureIf", "_successIf", "_skipIf", "_while"))
-_UNKNOWN_TREE: Final = Outcome(UNKNOWN)
+_UNKNOWN_TREE: Final[Outcome] = (UNKNOWN, None)  # or one that contains itself

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.catalog.nodes import BUILTINS, lookup
-from btq_lang.requirements.budgets import Budgets, Range
+from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.composition import _CONTROLS, _DECORATORS
+from btq_lang.requirements.durations import Range
 from btq_lang.requirements.resolve import Requirements
 from btq_lang.workspace.resolved import ResolvedNode
 

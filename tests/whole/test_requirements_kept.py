@@ -16,7 +16,9 @@ from kept_checks import Kept
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.attach import applied_in
-from btq_lang.requirements.budgets import Budget, Budgets, Range, Success, tree_budgets
+from btq_lang.requirements.budget_parts import Budget
+from btq_lang.requirements.budgets import Budgets, Success, tree_budgets
+from btq_lang.requirements.durations import Range
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.workspace import inputs
 from btq_lang.workspace.inputs import advance
