@@ -7,7 +7,7 @@ importing   a document as a mission; `wording` spells its words, `version3` tran
 export      a mission as a document; `source` is what its parts share, `trees`, `models`, `attributes`, `descriptions`
             and `spelling` the parts
 enforcement the nodes that requirements add, and how each clause is enforced; `enforceability`: whether it can be,
-            `guards` what that takes, `around` that as data, `conditions` its scripts, `keys` its names,
+            `guards` what that takes, `around` its elements, `conditions` its scripts, `keys` its names,
             `wrappers` adds the elements and removes them
 bundle      a mission and all that it includes as one document
 outputs     the texts that a build writes; `as_built` finds the mission that such texts were made of

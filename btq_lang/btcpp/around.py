@@ -1,16 +1,19 @@
-"""The nodes that are put around a node to enforce a requirement, as data.
+"""The elements that are put around a node to enforce a requirement, as they are planned.
 
-One invariant: only `wrappers` makes elements of this data.
+One invariant: each has the attribute `_btq`, with the requirement that it enforces.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, Literal, TypeAlias
 
+from btq_lang.btcpp.document import Attribute, Content, Element, escape
+from btq_lang.btcpp.marks import MARK
 from btq_lang.util.record import Record
 
 WrapperTag: TypeAlias = Literal["Sequence", "ReactiveSequence", "Timeout"]
+LeafTag: TypeAlias = Literal["Script", "ScriptCondition"]
 
 # The kinds that enforce a clause: a log shows by them what stopped a node.
 LIMITING: Final = "Timeout"  # halts the node after a time
@@ -27,31 +30,35 @@ LIMIT: Final = 5
 INSIDE: Final = 6  # scripts that record the start and end of the node itself
 
 
-class Leaf(Record):
-    """A Script or a ScriptCondition beside a node.
-
-    Attributes:
-        failed: script that runs when it fails.
-    """
-
-    tag: Literal["Script", "ScriptCondition"]
-    name: str
-    code: str
-    failed: str | None = None
+def marked(tag: str, requirement: str, attributes: Mapping[str, str], children: Iterable[Content] = ()) -> Element:
+    """An element that enforces a requirement; the values of its attributes are unescaped."""
+    spelt = [Attribute(name, escape(value)) for name, value in attributes.items()]
+    return Element(tag, [*spelt, Attribute(MARK, escape(requirement))], children)
 
 
-class FirstValues(Record):
-    """The values of entries that are still unwritten when the tree runs for the first time.
+def leaf(tag: LeafTag, requirement: str, name: str, code: str, failed: str | None = None) -> Element:
+    """A Script or a ScriptCondition beside a node; `failed`: script that runs when it fails."""
+    failing = {"_onFailure": failed} if failed is not None else {}
+    return marked(tag, requirement, {"name": name, "code": code, **failing})
+
+
+def first_values(requirement: str, values: Mapping[str, str]) -> Element:
+    """Gives values to entries that are still unwritten when the tree runs for the first time.
 
     A script cannot test whether an entry exists, so a node does: `WasEntryUpdated` fails if its entry was never
     written. It also fails if the entry was not written since the last test, hence the `RunOnce`.  The entry has no
     braces because a port creates an entry of its own type, in which no script can store a text.
 
-    Attributes:
-        values: each entry, as scripts name it (`@speed`), with its value, a script.
+    Args:
+        values: by entry, as scripts name it (`@speed`); each a script.
     """
-
-    values: tuple[tuple[str, str], ...]
+    asked = [
+        marked("WasEntryUpdated", requirement, {"entry": entry, "_onFailure": f"{entry} := {value}"})
+        for entry, value in values.items()
+    ]
+    # All of them are evaluated, whichever fails.
+    inside = marked("ForceSuccess", requirement, {}, [marked("ParallelAll", requirement, {}, asked)])
+    return marked("RunOnce", requirement, {"name": "btq_first"}, [inside])
 
 
 class Wrapper(Record):
@@ -69,8 +76,8 @@ class Wrapper(Record):
     tag: WrapperTag
     name: str
     attributes: tuple[tuple[str, str], ...] = ()
-    before: tuple[Leaf | FirstValues, ...] = ()
-    behind: tuple[Leaf, ...] = ()
+    before: tuple[Element, ...] = ()
+    behind: tuple[Element, ...] = ()
 
 
 def may_be_skipped(names: Sequence[str]) -> bool:

@@ -1,7 +1,7 @@
 """Whether the engine can be made to enforce a clause: what that takes, or why it is not enforced.
 
 One invariant: build, overview, editor and check all use this module, so they agree.  Checks of small files import it,
-so it depends on neither elements nor files; what is put around nodes is for `enforcement`.
+so it depends on no export; which nodes of a file get what is for `enforcement`.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Final, Literal, TypeAlias
 
-from btq_lang.btcpp.around import START, FirstValues, Leaf, Wrapper
+from btq_lang.btcpp.around import START, Wrapper, first_values, leaf
 from btq_lang.btcpp.conditions import all_of
 from btq_lang.btcpp.document import Comment, Document, Element
 from btq_lang.btcpp.enforceability import Elsewhere, Judge, where_else
@@ -262,9 +262,9 @@ def _start(plans: Iterable[_Plan]) -> tuple[Wrapper, ...]:
         cells.update(plan.cells)
         first.update(plan.first)
         stops.update(dict.fromkeys(plan.stops, "false"))
-    before: list[Leaf | FirstValues] = [FirstValues(tuple(first.items()))] if first else []
+    before = [first_values(_ALL, first)] if first else []
     if statements := [f"{key} := {value}" for key, value in (cells | stops).items()]:
-        before.append(Leaf("Script", "btq_start", "; ".join(statements)))
+        before.append(leaf("Script", _ALL, "btq_start", "; ".join(statements)))
     if not before:
         return ()
     if not stops:
@@ -272,9 +272,9 @@ def _start(plans: Iterable[_Plan]) -> tuple[Wrapper, ...]:
     code = all_of(f"({key} == false)" for key in stops)
     # The flags are set outside the reactive node, which would reset them at every tick; the condition after it catches
     # violations in the tree's last tick.
-    behind = (Leaf("ScriptCondition", "btq_end", code),)
+    behind = (leaf("ScriptCondition", _ALL, "btq_end", code),)
     init = Wrapper(START, _ALL, "Sequence", "btq_init", before=tuple(before), behind=behind)
-    guard = (Leaf("ScriptCondition", "btq_go_on", code),)
+    guard = (leaf("ScriptCondition", _ALL, "btq_go_on", code),)
     return init, Wrapper(START, _ALL, "ReactiveSequence", "btq_stop", before=guard)
 
 

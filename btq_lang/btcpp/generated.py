@@ -7,9 +7,9 @@ marks a file as generated is removed without a report.
 from __future__ import annotations
 
 from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element
-from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_generated_mark, own_description
+from btq_lang.btcpp.marks import DESCRIPTION_MARK, MARK, is_generated_mark, own_description
 from btq_lang.btcpp.version3 import Change
-from btq_lang.btcpp.wrappers import MARK, MOVED, holding_nodes, unwrapped
+from btq_lang.btcpp.wrappers import MOVED, holding_nodes, unwrapped
 from btq_lang.util.text import Span, counted
 
 

@@ -1,7 +1,7 @@
 """What makes the engine enforce a clause: the wrappers around nodes, or why there are none.
 
 One invariant: a clause counts as enforced if and only if it has wrappers that a test in `tests/engine` has seen at
-work, or the engine does by itself what it demands.  It knows neither elements nor the other clauses.
+work, or the engine does by itself what it demands.  It does not know the other clauses.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from btq_lang.btcpp.around import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, Leaf, Wrapper, WrapperTag
+from btq_lang.btcpp.around import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, LeafTag, Wrapper, WrapperTag, leaf
 from btq_lang.btcpp.conditions import (
     NoScript,
     all_of,
@@ -20,6 +20,7 @@ from btq_lang.btcpp.conditions import (
     signal_script,
     table_script,
 )
+from btq_lang.btcpp.document import Element
 from btq_lang.btcpp.keys import legal
 from btq_lang.catalog.units import Unit
 from btq_lang.catalog.verbs import VERBS
@@ -89,13 +90,9 @@ class Guarded:
 
     def _finish(self) -> None:
         if self._values:
-            script = Leaf("Script", f"{self.name}_start", "; ".join(self._values))
+            script = self.leaf("Script", "start", "; ".join(self._values))
             values = Wrapper(VALUES, self.requirement.name, "Sequence", f"{self.name}_values", before=(script,))
             self.wrappers.insert(0, (self.node, values))
-        for _, wrapper in self.wrappers:
-            for leaf in (*wrapper.before, *wrapper.behind):
-                if isinstance(leaf, Leaf):
-                    no_longer_than_allowed(leaf.code)
         claim = self.claim
         scopes = tuple(scope.condition for scope in self.requirement.scopes)
         read = signals_in((claim.condition, claim.limit, claim.signal, scopes)) if self.wrappers else ()
@@ -108,17 +105,21 @@ class Guarded:
         what: str,
         *,
         attributes: tuple[tuple[str, str], ...] = (),
-        before: tuple[Leaf, ...] = (),
-        behind: tuple[Leaf, ...] = (),
+        before: tuple[Element, ...] = (),
+        behind: tuple[Element, ...] = (),
         node: ResolvedNode | None = None,
     ) -> None:
         """Add a wrapper around the clause's node, or around another one."""
         wrapper = Wrapper(rank, self.requirement.name, tag, f"{self.name}_{what}", attributes, before, behind)
         self.wrappers.append((node or self.node, wrapper))
 
-    def condition(self, what: str, code: str) -> Leaf:
+    def leaf(self, tag: LeafTag, what: str, code: str, failed: str | None = None) -> Element:
+        no_longer_than_allowed(code)
+        return leaf(tag, self.requirement.name, f"{self.name}_{what}", code, failed)
+
+    def condition(self, what: str, code: str) -> Element:
         """A condition whose failure breaks the clause."""
-        return Leaf("ScriptCondition", f"{self.name}_{what}", code, f"{self.stop} := true" if self.stop else None)
+        return self.leaf("ScriptCondition", what, code, f"{self.stop} := true" if self.stop else None)
 
     def script(self, condition: Condition) -> str:
         return condition_script(condition, self.stored)
@@ -281,10 +282,10 @@ def _tries(draft: Guarded) -> None:
     most = number_script(bound.value, None, draft.stored)
     code = f"(({count} + 1.0) {bound.relation} {most})"
     draft.around(CONDITION, "Sequence", "tries", before=(draft.condition("check", code),))
-    counter = Leaf("Script", f"{draft.name}_counter", f"{count} := ({count} + 1.0)")
+    counter = draft.leaf("Script", "counter", f"{count} := ({count} + 1.0)")
     draft.around(INSIDE, "Sequence", "counted", before=(counter,))
     if holder is not None:
-        back = Leaf("Script", f"{draft.name}_zero", f"{count} := {real(0.0)}")
+        back = draft.leaf("Script", "zero", f"{count} := {real(0.0)}")
         draft.around(INSIDE, "Sequence", "per", before=(back,), node=holder)
 
 
@@ -303,16 +304,14 @@ def _follows(draft: Guarded) -> None:
     first = "true" if isinstance(subject, Mission) else "false"
     seen = draft.cell("seen", first)
     draft.around(CONDITION, "Sequence", "follows", before=(draft.condition("check", f"({seen} == true)"),))
-    taken = Leaf("Script", f"{draft.name}_taken", f"{seen} := false")
+    taken = draft.leaf("Script", "taken", f"{seen} := false")
     draft.around(INSIDE, "Sequence", "started", before=(taken,))
     if not isinstance(subject, Target):
         return
     attribute = _SEEN[event.happening]
     note = f"{seen} := true"
     if attribute is None:
-        draft.around(
-            INSIDE, "Sequence", "event", before=(Leaf("Script", f"{draft.name}_seen", note),), node=subject.node
-        )
+        draft.around(INSIDE, "Sequence", "event", before=(draft.leaf("Script", "seen", note),), node=subject.node)
     else:
         draft.around(INSIDE, "Sequence", "event", attributes=((attribute, note),), node=subject.node)
 

@@ -10,7 +10,8 @@ from collections.abc import Iterator, Mapping
 from typing import Final, TypeAlias
 
 from btq_lang.btcpp.document import Element
-from btq_lang.btcpp.wrappers import MARK, MOVED
+from btq_lang.btcpp.marks import MARK
+from btq_lang.btcpp.wrappers import MOVED
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 

@@ -13,6 +13,7 @@ from btq_lang.btcpp.document import unescape
 
 # A line of its own in a `_description`: the text before it, up to the line end, is the user's; the rest is btq's.
 DESCRIPTION_MARK: Final = "[btq]"
+MARK: Final = "_btq"  # the attribute of elements that enforce a requirement
 
 
 def generated_mark(source: str) -> str:

@@ -16,7 +16,7 @@ from btq_lang.btcpp.document import Document, Element
 from btq_lang.btcpp.enforcement import ClauseEnforcement
 from btq_lang.btcpp.instances import Instance, instances
 from btq_lang.btcpp.manual_edits import node_guards
-from btq_lang.btcpp.wrappers import MARK
+from btq_lang.btcpp.marks import MARK
 from btq_lang.catalog.units import Unit
 from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.model import Applied, InContext, Requirement, Signal, Target

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Container, Sequence
 from typing import Final
 
-from btq_lang.btcpp.around import FirstValues, Leaf, Wrapper, may_be_skipped
-from btq_lang.btcpp.document import Attribute, Comment, Content, Element, escape
+from btq_lang.btcpp.around import Wrapper, marked, may_be_skipped
+from btq_lang.btcpp.document import Attribute, Comment, Content, Element
+from btq_lang.btcpp.marks import MARK
 from btq_lang.catalog.kinds import CATEGORIES
 
-MARK: Final = "_btq"
 MOVED: Final = "_btq_moved"
 
 
@@ -68,41 +68,12 @@ def _moved(element: Element) -> list[tuple[int, Attribute]]:
 
 
 def _around(element: Element, wrapper: Wrapper) -> Element:
-    mark = Attribute(MARK, escape(wrapper.requirement))
     inside = element
     if wrapper.tag == "ReactiveSequence" and element.tag in CATEGORIES and element.tag != "SubTree":
         # The engine refuses an explicit form directly in a ReactiveSequence.
-        inside = Element("Sequence", [Attribute("name", f"{wrapper.name}_node"), mark], [element])
-    attributes = [Attribute("name", escape(wrapper.name))]
-    attributes += [Attribute(name, escape(value)) for name, value in wrapper.attributes]
-    before, behind = ([_leaf(leaf, mark) for leaf in leaves] for leaves in (wrapper.before, wrapper.behind))
-    return Element(wrapper.tag, [*attributes, mark], [*before, inside, *behind])
-
-
-def _leaf(leaf: Leaf | FirstValues, mark: Attribute) -> Element:
-    if isinstance(leaf, FirstValues):
-        return _first_values(leaf, mark)
-    attributes = [Attribute("name", escape(leaf.name)), Attribute("code", escape(leaf.code))]
-    if leaf.failed is not None:
-        attributes.append(Attribute("_onFailure", escape(leaf.failed)))
-    return Element(leaf.tag, [*attributes, mark])
-
-
-def _first_values(first: FirstValues, mark: Attribute) -> Element:
-    asked = [
-        Element(
-            "WasEntryUpdated",
-            [
-                Attribute("entry", entry),
-                Attribute("_onFailure", escape(f"{entry} := {value}")),
-                mark,
-            ],
-        )
-        for entry, value in first.values
-    ]
-    # All of them are evaluated, whichever fails.
-    inside = Element("ForceSuccess", [mark], [Element("ParallelAll", [mark], [*asked])])
-    return Element("RunOnce", [Attribute("name", "btq_first"), mark], [inside])
+        inside = marked("Sequence", wrapper.requirement, {"name": f"{wrapper.name}_node"}, [element])
+    children = (*wrapper.before, inside, *wrapper.behind)
+    return marked(wrapper.tag, wrapper.requirement, {"name": wrapper.name, **dict(wrapper.attributes)}, children)
 
 
 def _innermost(element: Element, holding: Container[Element]) -> Element:

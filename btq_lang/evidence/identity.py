@@ -13,9 +13,9 @@ from typing import Any, Final
 
 from btq_lang.btcpp.export import is_mission
 from btq_lang.btcpp.instances import Instance
+from btq_lang.btcpp.marks import MARK
 from btq_lang.btcpp.outputs import as_xml
 from btq_lang.btcpp.side_file import Built, RunningTree
-from btq_lang.btcpp.wrappers import MARK
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.evidence.model import LoggedTree
 from btq_lang.evidence.readers.tree import kind_of

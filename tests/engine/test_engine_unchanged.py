@@ -16,7 +16,7 @@ from btq_lang.btcpp.document import Document, write
 from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.instances import instances
-from btq_lang.btcpp.wrappers import MARK
+from btq_lang.btcpp.marks import MARK
 from btq_lang.workspace.workspace import Workspace
 
 HEAD = """\

@@ -16,7 +16,7 @@ import engine_simulator as engine
 from check_asserts import workspace_of
 from random_guards import Guarded
 
-from btq_lang.btcpp.wrappers import MARK
+from btq_lang.btcpp.marks import MARK
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.evidence.identity import Candidate, Joined, join
 from btq_lang.evidence.model import (

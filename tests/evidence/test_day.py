@@ -18,7 +18,7 @@ import pytest
 from evidence_logs import as_logged, btlog
 from random_guards import Guarded
 
-from btq_lang.btcpp.wrappers import MARK
+from btq_lang.btcpp.marks import MARK
 from btq_lang.cli import main
 from btq_lang.commands.opening import open_workspace
 from btq_lang.evidence.identity import Candidate
