@@ -25,11 +25,8 @@ def run(options: Namespace) -> int:
     for group in groups:
         for path in group.given:
             if group.workspace.files[path].origin is not None:
-                trouble.append(
-                    LoadProblem(
-                        path, "this is XML, which `btq format` does not change; `btq import` converts it to .btq"
-                    )
-                )
+                why = "this is XML, which `btq format` does not change; `btq import` converts it to .btq"
+                trouble.append(LoadProblem(path, why))
                 continue
             text = group.workspace.files[path].text
             done = format_text(text)

@@ -298,9 +298,8 @@ def qualities(workspace: Workspace, path: str, place: Place) -> Iterator[Proposa
     for found, include in defined(workspace, path, Kind.QUALITY):
         item = found.symbol.target
         text = item.text.text if isinstance(item, QualityDecl) and item.text else ""
-        yield Proposal(
-            found.symbol.name, "quality", text, written(found.symbol.name), None, "", found.symbol.name, include
-        )
+        name = found.symbol.name
+        yield Proposal(name, "quality", text, written(name), None, "", name, include)
     for one in sorted(standard_qualities(chosen), key=lambda quality: "." in quality.id):
         part = one.id.rpartition(".")[2]
         names = dict.fromkeys((one.id, part, one.id.replace("behaviour", "behavior"), one.name))

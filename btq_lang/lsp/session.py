@@ -63,7 +63,8 @@ class Session:
         self.parameters: dict[str, tuple[Workspace, Findings]] = {}
         self.check_seconds: dict[str, float] = {}
         self._evidence: dict[str, Evidence] = {}  # by the folder of the project
-        self._files: Files | None = None
+        self._files = Files()
+        self._files.overlay = self.open
         self._read_for: tuple[tuple[str, ...], dict[str, object]] | None = None  # which folders and settings
         self._workspaces: list[Workspace] = []  # their caches are for open files
         self._home: dict[str, int] = {}
@@ -116,7 +117,7 @@ class Session:
                 linked.update(each.linked(path, *looking))
         if renamed := old.defined_names ^ after.files[path].defined_names:
             linked.update(other for other in after.files if other != path and _lacks_definition(after, other, renamed))
-        return self._in_order(path, linked)
+        return path, *sorted(linked - {path}, key=lambda other: (other not in self.open, other))
 
     def close(self, path: str) -> tuple[str, ...]:
         """Close a file: the one on the disk counts again."""
@@ -134,9 +135,6 @@ class Session:
     def reload(self) -> tuple[str, ...]:
         """Read folders and projects again; returns all files."""
         self._read_for = self.folders, {**self.settings}
-        if self._files is None:
-            self._files = Files()
-            self._files.overlay = self.open
         self._files.folders = self.folders
         self._files.know(workspace.files[path] for path in self.open if (workspace := self.workspace_of(path)))
         severities = self._severities()
@@ -181,7 +179,7 @@ class Session:
     def _read_parameters(self, severities: Severities) -> None:
         """Store the findings in parameter files."""
         self.parameters = {}
-        if self._files is None or not self._files.parameter_files:
+        if not self._files.parameter_files:
             return
         from btq_lang.commands.nav2_check import nav2_findings  # few projects are for Nav2
 
@@ -196,7 +194,7 @@ class Session:
         """A workspace with the C++ of Nav2's nodes, if it is on this machine."""
         from btq_lang.commands.cpp_files import with_code_of_nav2  # few editors ask for it
 
-        return with_code_of_nav2(workspace, self._files.cpp) if self._files is not None else workspace
+        return with_code_of_nav2(workspace, self._files.cpp)
 
     @property
     def has_read(self) -> bool:
@@ -211,12 +209,6 @@ class Session:
             if name in RULES and word in _SEVERITIES:
                 found.append((name, _SEVERITIES[word]))
         return tuple(found)
-
-    def _in_order(self, path: str, others: Iterable[str]) -> tuple[str, ...]:
-        return (
-            path,
-            *sorted((other for other in others if other != path), key=lambda one: (one not in self.open, one)),
-        )
 
     def let_go(self) -> None:
         """Release what edits have replaced and, if they take much memory, the trees of files that are not worked in:
@@ -437,12 +429,9 @@ def _lacking(workspace: Workspace, paths: Iterable[str]) -> frozenset[str]:
 
 def _lacks_definition(workspace: Workspace, path: str, names: Set[Name]) -> bool:
     """Whether a file uses one of the names without a definition, so that its diagnostics name definitions elsewhere."""
-    missed = names & workspace.files[path].used_names
-    return bool(missed) and not missed <= _names_in_scope(workspace, path)
-
-
-def _names_in_scope(workspace: Workspace, path: str) -> frozenset[Name]:
-    return frozenset().union(*(workspace.files[each].defined_names for each in workspace.closure(path)))
+    missed = workspace.files[path].used_names & names
+    defined = (workspace.files[each].defined_names for each in workspace.closure(path))
+    return bool(missed and missed.difference(*defined))
 
 
 _MOST_IDLE = 30_000  # characters; each takes about 40 bytes when parsed
