@@ -41,12 +41,12 @@ def misspelt_entry(view: View) -> Iterator[Diagnostic]:
         others |= dict.fromkeys(name for name, _ in outside)
     if any(mention.name[:1] == "@" for mention in mentions):
         others |= dict.fromkeys(f"@{name}" for name in view.ask(_root_names))
-    alike = _Alike(others)
+    by_piece = _by_piece(others)
     reported: set[str] = set()
     for mention in mentions:
         if counts[mention.name] > 1:
             continue
-        for meant in alike.to(mention.name):
+        for meant in _alike(mention.name, by_piece):
             if meant in reported or _stand_together(mentions, mention, meant):
                 continue
             if view.ask(_is_meant, tree.name.text, mention.name, meant, meant in counts) and view.is_complete:
@@ -128,21 +128,20 @@ def _diagnostic(mentions: Iterable[Mention], mention: Mention, meant: str, is_si
     return Diagnostic("misspelt-entry", mention.span, message, related=related, fixes=tuple(fixes))
 
 
-class _Alike:
-    """Names that differ as only misspellings do, found without comparing all pairs: two names with one edit between
-    them become equal, or equal to the other, when one letter is left out."""
+def _by_piece(names: Iterable[str]) -> dict[str, list[str]]:
+    """An index by which similar names are found without comparing all pairs: two names with one edit between them
+    become equal, or equal to the other, when one letter is left out."""
+    found: dict[str, list[str]] = {}
+    for name in names:
+        for piece in _pieces(name):
+            found.setdefault(piece, []).append(name)
+    return found
 
-    def __init__(self, names: Iterable[str]) -> None:
-        self._by_piece: dict[str, list[str]] = {}
-        for name in names:
-            for piece in _pieces(name):
-                self._by_piece.setdefault(piece, []).append(name)
 
-    def to(self, name: str) -> list[str]:
-        """The names that may be meant by another one, the most similar first."""
-        found = {other for piece in _pieces(name) for other in self._by_piece.get(piece, ()) if other != name}
-        likely = [other for other in found if _is_slip(name, other)]
-        return sorted(likely, key=lambda other: (distance(name, other), other))
+def _alike(name: str, by_piece: dict[str, list[str]]) -> list[str]:
+    """The names that may be meant by another one, the most similar first."""
+    found = {other for piece in _pieces(name) for other in by_piece.get(piece, ()) if _is_slip(name, other)}
+    return sorted(found - {name}, key=lambda other: (distance(name, other), other))
 
 
 @lru_cache(1_000)  # the same names are in tree after tree

@@ -114,16 +114,13 @@ def _of_text(view: View, here: list[Signal]) -> Iterator[Found]:
 
 def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[Found]:
     """A guard on a signal without a first value: until something writes it, the engine ends the mission."""
-    reported: dict[str, list[Related]] = {}
-    signals: dict[str, Signal] = {}
+    reported: dict[str, tuple[Signal, list[Related]]] = {}
     for read, place in guards:
         for signal in read:
-            if signal.key is None or signal.initially is not None:
-                continue
-            signals[signal.name] = signal
-            reported.setdefault(signal.name, []).append(Related(place, "the engine checks this"))
-    for name, related in reported.items():
-        signal = signals[name]
+            if signal.key is not None and signal.initially is None:
+                related = reported.setdefault(signal.name, (signal, []))[1]
+                related.append(Related(place, "the engine checks this"))
+    for name, (signal, related) in reported.items():
         place = signal.place if signal.place.path == view.path else related[0].place
         yield found_at(
             place,

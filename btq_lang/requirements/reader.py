@@ -329,7 +329,7 @@ class Reader(PathReader):
     def condition(self, written: syntax.Condition | None) -> model.Condition | None:
         """A condition; None if a part of it was not understood."""
         if isinstance(written, syntax.Operand):
-            return self._lone(written.word)
+            return self._lone(written)
         if isinstance(written, syntax.NodeRuns):
             return self._running(written.path)
         if isinstance(written, syntax.Not):
@@ -363,28 +363,21 @@ class Reader(PathReader):
             return None
         return model.All(found) if written.operator == "and" else model.Any(found)
 
-    def _lone(self, word: syntax.Word) -> model.Condition | None:
+    def _lone(self, written: syntax.Operand) -> model.Condition | None:
         """A context, a bool signal or parameter, `true` or `false`, or else a running node."""
-        name = word.text
-        if word.kind in (NUMBER, QUANTITY):
-            term = self._number(word, False)
-            if term is not None:
-                self._no_condition(term)
-            return None
-        if word.kind == NAME:
-            is_value = self._is_value(name)
-            if not is_value and self.is_context(name):
-                condition, _ = self.store.ask(context, self.viewpoint, name)
-                return model.InContext(name, condition) if condition is not None else None
-            if name in ("true", "false"):
-                return model.Flag(name == "true")
-            if is_value:
-                term = self._named(word)
-                if term is not None and term.sort == "bool" and isinstance(term.value, model.Read | model.Parameter):
-                    return term.value
-                if term is not None:
-                    self._no_condition(term)
+        word, name = written.word, written.word.text
+        is_value = word.kind in (NUMBER, QUANTITY) or (word.kind == NAME and self._is_value(name))
+        if word.kind == NAME and not is_value and self.is_context(name):
+            condition, _ = self.store.ask(context, self.viewpoint, name)
+            return model.InContext(name, condition) if condition is not None else None
+        if is_value or (word.kind == NAME and name in ("true", "false")):
+            term = self._expression(written)
+            if term is None:
                 return None
+            if term.sort == "bool" and isinstance(term.value, model.Flag | model.Read | model.Parameter):
+                return term.value
+            self._no_condition(term)
+            return None
         if word.kind == STRING or self.find((name,)):
             return self._running(syntax.Path((word,)))
         if not self._is_subtraction(word):
