@@ -43,7 +43,6 @@ def leaf(draw: st.DrawFn) -> str:
     return f"Sleep (msec = {draw(st.integers(0, 8)) * 250})" if kind == "sleep" else kind
 
 
-@st.composite
 def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True, top: str = "") -> list[str]:
     """The lines of a node with all below it.
 
@@ -54,7 +53,7 @@ def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True, top: str
     """
 
     def below(count: int = 1, skipping: bool = True) -> list[list[str]]:
-        return [draw(tree(depth - 1, sub, skipping)) for _ in range(count)]
+        return [tree(draw, depth - 1, sub, skipping) for _ in range(count)]
 
     def one_of(choices: Sequence[str]) -> str:
         return draw(st.sampled_from([each for each in choices if each.split()[0] == top] or choices))
@@ -131,8 +130,8 @@ def draw_of_nav2(
 
 @st.composite
 def missions(draw: st.DrawFn, top: str = "") -> str:
-    lines = ["BehaviorTree Main", *(f"    {line}" for line in draw(tree(3, True, top=top)))]
-    lines += ["BehaviorTree Sub", *(f"    {line}" for line in draw(tree(1, False)))]
+    lines = ["BehaviorTree Main", *(f"    {line}" for line in tree(draw, 3, True, top=top))]
+    lines += ["BehaviorTree Sub", *(f"    {line}" for line in tree(draw, 1, False))]
     numbered = (line.replace("@ takes", f"q{number} takes") for number, line in enumerate(lines))
     return "\n".join(numbered) + "\n"
 
