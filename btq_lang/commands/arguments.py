@@ -6,6 +6,7 @@ import os
 import re
 from argparse import ArgumentParser, ArgumentTypeError, RawDescriptionHelpFormatter
 from collections.abc import Callable
+from functools import cache
 from typing import Final, NoReturn, TypeAlias
 
 from btq_lang.commands.options import CheckOptions, add_server_options
@@ -21,6 +22,7 @@ from btq_lang.util.version import __version__
 SEVERITIES = ("error", "warning", "info", "hint")
 
 
+@cache
 def build_parser() -> Parser:
     """The parser of the command line, from which shell completion and documentation are generated, too.
 
