@@ -98,9 +98,15 @@ python3() { if [ "$2" = venv ]; then mkdir -p .venv/bin && : > .venv/bin/activat
 
 
 @pytest.fixture
-def clone(tmp_path: Path) -> Path:
+def clone(project: Path, tmp_path: Path) -> Path:
+    """The project, to be changed."""
+    return Path(shutil.copytree(project, tmp_path / "clone"))
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A project with the files that the pages speak of, on a branch of four commits."""
-    folder = tmp_path / "clone"
+    folder = tmp_path_factory.mktemp("documents") / "project"
     shutil.copytree(ROOT / "examples", folder / "examples")
     mission = (ROOT / "examples" / "laboratory" / "mission.btq").read_text(encoding="utf-8")
     classic = (ROOT / "examples" / "classic" / "inspector.qualitybtcpp").read_text(encoding="utf-8")
