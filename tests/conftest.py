@@ -14,7 +14,7 @@ from strict_queries import strict_queries as strict_queries  # a fixture of some
 
 # Without a deadline: how long one example takes on a busy machine says nothing about the code.  The usual run invents
 # the same inputs every time, so that what failed fails again; the thorough one looks for new ones.
-settings.register_profile("usual", deadline=None, derandomize=True)
+settings.register_profile("usual", deadline=None, derandomize=True, max_examples=50)
 settings.register_profile("thorough", deadline=None, max_examples=2_000)
 settings.load_profile("usual")
 

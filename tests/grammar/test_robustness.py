@@ -6,7 +6,7 @@ The usual run invents the same texts every time, the thorough profile (`tests/RE
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 
 import pytest
@@ -231,7 +231,8 @@ def test_what_is_nested_too_deep_is_one_diagnostic(text: str, problem: str) -> N
 
 def test_blocks_without_end() -> None:
     """Items inside items, requirements inside models, …: whatever a level begins with, it costs no stack."""
-    for word in ("Root a", "signal a : m", "QualityReq a", "Action a", "TreeNodesModel", "X", "satisfies QualityReq a"):
+    words = ("Root a", "signal a : m", "QualityReq a", "Action a", "TreeNodesModel", "X", "satisfies QualityReq a")
+    for word in of_the_day(words, 4):
         text = "".join(f"{' ' * level}{word}\n" for level in range(DEEP))
         parsed = parse(text)
         assert_entries(parsed)
@@ -273,7 +274,7 @@ HEADS = (
 )
 
 
-@pytest.mark.parametrize("unit", HOSTILE)
+@pytest.mark.parametrize("unit", of_the_day(HOSTILE, 4))
 def test_a_hostile_line_without_end(unit: str) -> None:
     """They end at all: what is quadratic takes minutes.  And they do not drown anybody in diagnostics."""
     parsed = parse(unit * (100_000 // len(unit)))
@@ -288,13 +289,13 @@ def test_hostile_lines_behind_something_else(unit: str) -> None:
         assert len(parsed.diagnostics) <= (21 if unit == "30sek " else 2)
 
 
-@pytest.mark.parametrize(
-    "line", ["/* a", '"a', "'a", "a (b", ")", "X (", "30sek,", "a = 1", "   a", "\ta", "->", "# a", "x 'a\\"]
-)
-def test_hostile_lines_one_below_another(line: str) -> None:
+HOSTILE_LINES = ("/* a", '"a', "'a", "a (b", ")", "X (", "30sek,", "a = 1", "   a", "\ta", "->", "# a", "x 'a\\")
+
+
+@pytest.mark.parametrize(("line", "end"), of_the_day(product(HOSTILE_LINES, ("\n", "\r", "\n  ", "\n\t")), 8))
+def test_hostile_lines_one_below_another(line: str, end: str) -> None:
     """As items, all of them in one tree, or in one pair of brackets: no line looks at all the lines before it."""
     for head in ("", "BehaviorTree t\n", "BehaviorTree t\n  X (\n"):
-        for end in of_the_day(("\n", "\r", "\n  ", "\n\t"), 4):
-            assert_tokens(parse(head + (line + end) * (4_000 // len(line + end))))
+        assert_tokens(parse(head + (line + end) * (4_000 // len(line + end))))
     parsed = parse(f"BehaviorTree t\n  X (\n    {line}\n" * 2_000)
     assert len(parsed.entries) > 500

@@ -1,6 +1,6 @@
 """An hour of editing, key by key: after every key the server answers as a new one would of the same texts.
 
-The usual run compares after one key in twenty, and `--every-key` after each (some minutes).
+The usual run compares after one key in forty, of other keys every day, and `--every-key` after each (some minutes).
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from by_day import of_the_day
 from lsp_editor import Editor, Message
 from typist import Typist
 
@@ -29,7 +30,7 @@ from btq_lang.util.text import Span
 
 HERE = Path(__file__).parent
 HOUR = (HERE.parent / "recordings" / "an_hour.keys").read_text(encoding="utf-8")
-SAMPLED = 20
+KEYS, SHARE = 2_332, 40
 
 
 @pytest.fixture
@@ -38,11 +39,12 @@ def hospital(tmp_path: Path) -> Path:
 
 
 def test_after_every_key_it_is_what_a_new_server_says(hospital: Path, request: pytest.FixtureRequest) -> None:
-    every = 1 if request.config.getoption("--every-key") else SAMPLED
+    numbers = range(1, KEYS + 1)
+    sample = set(numbers if request.config.getoption("--every-key") else of_the_day(numbers, SHARE))
     typist = Typist(hospital)
     keys = compared = 0
     for keys, line in enumerate(typist.play(HOUR), 1):
-        if keys % every == 0:
+        if keys in sample:
             compared += 1
             new = Session()
             new.folders = (str(hospital),)
@@ -50,8 +52,8 @@ def test_after_every_key_it_is_what_a_new_server_says(hospital: Path, request: p
             told = {path: new.diagnostics(path) for path in new.reload()}
             assert typist.told == told, (keys, line)
             assert answers(typist.session, typist) == answers(new, typist), (keys, line)
-    assert keys == 2_332
-    assert compared == keys // every
+    assert keys == KEYS
+    assert compared == len(sample)
 
 
 def answers(session: Session, typist: Typist) -> Mapping[str, object]:

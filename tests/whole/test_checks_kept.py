@@ -217,7 +217,7 @@ def test_what_no_quote_closes_is_not_empty() -> None:
     assert [each.rule for each in anew] == [each.rule for each in kept] == ["unclosed-string"]
 
 
-@pytest.mark.parametrize("spelling", ["classic", "short"])
+@pytest.mark.parametrize("spelling", of_the_day(["classic", "short"], 2))
 def test_trees_and_requirements_change_names_and_places(spelling: missions.Spelling) -> None:
     """In a file of so many trees that cached results about all of them are updated instead of recomputed."""
     chance = random.Random(1)

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from by_day import of_the_day
 from missions import mission
 from rule_pages import blocks
 from torn_texts import CLASSIC, EXAMPLES, SHORT, torn
@@ -128,7 +129,8 @@ def test_what_is_compiled_reads_and_checks_as_the_pure_form(compiled: Path) -> N
     texts += [text for _, language, text in blocks() if language == "btq"]
     texts += [mission(1_000, 2, "classic"), mission(1_000, 2, "short")]
     texts += [deep(60), f"context c : {' * '.join('a' * 80)}"]
-    texts += [torn(draw.choice((CLASSIC, SHORT, *texts[: len(EXAMPLES)])), draw) for _ in range(150)]
+    torn_texts = [torn(draw.choice((CLASSIC, SHORT, *texts[: len(EXAMPLES)])), draw) for _ in range(150)]
+    texts += of_the_day(torn_texts, 4)
     pure_files, pure = answers(ROOT, texts)
     compiled_files, by_compiled = answers(compiled, texts, PYTHONMALLOC="debug")  # writing beside an object is fatal
     names = ("parser.py", "syntax/tree.py", "syntax/script/parser.py")

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from by_day import of_the_day
 from lxml import etree
 from xml_elements import elements
 
@@ -76,13 +77,12 @@ def imported(corpus: dict[str, str]) -> Callable[[bool], dict[str, Imported]]:
     return imported
 
 
-@pytest.mark.parametrize("keep_v3", [True, False])
-def test_an_import_has_no_mistake_and_is_formatted(
-    imported: Callable[[bool], dict[str, Imported]], keep_v3: bool
-) -> None:
-    for name, each in imported(keep_v3).items():
-        assert parse(each.text).diagnostics == (), name
-        assert format_text(each.text).edits == (), name
+def test_an_import_has_no_mistake_and_is_formatted(imported: Callable[[bool], dict[str, Imported]]) -> None:
+    texts = {each.text: name for keep_v3 in (True, False) for name, each in imported(keep_v3).items()}
+    for text in texts:
+        assert parse(text).diagnostics == (), texts[text]
+    for text in of_the_day(texts, 2):
+        assert format_text(text).edits == (), texts[text]
 
 
 def test_xml_to_btq_to_the_same_xml(corpus: dict[str, str], imported: Callable[[bool], dict[str, Imported]]) -> None:

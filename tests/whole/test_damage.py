@@ -14,4 +14,4 @@ PARTS = 8
 @pytest.mark.parametrize("part", range(PARTS))
 def test_nothing_raises(part: int) -> None:
     seed = NUMBER if takes_all() else 24
-    assert run(seed, of_the_day(range(part, CASES, PARTS), 4)) == []  # what fails is shown with how to do it again
+    assert run(seed, of_the_day(range(part, CASES, PARTS), 8)) == []  # what fails is shown with how to do it again
