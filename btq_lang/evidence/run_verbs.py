@@ -10,7 +10,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from itertools import accumulate
 from math import ceil, floor
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import Measure, compared
@@ -21,9 +21,8 @@ from btq_lang.evidence.verbs import Judgement
 from btq_lang.requirements.model import Claim, Span, Subject, Target, Total, Value
 from btq_lang.util.text import counted
 
-if TYPE_CHECKING:
-    Judgements: TypeAlias = Iterator[Judgement | None]
-    RunJudge: TypeAlias = Callable[[Claim, OverRun], Judgements]
+Judgements: TypeAlias = Iterator[Judgement | None]
+RunJudge: TypeAlias = Callable[[Claim, OverRun], Judgements]
 
 
 def run_judge(claim: Claim, subject: Subject | None) -> RunJudge | None:

@@ -6,7 +6,7 @@ One invariant: an activation is judged when it has ended, None if it does not co
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import Measure, compared, measure_of, truth
@@ -15,8 +15,7 @@ from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.signals import Unknown
 from btq_lang.requirements.model import Aggregate, Claim, Condition, Limit, Not, Signal, parts_in
 
-if TYPE_CHECKING:
-    Judge: TypeAlias = Callable[[Claim, Activation, Observed], "Judgement | None"]
+Judge: TypeAlias = Callable[[Claim, Activation, Observed], "Judgement | None"]
 
 
 class Judgement(NamedTuple):  # not a Record for the same reason as Measure

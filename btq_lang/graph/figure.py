@@ -6,15 +6,14 @@ Positions are unknown here.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 from btq_lang.util.record import Record
 
-if TYPE_CHECKING:
-    # How a node is drawn: control nodes as boxes with a symbol, actions as boxes, conditions as ellipses, decorators as
-    # hexagons (the literature has diamonds, in which no word fits), SubTree nodes as boxes with a second line at both
-    # ends, as flow charts draw subroutines.
-    Outline: TypeAlias = Literal["control", "action", "condition", "decorator", "subtree", "unknown"]
+# How a node is drawn: control nodes as boxes with a symbol, actions as boxes, conditions as ellipses, decorators as
+# hexagons (the literature has diamonds, in which no word fits), SubTree nodes as boxes with a second line at both
+# ends, as flow charts draw subroutines.
+Outline: TypeAlias = Literal["control", "action", "condition", "decorator", "subtree", "unknown"]
 
 
 class Note(Record):

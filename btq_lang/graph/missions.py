@@ -6,19 +6,16 @@ One invariant: one box for each written node.  A SubTree node is a box; its tree
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.graph import draw
-from btq_lang.graph.figure import Box, Figure, Note
+from btq_lang.graph.figure import Box, Figure, Note, Outline
 from btq_lang.requirements.model import Applied, Claim
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import Node, NodeClause, QualityPath, Satisfices
 from btq_lang.workspace.node_names import is_placeholder
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
-
-if TYPE_CHECKING:
-    from btq_lang.graph.figure import Outline
 
 
 def draw_tree(

@@ -11,10 +11,9 @@ from collections import Counter
 from collections.abc import Hashable, Iterable, Sequence
 from math import comb, exp, lgamma, prod
 from operator import itemgetter, mul
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
-if TYPE_CHECKING:
-    Failures: TypeAlias = tuple[tuple[int, int], tuple[int, int]]  # of each side, how many, of how many
+Failures: TypeAlias = tuple[tuple[int, int], tuple[int, int]]  # of each side, how many, of how many
 
 
 class Shuffles:

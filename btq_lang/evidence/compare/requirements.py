@@ -6,17 +6,16 @@ One invariant: a clause whose bound was edited says nothing about the robot, so 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from collections.abc import Mapping, Sequence
+from typing import Final, TypeAlias
 
-from btq_lang.evidence.store.queries import only
+from btq_lang.evidence.store.queries import Ask, only
 from btq_lang.evidence.store.summary import summary
 from btq_lang.evidence.store.tables import quoted
 from btq_lang.evidence.verdicts import VIOLATED, ClauseVerdict, RequirementVerdict, worst_of
 from btq_lang.util.record import Record
 
-if TYPE_CHECKING:
-    Verdicts: TypeAlias = Mapping[str, RequirementVerdict]  # of a mission, by requirement
+Verdicts: TypeAlias = Mapping[str, RequirementVerdict]  # of a mission, by requirement
 
 
 class Newly(Record):
@@ -53,7 +52,7 @@ class Edited(Record):
     counted: tuple[int, int]
 
 
-def verdicts(ask: Callable[[str], Sequence[Mapping[str, Any]]], by: str, side: str) -> Mapping[str, Verdicts]:
+def verdicts(ask: Ask, by: str, side: str) -> Mapping[str, Verdicts]:
     """The verdicts of a side, by mission."""
     found = summary(only(ask, f"{by} = {quoted(side)}"), "").missions
     return {mission.name: {each.id: each for each in mission.requirements} for mission in found}

@@ -5,21 +5,16 @@ One invariant: what is loaded are counts and the worst violation of each clause.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any, TypeAlias
 
 from btq_lang.evidence.compare.comparison import Comparison, Unknown, compare
 from btq_lang.evidence.report.trends import Steps, Trends, steps_of, trends
-from btq_lang.evidence.store.queries import OVERVIEW, only
+from btq_lang.evidence.store.queries import OVERVIEW, Ask, Row, only
 from btq_lang.evidence.store.summary import grouped, parted
 from btq_lang.evidence.store.tables import quoted
 from btq_lang.evidence.verdicts import VIOLATED, MissionVerdicts
 from btq_lang.util.record import Record
-
-if TYPE_CHECKING:
-    Row: TypeAlias = Mapping[str, Any]
-    Ask: TypeAlias = Callable[[str], Sequence[Row]]
 
 
 class Part(Record):

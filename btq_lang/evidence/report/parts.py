@@ -7,13 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from btq_lang.evidence.report.trends import Steps
+from btq_lang.evidence.report.trends import Steps, Values
 from btq_lang.evidence.wording import moment
-
-if TYPE_CHECKING:
-    from btq_lang.evidence.report.trends import Values
 
 
 def bars(values: Values, steps: Steps, labels: Sequence[tuple[str, int]], shown: Callable[[float], str]) -> str:

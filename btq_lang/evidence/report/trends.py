@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Final, TypeAlias
 
-from btq_lang.evidence.store.queries import OVERVIEW
+from btq_lang.evidence.store.queries import OVERVIEW, Ask, Row
 from btq_lang.evidence.store.summary import grouped
 from btq_lang.util.record import Record
 from btq_lang.util.text import counted
 
-if TYPE_CHECKING:
-    Row: TypeAlias = Mapping[str, Any]
-    Ask: TypeAlias = Callable[[str], Sequence[Row]]
-    Values: TypeAlias = tuple[float | None, ...]  # of the steps in order; None where there is nothing to say
+Values: TypeAlias = tuple[float | None, ...]  # of the steps in order; None where there is nothing to say
 
 
 class Steps(Record):

@@ -9,14 +9,14 @@ other engines.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Final, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final, TypeAlias
 
-if TYPE_CHECKING:
-    Rows = TypeVar("Rows")
+Row: TypeAlias = Mapping[str, Any]
+Ask: TypeAlias = Callable[[str], Sequence[Row]]  # the rows of a question, by the names of their columns
 
 
-def only(ask: Callable[[str], Rows], condition: str) -> Callable[[str], Rows]:
+def only(ask: Ask, condition: str) -> Ask:
     """Asks the same of some of the rows."""
     parts = ", ".join(f"{table} AS (SELECT * FROM main.{table} WHERE {condition})" for table in _OF_RUNS)
     return lambda question: ask(f"WITH {parts} {question}")

@@ -6,17 +6,17 @@ cover; and verdicts come from counts as for logs (`tally.py`, `clause.verdict_of
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final
 
 from btq_lang.catalog.units import Unit, parse_unit
 from btq_lang.diagnostics.model import Place
 from btq_lang.evidence.clause import verdict_of
 from btq_lang.evidence.conditions import Measure
 from btq_lang.evidence.odds import Limits
-from btq_lang.evidence.store.queries import QUERIES
+from btq_lang.evidence.store.queries import QUERIES, Ask, Row
 from btq_lang.evidence.tally import Run, Tally
 from btq_lang.evidence.verbs import Judgement
 from btq_lang.evidence.verdicts import (
@@ -36,10 +36,6 @@ from btq_lang.evidence.verdicts import (
 from btq_lang.evidence.wording import measured, quantity
 from btq_lang.requirements.model import Odds, Value
 from btq_lang.util.text import Span, counted
-
-if TYPE_CHECKING:
-    Row: TypeAlias = Mapping[str, Any]
-    Ask: TypeAlias = Callable[[str], Sequence[Row]]  # the rows of a question, by the names of their columns
 
 _VIOLATIONS: Final = 10  # named of each clause
 
