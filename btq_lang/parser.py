@@ -211,7 +211,7 @@ class Parser(ItemParser):
         found_at = self.lexer.level
         self.scan()
         if found_at > level and found_at != self.stray_level:
-            self.complain("syntax-error", self.here(), "unexpected indentation: no block is open above this line")
+            self.complain(self.here(), "unexpected indentation: no block is open above this line")
         self.stray_level = found_at if found_at > level else -1
         word = self.item_word()
         item: Item
@@ -256,8 +256,7 @@ class Parser(ItemParser):
         following = self.kinds[self.index + 1]
         other = _OTHER_ITEMS.get(self.raw.lower())
         if other is not None and following in (NAME, STRING) and self.raws[self.index + 1] not in VERB_WORDS:
-            message = f"unknown word `{self.raw}`; did you mean `{other}`?"
-            self.complain("syntax-error", self.here(), message, (), (self.other_item(other),))
+            self.complain(self.here(), f"unknown word `{self.raw}`; did you mean `{other}`?", self.other_item(other))
             return "" if other == "include" or self.raw in ("def", "class") else other
         if not meant or not (following in (NAME, STRING) or (meant in _ALONE and following in (NEWLINE, OPEN))):
             return ""
@@ -297,7 +296,7 @@ class Parser(ItemParser):
         if self.has_root:
             where = "unexpected Root inside another Root" if in_root else "unexpected second Root in this file"
             note = "a mission begins in one place: keep the Root that names its main tree, or move one to another file"
-            self.complain("second-root", word.span.shifted(self.base), where, (note,))
+            self.complain(word.span.shifted(self.base), where, notes=(note,), rule="second-root")
         self.has_root = True
         end = self.end_line()
         item = Root(word.start, end, name, attributes, bracketed)
@@ -311,7 +310,7 @@ class Parser(ItemParser):
             return
         fix = replace_fix(f"Remove `{self.raw} =`", Span(self.here().start, self.starts[value]), "")
         message = "expected the main tree's name after `Root`"
-        self.complain("syntax-error", self.here(), message, ("attributes go in brackets: `(key = value)`",), (fix,))
+        self.complain(self.here(), message, fix, notes=("attributes go in brackets: `(key = value)`",))
         self.go_to(value)
 
     def skipped(self, level: int) -> Skipped:
@@ -331,7 +330,7 @@ class Parser(ItemParser):
         elif self.text.startswith("<!--", self.here().start):
             self.other_comment(self.here().start + len("<!--"))
         elif self.at("<"):
-            self.complain("syntax-error", *self.xml_here())
+            self.found_xml()
         elif self.kind == SYMBOL or (self.at_name() and self.kinds[self.index + 1] in (NEWLINE, OPEN)):
             notes = ("a node goes in the block of a BehaviorTree, indented",)
         if self.kind != NEWLINE:

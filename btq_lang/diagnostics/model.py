@@ -86,6 +86,11 @@ def replace_fix(title: str, span: Span, text: str, *, safe: bool = False) -> Fix
     return Fix(title, (Change(Place(span), text),), safe)
 
 
+def write_fix(text: str, span: Span, *, safe: bool = False) -> Fix:
+    """The replacement whose title says what is written."""
+    return replace_fix(f"Write `{text}`", span, text, safe=safe)
+
+
 def shifted(diagnostic: Diagnostic, by: int) -> Diagnostic:
     """The diagnostic with another origin: its span, and every place that counts from the same, are shifted."""
     if by == 0:

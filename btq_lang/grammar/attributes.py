@@ -54,7 +54,7 @@ class AttributeParser(RequirementParser):
         if clauses:
             span = Span(clauses[0].start, clauses[0].end).shifted(self.base)
             note = "write qualities and requirements after a node, or on a line of their own in the block of a tree"
-            self.complain("syntax-error", span, "only `key = value` pairs are allowed in these brackets", (note,))
+            self.complain(span, "only `key = value` pairs are allowed in these brackets", notes=(note,))
         return pairs
 
     def attributes(self, clauses: list[NodeClause]) -> tuple[Pair, ...]:
@@ -88,9 +88,8 @@ class AttributeParser(RequirementParser):
             is_assignment = self.text.startswith(":=", sign)
             span = Span(sign, sign + (2 if is_assignment else len(self.raws[at + 1])))
             written = "=" if self.text[sign - 1] in " \t" else " ="
-            fix = replace_fix("Write `=`", span, written, safe=True)
             message = f"expected `=` between key and value, found `{self.text[span.start : span.end]}`"
-            self.complain("syntax-error", span, message, (), (fix,))
+            self.complain(span, message, replace_fix("Write `=`", span, written, safe=True))
             if is_assignment:
                 self.advance()
             pairs.append(self.pair())
@@ -186,12 +185,11 @@ class AttributeParser(RequirementParser):
             self.report(cause)
         elif word.kind == STRING:
             note = "write a quote in a string as \\\", in a script as '; or add a closing quote that is missing above"
-            self.complain("syntax-error", Span(start, end), "unexpected text right after a string", (note,))
+            self.complain(Span(start, end), "unexpected text right after a string", notes=(note,))
         else:
             # A quote or a brace in it indicates another mistake.
             safe = self.ends_value() and not set(raw) & set("\"'{}\\")
-            fix = value_meant(self.text, start, end, safe=safe)
-            self.complain("syntax-error", Span(start, end), "this value needs quotes", (), (fix,))
+            self.complain(Span(start, end), "this value needs quotes", value_meant(self.text, start, end, safe=safe))
         return Word(NAME, word.start, raw)
 
     # ---- qualities and requirements on nodes ----
@@ -210,9 +208,8 @@ class AttributeParser(RequirementParser):
         place = span
         if word == "satisfied" and self.is_word(by, "by") and self.kinds[by + 1] in (NAME, STRING):
             place = Span(span.start, self.starts[by] + len("by"))
-        fix = replace_fix(f"Replace `{word}` with `{meant}`", place, meant)
         message = f"unknown word `{word}`; did you mean `{meant}`?"
-        self.complain("syntax-error", span, message, (), (fix,))
+        self.complain(span, message, replace_fix(f"Replace `{word}` with `{meant}`", place, meant))
 
     def node_clause(self, meant: str = "") -> NodeClause:
         """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }
@@ -252,9 +249,8 @@ class AttributeParser(RequirementParser):
             has_sign = self.at(":")
             place = Span(self.last_end() + self.base, self.here().end if has_sign else self.here().start)
             blank = "" if self.text[place.end : place.end + 1] in (" ", "\t") else " "
-            fix = replace_fix("Write `=`", place, f" ={blank}", safe=True)
             message = f"expected `=` after `Quality`, found {self.found()}"
-            self.complain("syntax-error", self.here(), message, (), (fix,))
+            self.complain(self.here(), message, replace_fix("Write `=`", place, f" ={blank}", safe=True))
             self.accept(":")
             classic = True
         path = self.quality_path()

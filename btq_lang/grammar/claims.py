@@ -9,7 +9,7 @@ from typing import Final
 
 from btq_lang.catalog.units import dimension_name, parse_unit
 from btq_lang.catalog.verbs import VERBS, words
-from btq_lang.diagnostics.model import Fix, replace_fix
+from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.grammar.conditions import HEADS, ConditionParser
 from btq_lang.grammar.cursor import shown
 from btq_lang.syntax.scan import number_end
@@ -107,7 +107,7 @@ class ClaimParser(ConditionParser):
         if self.kinds[self.index + 1] != NAME or self.raws[self.index + 1] in VERB_WORDS:
             return False
         fix = replace_fix(f"Replace `{self.raw}` with `every`", self.here(), "every")
-        self.complain("syntax-error", self.here(), "all nodes of a kind are written `every …`", (), (fix,))
+        self.complain(self.here(), "all nodes of a kind are written `every …`", fix)
         self.advance()
         return True
 
@@ -122,8 +122,7 @@ class ClaimParser(ConditionParser):
         if isinstance(subject, Path) and self.kind == NAME and self.raw in MODALS:
             self.expected("a verb: takes, succeeds, needs, keeps, …", (MEANT[self.raw],))
         elif isinstance(subject, Path) and self.at("."):
-            fix = replace_fix("Write `/`", self.here(), "/")
-            self.complain("syntax-error", self.here(), "the names of a path are separated by `/`", (), (fix,))
+            self.complain(self.here(), "the names of a path are separated by `/`", write_fix("/", self.here()))
             self.recover()
         elif isinstance(subject, Path) and (self.at_word("and") or self.at(",")):
             note = "a clause applies to one node; write it for each, or `sum of A, B` for the time of both"
@@ -137,10 +136,10 @@ class ClaimParser(ConditionParser):
             fix = replace_fix("Put `keeps` before it", Span(at, at), "keeps ")
             if first.raw in ("time", "duration") and (bound := _BOUNDS.get((self.raw,))):
                 written = f"takes {' '.join(bound)}"
-                fix = replace_fix(f"Write `{written}`", Span(at, self.here().end), written)
+                fix = write_fix(written, Span(at, self.here().end))
             message = "expected a verb before the condition: `keeps`, `never`, `needs` or `leaves`"
             notes = ("`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",)
-            self.complain("syntax-error", Span(at, self.here().end), message, notes, (fix,))
+            self.complain(Span(at, self.here().end), message, fix, notes=notes)
             self.recover()
         elif isinstance(subject, Path) and self.at_word("fails"):
             self.expected(
@@ -178,10 +177,9 @@ class ClaimParser(ConditionParser):
         start = path.span.start + self.base if isinstance(path, Path) else 0
         end = self.starts[index - 1] + len(self.raws[index - 1])
         written = "/".join((self.text[start : self.last_end() + self.base], *names))
-        fix = replace_fix(f"Write `{written}`", Span(start, end), written)
         message = f"a path is written with `/`: `{shown(written)}`"
         note = f"a name of several words goes in quotes: {quote(self.text[start:end])}"
-        self.complain("syntax-error", Span(start, end), message, (note,), (fix,))
+        self.complain(Span(start, end), message, write_fix(written, Span(start, end)), notes=(note,))
         self.go_to(index)
         return True
 
@@ -253,8 +251,7 @@ class ClaimParser(ConditionParser):
                 if words != meant:
                     span = Span(self.here().start, self.starts[self.index + length - 1] + len(words[-1]))
                     written = " ".join(meant)
-                    fix = replace_fix(f"Write `{written}`", span, written, safe=True)
-                    self.complain("syntax-error", span, f"this bound is written `{written}`", (), (fix,))
+                    self.complain(span, f"this bound is written `{written}`", write_fix(written, span, safe=True))
                 self.go_to(self.index + length)
                 return RELATIONS[meant]
         return None
@@ -290,7 +287,9 @@ class ClaimParser(ConditionParser):
                 break
             if len(cases) == MAX_CASES:
                 note = "compute the value in a node, and declare a signal for its output"
-                self.complain("nested-too-deep", self.here(), f"more than {MAX_CASES} cases in one value", (note,))
+                self.complain(
+                    self.here(), f"more than {MAX_CASES} cases in one value", notes=(note,), rule="nested-too-deep"
+                )
                 self.recover()
                 return Table(tuple(cases))
             value = self.simple()

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from btq_lang.catalog.measured import measured
-from btq_lang.diagnostics.model import Fix, replace_fix
+from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.grammar.claims import QUALITY_IN_HEAD, VERB_WORDS, ClaimParser, is_time
 from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.syntax.scan import line_end
@@ -95,7 +95,7 @@ class ClauseParser(ClaimParser):
         if self.kind == QUANTITY:
             at = self.here()
             fix = replace_fix("Put `at least` before it", Span(at.start, at.start), "at least ")
-            self.complain("syntax-error", at, f"a probability is written `in at least {self.raw}`", (), (fix,))
+            self.complain(at, f"a probability is written `in at least {self.raw}`", fix)
             value = self.take()
         elif self.expect_word("at") and self.expect_word("least"):
             value = self.percentage("98 %")
@@ -122,7 +122,7 @@ class ClauseParser(ClaimParser):
                 fixes: tuple[Fix, ...] = ()
                 if self.kind == NUMBER and 0 < float(self.raw) <= 1:
                     written = f">= {float(self.raw) * 100:.10g} %"
-                    fixes = (replace_fix(f"Write `{written}`", self.here(), written),)
+                    fixes = (write_fix(written, self.here()),)
                 self.expected("`>=` or `>` and a percentage", (), fixes)
         if value is not None and self.accept_word("of"):
             experiments = self.experiments()
@@ -154,8 +154,8 @@ class ClauseParser(ClaimParser):
         """ "on" "violation" ( "fail" | "halt" | "warn" | "log" )"""
         start = self.start()
         if self.at_word("on_violation"):
-            fix = replace_fix("Write `on violation`", self.here(), "on violation", safe=True)
-            self.complain("syntax-error", self.here(), "expected `on violation`, found `on_violation`", (), (fix,))
+            fix = write_fix("on violation", self.here(), safe=True)
+            self.complain(self.here(), "expected `on violation`, found `on_violation`", fix)
             self.advance()
         else:
             self.advance()
@@ -202,7 +202,7 @@ class ClauseParser(ClaimParser):
         if self.kind == NUMBER:
             share = float(self.raw)
             percent = f"{share * 100:.10g} %" if 0 < share <= 1 else f"{self.raw} %"
-            fixes = (replace_fix(f"Write `{percent}`", self.here(), percent),)
+            fixes = (write_fix(percent, self.here()),)
         if self.kind == QUANTITY:
             return self.take()
         self.expected(f"a percentage: {example}", (), fixes)
@@ -218,7 +218,7 @@ class ClauseParser(ClaimParser):
         if self.kind != NAME or not meant:
             return self.missing_word(what)
         fixes = tuple(replace_fix(f"Replace `{self.raw}` with `{word}`", self.here(), word) for word in meant)
-        self.complain("syntax-error", self.here(), f"expected {what}, found {self.found()}", (), fixes)
+        self.complain(self.here(), f"expected {what}, found {self.found()}", *fixes)
         self.advance()
         return None
 
@@ -227,7 +227,7 @@ class ClauseParser(ClaimParser):
         following = self.index + 1
         if self.kind == NAME and self.kinds[following] == NAME and self.raws[following] in ACTIONS:
             fix = replace_fix(f"Replace `{self.raw}` with `violation`", self.here(), "violation")
-            self.complain("syntax-error", self.here(), f"expected `violation`, found `{self.raw}`", (), (fix,))
+            self.complain(self.here(), f"expected `violation`, found `{self.raw}`", fix)
             self.advance()
         else:
             self.expect_word("violation", forgotten=self.kind == NAME and self.raw in ACTIONS)
@@ -236,7 +236,7 @@ class ClauseParser(ClaimParser):
         """Read the current percentage; report that `words` are missing before it."""
         at = self.here()
         fix = replace_fix(f"Put `{words}` before it", Span(at.start, at.start), f"{words} ")
-        self.complain("syntax-error", at, f"a probability is written `with probability >= {self.raw}`", (), (fix,))
+        self.complain(at, f"a probability is written `with probability >= {self.raw}`", fix)
         return self.take()
 
     def bare_bound(self) -> None:
@@ -247,7 +247,7 @@ class ClauseParser(ClaimParser):
         if bound is not None and self.kinds[value] == QUANTITY and is_time(self.raws[value]):
             written = f"takes {bound} {self.raws[value]}"
             span = Span(self.here().start, self.starts[value] + len(self.raws[value]))
-            fixes = (replace_fix(f"Write `{written}`", span, written),)
+            fixes = (write_fix(written, span),)
         self.expected(_A_CLAUSE, ("a bound goes after its verb: `takes at most 30 s`",), fixes)
 
     def is_no_time(self) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from btq_lang.diagnostics.model import replace_fix
+from btq_lang.diagnostics.model import replace_fix, write_fix
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.lexer import Lexer
 from btq_lang.syntax.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
@@ -93,7 +93,7 @@ class ConditionParser(Cursor):
             return False
         written = word if word != "not" else "not "
         fix = replace_fix(f"Write `{word}`", self.here(), written, safe=True)
-        self.complain("syntax-error", self.here(), f"in conditions `{sign}` is written `{word}`", (), (fix,))
+        self.complain(self.here(), f"in conditions `{sign}` is written `{word}`", fix)
         self.advance()
         return True
 
@@ -107,7 +107,7 @@ class ConditionParser(Cursor):
 
     def too_deep(self, message: str) -> None:
         note = "write a part of it as a context of its own: `context part : …`"
-        self.complain("nested-too-deep", self.here(), message, (note,))
+        self.complain(self.here(), message, notes=(note,), rule="nested-too-deep")
         self.recover()
 
     def conj(self) -> Condition | None:
@@ -164,8 +164,7 @@ class ConditionParser(Cursor):
             message = f"this comparison is written `{meant}`"
         else:
             meant, message = "==", "values are compared with `==`"
-        fix = replace_fix(f"Write `{meant}`", span, meant, safe=True)
-        self.complain("syntax-error", span, message, (), (fix,))
+        self.complain(span, message, write_fix(meant, span, safe=True))
 
     def ends_condition(self) -> bool:
         """Whether the next word ends the current operand, so that a lone `node` is an ordinary name."""

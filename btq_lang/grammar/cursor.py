@@ -11,7 +11,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterable
 from typing import Final, TypeVar
 
-from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix, write_fix
 from btq_lang.lexer import Lexer
 from btq_lang.syntax.scan import line_end, line_start, number_end, unit_run
 from btq_lang.syntax.suggestions import close_string, unknown_unit
@@ -114,7 +114,7 @@ class Cursor:
             at = self.here()
             is_apart = self.text[at.start - 1] in " \t" and self.text[at.end : at.end + 1] in (" ", "\t")
             fix = replace_fix(f"Remove `{self.raw}`", Span(at.start, at.end + is_apart), "", safe=True)
-            self.complain("syntax-error", at, f"unexpected `{self.raw}`", (), (fix,))
+            self.complain(at, f"unexpected `{self.raw}`", fix)
             self.advance()
 
     def skip_glued_colon(self) -> None:
@@ -195,8 +195,8 @@ class Cursor:
         """Report and skip `and` where a comma separates."""
         if not self.at_word("and"):
             return False
-        fix = replace_fix("Write `,`", Span(self.last_end() + self.base, self.here().end), ",", safe=True)
-        self.complain("syntax-error", self.here(), "expected `,` instead of `and`", (), (fix,))
+        fix = write_fix(",", Span(self.last_end() + self.base, self.here().end), safe=True)
+        self.complain(self.here(), "expected `,` instead of `and`", fix)
         self.advance()
         return True
 
@@ -212,7 +212,7 @@ class Cursor:
             return True
         fixes: tuple[Fix, ...] = ()
         if operator == ":" and (self.at("=") or self.at_word("in") or self.at_word("is")):
-            fixes = (replace_fix("Write `:`", self.here(), ":"),)
+            fixes = (write_fix(":", self.here()),)
         self.expected(f"`{operator}`{further}", (), fixes)
         return False
 
@@ -298,7 +298,7 @@ class Cursor:
         if cause is not None:
             self.report(cause)
         else:
-            self.complain("syntax-error", self.here(), f"expected {what}, found {self.found()}", notes, fixes)
+            self.complain(self.here(), f"expected {what}, found {self.found()}", *fixes, notes=notes)
         self.recover()
 
     def lost_quote(self) -> Diagnostic | None:
@@ -370,10 +370,10 @@ class Cursor:
     def misspelt(self, span: Span, word: str, likely: str) -> None:
         """Report a misspelt word."""
         fix = replace_fix(f"Replace `{word}` with `{likely}`", span, likely)
-        self.complain("syntax-error", span, f"unknown word `{word}`; did you mean `{likely}`?", (), (fix,))
+        self.complain(span, f"unknown word `{word}`; did you mean `{likely}`?", fix)
 
     def complain(
-        self, rule: str, span: Span, message: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()
+        self, span: Span, message: str, *fixes: Fix, notes: tuple[str, ...] = (), rule: str = "syntax-error"
     ) -> None:
         """Report, unless something was already reported on this physical line; `span` counts from the start of the
         file.

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.diagnostics.model import Fix, replace_fix
+from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.grammar.nodes import NodeParser
 from btq_lang.syntax.scan import blanks_end, is_name, is_unit, line_end, number_end, path_end
 from btq_lang.syntax.tokens import BRACED, CATEGORIES, CLOSE, DIRECTIONS, ERROR, NAME, NEWLINE, OPEN, QUANTITY, STRING
@@ -43,12 +43,12 @@ class ItemParser(NodeParser):
         if self.at_word("path") and self.is_operator(self.index + 1, "=") and self.kinds[self.index + 2] == STRING:
             gone = Span(self.here().start, self.starts[self.index + 2])
             fix = replace_fix("Remove `path =`", gone, "", safe=True)
-            self.complain("syntax-error", self.here(), "the path of an include needs no `path =`", (), (fix,))
+            self.complain(self.here(), "the path of an include needs no `path =`", fix)
             self.go_to(self.index + 2)
         elif (self.at(":") or self.at("=")) and self.kinds[self.index + 1] == STRING:
             after = blanks_end(self.text, self.starts[self.index] + 1, len(self.text))
             fix = self.without_sign(f"Remove `{self.raw}`", after, "", safe=True)
-            self.complain("syntax-error", self.here(), f"unexpected `{self.raw}`", (), (fix,))
+            self.complain(self.here(), f"unexpected `{self.raw}`", fix)
             self.advance()
         path = self.take() if self.kind == STRING else self.unquoted_path()
         attributes = self.pairs()
@@ -96,7 +96,7 @@ class ItemParser(NodeParser):
         name = self.name("the node's ID")
         if self.kind == OPEN and self.kinds[self.index + 1] in (NAME, CLOSE) and self.is_operator(self.index + 2, ":"):
             note = "a port goes on a line of its own below the node, indented: `input name : type`"
-            self.complain("syntax-error", self.here(), "ports do not go in brackets", (note,))
+            self.complain(self.here(), "ports do not go in brackets", notes=(note,))
             self.go_to(len(self.kinds) - 1)
         attributes = self.pairs()
         text = self.take() if self.kind == STRING else None
@@ -112,9 +112,8 @@ class ItemParser(NodeParser):
             if self.kind == NAME and self.raw in DIRECTIONS:
                 body.append(self.port())
             elif self.kind == NAME and (direction := self.raw.removesuffix("_port")) in DIRECTIONS:
-                fix = replace_fix(f"Write `{direction}`", self.here(), direction, safe=True)
                 message = f"unknown word `{self.raw}`; did you mean `{direction}`?"
-                self.complain("syntax-error", self.here(), message, (), (fix,))
+                self.complain(self.here(), message, write_fix(direction, self.here(), safe=True))
                 body.append(self.port(direction))
             elif self.kind == NAME and self.raw == "metadata":
                 body.append(self.meta())
@@ -123,7 +122,7 @@ class ItemParser(NodeParser):
             else:
                 fixes = self.replaced_by((*sorted(DIRECTIONS), "metadata", "xml"))
                 if self.kind == NAME and self.raw in ("in", "out"):
-                    fixes = (replace_fix(f"Write `{self.raw}put`", self.here(), f"{self.raw}put", safe=True),)
+                    fixes = (write_fix(f"{self.raw}put", self.here(), safe=True),)
                 self.expected("a port (input, output or inout), metadata or xml", (), fixes)
                 self.end_line()
                 self.skip_block(inner)
@@ -199,9 +198,7 @@ class ItemParser(NodeParser):
             return Selector(start, self.last_end(), tag=tag)
         if self.at_word("tagged") and self.kinds[self.index + 1] == NAME:
             fix = replace_fix("Put `node` before it", Span(self.here().start, self.here().start), "node ")
-            self.complain(
-                "syntax-error", self.here(), "nodes with a tag are selected with `every node tagged …`", (), (fix,)
-            )
+            self.complain(self.here(), "nodes with a tag are selected with `every node tagged …`", fix)
             self.advance()
             return Selector(start, self.last_end(), tag=self.name("a tag"))
         every = self.name("a node's ID or kind")
@@ -217,7 +214,7 @@ class ItemParser(NodeParser):
             name = self.name("the tree's ID")
         elif self.at_word("ID") and self.kinds[self.index + 1] in (NAME, STRING):
             fix = replace_fix("Put `=` after it", Span(self.here().end, self.here().end), " =")
-            self.complain("syntax-error", self.here(), "expected `=` after `ID`", (), (fix,))
+            self.complain(self.here(), "expected `=` after `ID`", fix)
             self.advance()
             name = self.take()
         else:
@@ -241,7 +238,7 @@ class ItemParser(NodeParser):
         fixes: tuple[Fix, ...] = ()
         if self.at("<") and (closing := self.text.find(">", start, line_end(self.text, start))) > start + 1:
             path = quote(self.text[start + 1 : closing].strip())
-            fixes = (replace_fix(f"Write `{path}`", Span(start, closing + 1), path),)
+            fixes = (write_fix(path, Span(start, closing + 1)),)
         elif end > start and first > self.index:
             fixes = (self.without_sign(title, after, path, safe=False),)
         elif end > start and not has_sign:
@@ -265,14 +262,14 @@ class ItemParser(NodeParser):
             raw = self.raws[unit]
             symbol = raw[number_end(raw, 0) :].strip()
             span = Span(self.here().start, self.starts[unit] + len(raw))
-            fixes = (replace_fix(f"Write `: {symbol} initially {raw}`", span, f": {symbol} initially {raw}"),)
+            fixes = (write_fix(f": {symbol} initially {raw}", span),)
         elif self.kind == OPEN and CLOSE in self.kinds[unit:]:
             closing = self.kinds.index(CLOSE, unit)
             inside = self.text[self.here().end : self.starts[closing]].strip()
             span = Span(self.here().start, self.starts[closing] + len(self.raws[closing]))
-            fixes = (replace_fix(f"Write `: {inside}`", span, f": {inside}"),) if is_unit(inside) else ()
+            fixes = (write_fix(f": {inside}", span),) if is_unit(inside) else ()
         elif self.at("=") or self.at_word("in") or self.at_word("is"):
-            fixes = (replace_fix("Write `:`", self.here(), ":"),)
+            fixes = (write_fix(":", self.here()),)
         self.expected("`:` and the signal's unit", (), fixes)
         return False
 
@@ -281,7 +278,7 @@ class ItemParser(NodeParser):
         if self.kind == BRACED:
             return self.take()
         key = unquote(self.raw).strip("{}") if self.kind == STRING else self.raw
-        fixes = (replace_fix(f"Write `{{{key}}}`", self.here(), f"{{{key}}}"),) if is_name(key) else ()
+        fixes = (write_fix(f"{{{key}}}", self.here()),) if is_name(key) else ()
         self.expected("a blackboard entry: `{key}`", (), fixes)
         return None
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
 from btq_lang.grammar.attributes import AttributeParser, meant_clause
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
@@ -96,7 +96,7 @@ class NodeParser(AttributeParser):
             if len(blocks) > MAX_DEPTH:
                 if not is_too_deep_reported:
                     is_too_deep_reported = True
-                    self.complain("nested-too-deep", self.here(), _TOO_DEEP, (OF_ITS_OWN,))
+                    self.complain(self.here(), _TOO_DEEP, notes=(OF_ITS_OWN,), rule="nested-too-deep")
                 blocks.pop().close()
                 block = blocks[-1]
             node = self.node(inner)
@@ -126,7 +126,7 @@ class NodeParser(AttributeParser):
             self.no_block(level)
         elif word in DIRECTIONS and len(blocks) == 1 and not block.has_nodes():
             if block.clauses:
-                self.complain("syntax-error", self.here(), "ports go before satisfices, satisfies and tags")
+                self.complain(self.here(), "ports go before satisfices, satisfies and tags")
             ports.append(self.port())
             self.no_block(level)
         else:
@@ -188,7 +188,7 @@ class NodeParser(AttributeParser):
             return
         fix = replace_fix(f"Remove `{self.raw}`", Span(self.here().start, self.starts[following]), "", safe=True)
         note = "a node needs no dash; its children go below it, indented"
-        self.complain("syntax-error", self.here(), f"unexpected `{self.raw}` before a node", (note,), (fix,))
+        self.complain(self.here(), f"unexpected `{self.raw}` before a node", fix, notes=(note,))
         self.advance()
 
     def is_doc_string(self) -> bool:
@@ -204,7 +204,7 @@ class NodeParser(AttributeParser):
         for sign in _COMMENT_ENDS:
             inside = inside.removesuffix(sign)
         fixes = (replace_fix("Write `#`", span, f"# {inside.strip()}"),) if "\n" not in self.raw else ()
-        self.complain("syntax-error", span, "a comment begins with `#`", (), fixes)
+        self.complain(span, "a comment begins with `#`", *fixes)
         self.go_to(len(self.kinds) - 1)
 
     def no_node(self) -> None:
@@ -213,23 +213,24 @@ class NodeParser(AttributeParser):
         if self.text.startswith("<!--", start):
             self.other_comment(start + len("<!--"))
         elif self.at("<"):
-            self.complain("syntax-error", *self.xml_here())
+            self.found_xml()
             self.go_to(len(self.kinds) - 1)
         else:
             is_negation = self.raw == "!" and self.kinds[self.index + 1] in (NAME, STRING)
             notes = ("to negate a node, put an `Inverter` above it, and indent the node",) if is_negation else ()
             self.expected("a node: its kind, or a symbol: -> ? || …", notes, self.symbol_meant())
 
-    def xml_here(self) -> tuple[Span, str, tuple[str, ...], tuple[Fix, ...]]:
-        """What to report for the current line, which is XML; the fix writes an element as a node."""
+    def found_xml(self) -> None:
+        """Report that the current line is XML; the fix writes an element as a node."""
         start = self.starts[self.index]
         span = Span(start, start + len(self.text[start : line_end(self.text, start)].rstrip()))
         tag = _TAG.fullmatch(self.text, start, span.end)
         if tag is None or tag[1] in _NOT_NODES:
-            return span, "expected btq, found XML", (XML,), ()
+            self.complain(span, "expected btq, found XML", notes=(XML,))
+            return
         written = f"{tag[1]} ({tag[2].strip()})" if tag[2].strip() else tag[1]
-        fixes = (replace_fix(f"Write `{written}`", span, written),) if tag[3] else ()
-        return span, f"expected btq, found XML: a node is written `{written}`", (XML,), fixes
+        fixes = [write_fix(written, span)] if tag[3] else []
+        self.complain(span, f"expected btq, found XML: a node is written `{written}`", *fixes, notes=(XML,))
 
     def skip_xml(self, level: int) -> None:
         """Skip the lines of XML that follow a reported one."""
@@ -249,22 +250,21 @@ class NodeParser(AttributeParser):
         """The fix for what is probably meant as a symbol: `-->`, `=>`, `- >`."""
         start = self.starts[self.index]
         run = _ARROW.match(self.text, start)
-        return (replace_fix("Write `->`", Span(start, run.end()), "->"),) if run else ()
+        return (write_fix("->", Span(start, run.end())),) if run else ()
 
     def leftover(self, kind: Word | None, has_label: bool, clauses: list[NodeClause]) -> None:
         """Report what is left of a node's line."""
         if kind is not None and kind.kind == NAME and kind.raw in _STATEMENTS and self.raws[-2] == ":":
             message = f"expected a node, found the statement `{kind.raw}`"
-            self.complain("syntax-error", kind.span.shifted(self.base), message, (_STATEMENTS[kind.raw],))
+            self.complain(kind.span.shifted(self.base), message, notes=(_STATEMENTS[kind.raw],))
         elif kind is not None and kind.kind == NAME and (kind.raw in VERB_WORDS or kind.raw in HEADS):
             message = f"unexpected clause `{kind.raw}` in a tree; clauses go in a requirement"
             note = "write `satisfies QualityReq` and an ID before it, or indent it below a line that does"
-            self.complain("syntax-error", kind.span.shifted(self.base), message, (note,))
+            self.complain(kind.span.shifted(self.base), message, notes=(note,))
         elif self.kind == SYMBOL and self.index == 1 and kind is not None and kind.raw.upper() + self.raw in SYMBOLS:
             span = Span(kind.start + self.base, self.here().end)
             symbol = kind.raw.upper() + self.raw
-            fix = replace_fix(f"Write `{symbol}`", span, symbol, safe=True)
-            self.complain("syntax-error", span, f"the symbol is written `{symbol}`", (), (fix,))
+            self.complain(span, f"the symbol is written `{symbol}`", write_fix(symbol, span, safe=True))
         elif self.kind == NAME and (meant := meant_clause(self.raw)):
             self.attaches_nothing(self.here(), meant)
         elif self.at(",") and kind is not None and kind.kind == NAME and (meant := meant_clause(kind.raw)):
@@ -280,9 +280,9 @@ class NodeParser(AttributeParser):
             fixes = (replace_fix("Put `,` before it", Span(at, at), ","),) if self.kind in (NAME, STRING) else ()
             self.expected("`,` or the end of the line", (), fixes)
         elif self.kind == OPEN and self.index > 0 and self.kinds[self.index - 1] == CLOSE:
-            self.complain("syntax-error", self.here(), "all attributes of a node go in one pair of brackets")
+            self.complain(self.here(), "all attributes of a node go in one pair of brackets")
         elif self.kind == BRACED and (mended := attributes_in_braces(self.text, self.here().start)):
-            self.complain("syntax-error", self.here(), ATTRIBUTES, (), (mended,))
+            self.complain(self.here(), ATTRIBUTES, mended)
         elif self.kind in (NUMBER, QUANTITY, BRACED):
             self.expected("the end of the line", ("values go in brackets, with their names: `(key = value)`",))
         elif self.at(",") or self.kind == SYMBOL:
@@ -311,7 +311,7 @@ class NodeParser(AttributeParser):
         if self.text[opened - 1] not in " \t":
             changes = (Change(Place(Span(opened, opened)), f" {self.raw} "), changes[1])
         fix = Fix(f"Move `{shown(self.raw)}` before the brackets", changes)
-        self.complain("syntax-error", self.here(), "a node's label goes before its brackets", (CHILD,), (fix,))
+        self.complain(self.here(), "a node's label goes before its brackets", fix, notes=(CHILD,))
 
     def bare_attributes(self) -> None:
         """Report `MoveBase station = "charger"`, and several lines `key = value` once."""
@@ -379,7 +379,7 @@ class NodeParser(AttributeParser):
                 step = "\t" if moved.startswith("\t") else "    "
                 fixes += (replace_fix(f"Move it to `{last.head.text}`", Span(start, start), step),)
             note = f'a node of this name goes in quotes: "{word}"'
-            self.complain("clause-after-children", at, "clauses go before children", (note,), fixes)
+            self.complain(at, "clauses go before children", *fixes, notes=(note,), rule="clause-after-children")
         return found
 
     def is_requirement(self) -> bool:
@@ -393,9 +393,9 @@ class NodeParser(AttributeParser):
     def requirement_line(self, level: int) -> Satisfies:
         """Report that `satisfies` is missing before a requirement in the block of a node."""
         at = self.here()
-        fix = replace_fix("Write `satisfies QualityReq`", at, "satisfies QualityReq")
+        fix = write_fix("satisfies QualityReq", at)
         note = "to share it between nodes, write it outside the tree"
-        self.complain("syntax-error", at, "a requirement at a node begins with `satisfies`", (note,), (fix,))
+        self.complain(at, "a requirement at a node begins with `satisfies`", fix, notes=(note,))
         requirement = self.requirement()
         self.second_quality(requirement)
         self.end_line()
@@ -440,8 +440,8 @@ class NodeParser(AttributeParser):
         type_ = None
         if self.kind == STRING and name is None and self.raws[self.index + 1] == ":":
             plain = unquote(self.raw)
-            fixes = (replace_fix(f"Write `{plain}`", self.here(), plain, safe=True),) if is_name(plain) else ()
-            self.complain("syntax-error", self.here(), "a port's name takes no quotes", (), fixes)
+            fixes = (write_fix(plain, self.here(), safe=True),) if is_name(plain) else ()
+            self.complain(self.here(), "a port's name takes no quotes", *fixes)
             name = self.take()
         if self.accept(":"):
             type_ = self.type_()
@@ -496,7 +496,7 @@ class NodeParser(AttributeParser):
             return
         at = self.lexer.position
         message = "unexpected indentation: the line above opens no block"
-        self.complain("syntax-error", Span(at, self.lexer.line_end()), message, (_MEANINGFUL,))
+        self.complain(Span(at, self.lexer.line_end()), message, notes=(_MEANINGFUL,))
         self.skip_block(level)
 
 

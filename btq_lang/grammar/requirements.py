@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
 from btq_lang.grammar.claims import MEANT, MODALS, RELATIONS, VERB_WORDS
 from btq_lang.grammar.clauses import ENDS_CLAUSES, ClauseParser
 from btq_lang.grammar.conditions import HEADS
@@ -54,7 +54,7 @@ class RequirementParser(ClauseParser):
         self.skip_key(_TITLES, "")
         title = self.take() if self.kind == STRING else self.bare_title(quality is not None)
         if quality is None and title is not None and self.at(":"):
-            self.complain("syntax-error", self.here(), "a requirement's quality goes before its title")
+            self.complain(self.here(), "a requirement's quality goes before its title")
             self.advance()
             quality = self.quality_path()
         clauses = self.clauses()
@@ -69,7 +69,7 @@ class RequirementParser(ClauseParser):
             return
         ends = self.here(), Span(self.starts[closing], self.starts[closing] + 1)
         fix = Fix("Remove the brackets", tuple([Change(Place(end), "") for end in ends]), safe=True)
-        self.complain("syntax-error", self.here(), message, (), (fix,))
+        self.complain(self.here(), message, fix)
         for index in (closing, self.index):
             del self.kinds[index], self.starts[index], self.raws[index]
         self.go_to(self.index)
@@ -84,12 +84,12 @@ class RequirementParser(ClauseParser):
         key = Span(self.here().start, self.starts[self.index + 1] + 1)
         written = self.text[key.start : key.end]
         if instead:
-            fix = replace_fix(f"Write `{instead}`", key, instead, safe=True)
+            fix = write_fix(instead, key, safe=True)
             message = f"expected `{instead}` before the quality, found `{written}`"
         else:
             fix = replace_fix(f"Remove `{written}`", Span(key.start, self.starts[value]), "", safe=True)
             message = f"a title goes after the ID without `{written}`"
-        self.complain("syntax-error", key, message, (), (fix,))
+        self.complain(key, message, fix)
         self.go_to(value)
         return True
 
@@ -110,7 +110,7 @@ class RequirementParser(ClauseParser):
             return self.name(what)
         text = self.text[first:end].rstrip(",:")
         fix = replace_fix("Put quotes around it", Span(first, first + len(text)), quote(text), safe=True)
-        self.complain("syntax-error", Span(first, first + len(text)), "this ID needs quotes", (), (fix,))
+        self.complain(Span(first, first + len(text)), "this ID needs quotes", fix)
         while self.kind != NEWLINE and self.starts[self.index] < first + len(text):
             self.advance()
         return Word(NAME, start, text)
@@ -121,9 +121,9 @@ class RequirementParser(ClauseParser):
         if self.kind != NAME or last.kind != NAME or self.kinds[self.index + 1] not in (STRING, NEWLINE):
             return
         if self.raw not in VERB_WORDS and self.raw not in HEADS:
-            fix = replace_fix("Write `-`", Span(last.end + self.base, self.here().start), "-")
+            fix = write_fix("-", Span(last.end + self.base, self.here().start))
             span = Span(last.start + self.base, self.here().end)
-            self.complain("syntax-error", span, "a quality's name has no spaces", (), (fix,))
+            self.complain(span, "a quality's name has no spaces", fix)
             self.advance()
 
     def second_quality(self, requirement: Requirement) -> None:
@@ -138,7 +138,7 @@ class RequirementParser(ClauseParser):
             return None
         is_word = self.kinds[following] == NEWLINE
         if self.kinds[following] == STRING and not has_quality:
-            self.complain("syntax-error", self.here(), _A_QUALITY, (), (self.colon_before(),))
+            self.complain(self.here(), _A_QUALITY, self.colon_before())
             self.advance()
             return self.take()
         if not (is_word or self.is_prose(following)):
@@ -154,8 +154,7 @@ class RequirementParser(ClauseParser):
         fixes = [replace_fix("Put quotes around it", span, quote(text))]
         if is_word and not has_quality:
             fixes.append(self.colon_before())
-        message = f"{_A_TITLE}, and {_A_QUALITY}" if len(fixes) > 1 else _A_TITLE
-        self.complain("syntax-error", span, message, (), tuple(fixes))
+        self.complain(span, f"{_A_TITLE}, and {_A_QUALITY}" if len(fixes) > 1 else _A_TITLE, *(tuple(fixes)))
         self.go_to(end)
         return Word(NAME, start - self.base, text)
 
@@ -212,8 +211,7 @@ class RequirementParser(ClauseParser):
             sign = self.starts[key + 1] + 1 if self.is_operator(key + 1, ":") else end
             changes.append(Change(Place(Span(end, sign)), " ="))
         span = Span(self.starts[keys[0]], self.starts[keys[0]] + len(self.raws[keys[0]]))
-        fix = Fix("Write `=`", tuple(changes), safe=True)
-        self.complain("syntax-error", span, f"expected `=` after `{self.raws[keys[0]]}`", (), (fix,))
+        self.complain(span, f"expected `=` after `{self.raws[keys[0]]}`", Fix("Write `=`", tuple(changes), safe=True))
 
     def params(self) -> tuple[Parameter, ...]:
         """Params = "(" Param { "," Param } ")\""""
@@ -288,13 +286,12 @@ class RequirementParser(ClauseParser):
         end = max(unit_run(self.text, first), first + len(self.raw))  # valid or not
         word = self.text[first:end]
         if self.kind == STRING and is_unit(inner := unquote(word)):
-            fix = replace_fix(f"Write `{inner}`", self.here(), inner, safe=True)
-            self.complain("syntax-error", self.here(), "a unit takes no quotes", (), (fix,))
+            self.complain(self.here(), "a unit takes no quotes", write_fix(inner, self.here(), safe=True))
         elif self.kind == STRING:
             self.expected("a unit: s, m/s, %, 1, bool, text, …")
             return None
         elif word in _OTHER_SORTS:
-            fix = replace_fix(f"Write `{_OTHER_SORTS[word]}`", Span(first, end), _OTHER_SORTS[word])
+            fix = write_fix(_OTHER_SORTS[word], Span(first, end))
             message = f"unknown unit `{word}`; did you mean `{_OTHER_SORTS[word]}`?"
             self.report(Diagnostic("unknown-unit", Span(first, end), message, fixes=(fix,)))
         elif word not in UNITLESS and not is_unit(word):

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
 from btq_lang.syntax.indentation import Indentation
 from btq_lang.syntax.scan import Maps, blanks_end, line_end, line_opening, line_start
 from btq_lang.syntax.suggestions import ATTRIBUTES, INSTEAD, attributes_in_braces, no_token, value_meant
@@ -45,7 +45,7 @@ class StrangeCharacters(Indentation):
         if character == "$" and (entry := _SHELL_ENTRY.match(text, start)) and self.raws[-1:] == ["="]:
             return self._shell_entry(start, entry.end())
         if character == ";" and self._separates(start):
-            fix = replace_fix("Write `,`", Span(start, start + 1), ",", safe=True)
+            fix = write_fix(",", Span(start, start + 1), safe=True)
             self._mistake(Span(start, start + 1), "expected `,` between attributes, found `;`", fix)
             return start + 1
         if character == "[" and self.raws[-1:] == ["="] and (square := _SQUARE.match(text, start)):
@@ -78,7 +78,7 @@ class StrangeCharacters(Indentation):
     def _shell_entry(self, start: int, end: int) -> int:
         """Handle a blackboard entry in the syntax of shell variables: `$key` or `${key}`."""
         written = f"{{{self.text[start:end].strip('${}')}}}"
-        fix = replace_fix(f"Write `{written}`", Span(start, end), written)
+        fix = write_fix(written, Span(start, end))
         self._mistake(Span(start, end), f"a blackboard entry is written `{written}`", fix)
         return self._add(NAME, start, end)
 
@@ -128,7 +128,7 @@ class StrangeCharacters(Indentation):
     def _half_braced(self, start: int, character: str) -> int:
         """Handle an unpaired brace: `{key` or `key}`; the key remains as a word."""
         if character == "{" and (twice := _TWICE_BRACED.match(self.text, start)):
-            fix = replace_fix(f"Write `{twice[1]}`", Span(start, twice.end()), twice[1], safe=True)
+            fix = write_fix(twice[1], Span(start, twice.end()), safe=True)
             self._mistake(Span(start, twice.end()), "a blackboard entry has one pair of braces", fix)
             return self._add(NAME, start, twice.end())
         word = _WHOLE_WORD.match(self.text, start + 1) if character == "{" else None
@@ -149,7 +149,7 @@ class StrangeCharacters(Indentation):
 
     def _close_square(self, position: int) -> int:
         span = Span(position, position + 1)
-        fix = replace_fix("Write `)`", span, ")", safe=True)
+        fix = write_fix(")", span, safe=True)
         self.problems.append(Diagnostic("syntax-error", span, "expected `)`, found `]`", fixes=(fix,)))
         self._brackets.pop()
         return self._add(CLOSE, position, position + 1)

@@ -11,7 +11,7 @@ from typing import Final
 
 from btq_lang.catalog.measured import measured
 from btq_lang.catalog.units import nearest_units
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
 from btq_lang.syntax.scan import line_end, line_start, number_end
 from btq_lang.syntax.tree import quote
 from btq_lang.util.text import Span
@@ -126,7 +126,7 @@ def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
     """The fix for look-alike characters, all of those in the line: `≤`, `“`, a no-break space."""
     if text[start] == "°":
         degrees = "degC" if text[start + 1 : start + 2] == "C" else "deg"
-        return (replace_fix(f"Write `{degrees}`", Span(start, start + len(degrees) // 2), degrees),)
+        return (write_fix(degrees, Span(start, start + len(degrees) // 2)),)
     from unicodedata import normalize  # few files need it
 
     is_quote = text[start] in _OTHER_QUOTES
