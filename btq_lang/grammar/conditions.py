@@ -82,8 +82,12 @@ class ConditionParser(Cursor):
 
     def accept_one(self, operators: tuple[str, ...]) -> str:
         """The operator that is here, if it is one of these; else empty"""
-        for each in operators:
-            if self.accept(each) or self.accept_word(each) or self.accept_instead(_INSTEAD.get(each, ""), each):
+        found = self.raw
+        if found in operators and (self.kind == OPERATOR or self.kind == NAME):
+            self.advance()
+            return found
+        for each in operators if self.kind == SYMBOL or self.kind == ERROR else ():
+            if self.accept_instead(_INSTEAD.get(each, ""), each):
                 return each
         return ""
 
