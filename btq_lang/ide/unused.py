@@ -146,8 +146,8 @@ def _changes_nothing(workspace: Workspace, path: str, removed: Sequence[Include]
     if len(requirements(workspace, path).applied) != len(requirements(after, path).applied):
         return False
     before = [each for each in check(workspace, path) if not any(span.contains(each.span) for span in spans)]
-    said = (Counter((each.rule, each.message) for each in found) for found in (before, check(after, path)))
-    return next(said) == next(said)
+    then, now = (Counter((each.rule, each.message) for each in found) for found in (before, check(after, path)))
+    return then == now
 
 
 def _without(file: File, spans: Iterable[Span]) -> tuple[Edit, ...]:
