@@ -93,6 +93,7 @@ class JudgedClause:
     """A clause at a written node, and its judgements so far.
 
     Attributes:
+        found: what was found of it in the logs so far.
         judged: the claim as it is judged.
         explainer: of the current log.
     """
@@ -116,7 +117,7 @@ class JudgedClause:
         self._with_measures: Final = with_measures
         self._events: Final = _events(claim, subject)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
-        self._running: Final = [each.target for part in parts for each in parts_in(part) if isinstance(each, Running)]
+        self._running: Final = [each.target for each in parts_in(parts) if isinstance(each, Running)]
         self.found.missing = self._why_not()
         self._is_judged: Final = not self.found.missing
         self._nodes: Final[list[int]] = []  # of the current log, as are these:
