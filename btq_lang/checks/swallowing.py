@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
 from typing import TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
@@ -74,8 +73,13 @@ def _main_tree(store: Store[Workspace], viewpoint: str) -> str | None:
 
 
 def _in_tree(node: ResolvedNode) -> Swallower | None:
-    ways = ((at, _swallows(at, below)) for below, at in pairwise((node, *node.ancestors())))
-    return next(((at, reason) for at, reason in ways if reason is not None), None)
+    below, at = node, node.parent  # without a generator: in a chain of trees this is asked for each of all others
+    while at is not None:
+        reason = _swallows(at, below)
+        if reason is not None:
+            return at, reason
+        below, at = at, at.parent
+    return None
 
 
 def _swallows(parent: ResolvedNode, child: ResolvedNode) -> str | None:
