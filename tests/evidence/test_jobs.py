@@ -8,6 +8,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from by_day import of_the_day
 from in_process import run_btq
 from random_runs import Case, case
 
@@ -51,11 +52,11 @@ def without_remarks(found: MissionVerdicts) -> MissionVerdicts:
 
 def test_sessions_that_are_added_up_have_the_verdicts_of_all() -> None:
     several = 0
-    for seed in range(200):
+    for seed in of_the_day(range(200), 2):
         made = case(seed)
         several += len(made.sessions) > 1
         assert without_remarks(added(made)) == without_remarks(together(made)), f"seed {seed}"
-    assert several > 20
+    assert several > 10
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from by_day import of_the_day
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from layouts import has_errors, places, relaid, said, words
 from missions import mission
@@ -87,13 +87,11 @@ def test_every_example(text: str) -> None:
 
 
 @given(LAYOUTS, OPTIONS)
-@settings(deadline=None, max_examples=100)
 def test_every_layout(text: str, options: FormatOptions) -> None:
     assert_holds(text, options)
 
 
 @given(st.sampled_from(TEXTS), st.integers(0, 2**32))
-@settings(deadline=None, max_examples=100)
 def test_texts_with_words_put_in_left_out_and_exchanged(text: str, seed: int) -> None:
     draw = random.Random(seed)
     pieces = [token.text for token in tokens(text)]
@@ -104,7 +102,6 @@ def test_texts_with_words_put_in_left_out_and_exchanged(text: str, seed: int) ->
 
 
 @given(st.text() | st.lists(st.sampled_from(PIECES)).map("".join))
-@settings(deadline=None)
 def test_any_text(text: str) -> None:
     assert_holds(text)
 
@@ -117,7 +114,6 @@ def test_every_beginning_and_every_word_left_out(item: str) -> None:
 
 
 @given(LAYOUTS, st.integers(0, 2**32), st.booleans())
-@settings(deadline=None, max_examples=60)
 def test_every_range(text: str, seed: int, formatted: bool) -> None:
     draw = random.Random(seed)
     if formatted:  # but for a line here and there

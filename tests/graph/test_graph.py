@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from btq_lang.cli import main
@@ -69,7 +69,6 @@ def trees(draw: st.DrawFn) -> tuple[list[Size], list[int | None]]:
 
 
 @given(trees())
-@settings(max_examples=100)
 def test_boxes_stand_apart_below_the_middle_of_their_parents(tree: tuple[list[Size], list[int | None]]) -> None:
     sizes, parents = tree
     places = layout(sizes, parents, 10, 20)
