@@ -51,6 +51,18 @@ def btlog(xml: str, transitions: Sequence[Row], start: int = START) -> bytes:
     )
 
 
+def logged(file: Path) -> tuple[str, int, list[Row]]:
+    """The tree, the start and the rows of a .btlog, read without btq."""
+    data = file.read_bytes()
+    (length,) = struct.unpack_from("<i", data, 19)
+    xml = data[23 : 23 + length].decode()
+    (start,) = struct.unpack_from("<q", data, 23 + length)
+    found = [
+        (low | high << 32, uid, status) for low, high, uid, status in struct.iter_unpack("<IHHB", data[31 + length :])
+    ]
+    return xml, start, found
+
+
 def write_db3(
     path: Path, xml: str, sessions: Sequence[Sequence[Row]], extra: Mapping[int, str] | None = None, start: int = START
 ) -> None:

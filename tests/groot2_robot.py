@@ -1,6 +1,6 @@
 """A robot that speaks as BehaviorTree.CPP's Groot2Publisher does, with a tree whose nodes change as a test says.
 
-`evidence/test_groot2_recording.py` holds its replies against those of the real one.
+`evidence/readers/test_groot2_recording.py` holds its replies against those of the real one.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from evidence_logs import MAIN, MAIN_XML, Verify, btlog, rows
+from evidence_logs import MAIN, MAIN_XML, Verify, btlog, logged, rows
 
 from btq_lang.cli import main
 
@@ -28,7 +28,6 @@ def blocks(page: str) -> list[tuple[str, str]]:
 def test_a_bag_of_nav2(shared: Path, verify: Verify) -> None:
     pytest.importorskip("rosbags")
     from evidence_bags import names_of, tree_log, write_bag
-    from test_bags import logged
 
     shutil.copy(shared / "logs" / "nav.xml", verify.folder / "navigate.xml")
     xml, start, transitions = logged(shared / "logs" / "nav.btlog")

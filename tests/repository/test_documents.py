@@ -41,8 +41,8 @@ RUN_BY = {
     "import.md text": "test_an_import_gives_what_the_page_shows",
     "commands.md text": "test_a_diff_says_what_the_page_shows",
     "evidence.md text": "evidence/test_page.py",
-    "evidence-store.md python": "evidence/test_store_summary.py",
-    "evidence-store.md text": "evidence/test_compare.py",
+    "evidence-store.md python": "evidence/store/test_store_summary.py",
+    "evidence-store.md text": "evidence/compare/test_compare.py",
     "console": "requirements/test_requirements_page.py",
     "README.md xml": "repository/test_home_page.py",
     "README.md console": "repository/test_home_page.py",
@@ -314,7 +314,7 @@ def test_ci_knows_its_names() -> None:
     assert re.findall(r"steps\.btq\.outputs\.(\w+)", json.dumps(comment)) == ["diff", "diff"]
     assert "diff" in action["outputs"]
     assert [*simulation["jobs"]] == ["simulation"]  # evidence/test_recipe_pages.py runs it
-    assert [each["run"] for each in comparing[2:]] == [  # evidence/test_store.py runs them, with other paths
+    assert [each["run"] for each in comparing[2:]] == [  # evidence/store/test_store.py runs them, with other paths
         "btq verify logs --mission missions/mission.btq"
         ' --store evidence --label "$GITHUB_SHA" --exit-zero -o verdicts.md',
         'btq compare evidence main "$GITHUB_SHA" -o comparison.md',

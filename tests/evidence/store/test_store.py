@@ -20,7 +20,7 @@ from in_process import run_btq
 
 from btq_lang.evidence.store import engine, sets
 
-HERE = Path(__file__).parent
+ROOT = Path(__file__).parents[3]
 TABLES = ["activations", "clauses", "runs", "verdicts"]
 RUN = "1R 2R 20 2S 3R 25 3S 1S 26 2I 3I 1I"
 MISSION = "QualityReq quick : safety\n    Move takes at most 15 ms\n" + MAIN
@@ -280,7 +280,7 @@ def test_a_disk_that_is_full(size: int, robot: Path) -> None:
         [sys.executable, "-m", "btq_lang", "verify", *logs, "--mission", "main.btq", "--store", "kept"],
         cwd=robot,
         # half-written bytecode would break the next start
-        env={**os.environ, "PYTHONPATH": str(HERE.parents[1]), "PYTHONDONTWRITEBYTECODE": "1"},
+        env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"},
         capture_output=True,
         text=True,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
@@ -370,7 +370,7 @@ def logs_of(folder: Path, number: int) -> list[str]:
 
 def writer(folder: Path, logs: list[str]) -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "btq_lang", "verify", *logs, "--mission", "main.btq", "--store", "kept"]
-    environment = {**os.environ, "PYTHONPATH": str(HERE.parents[1])}
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     null = subprocess.DEVNULL
     return subprocess.Popen(command, cwd=folder, env=environment, stdout=null, stderr=null, start_new_session=True)
 

@@ -25,8 +25,8 @@ from btq_lang.evidence.store.rows import Rows
 from btq_lang.evidence.store.summary import summary
 from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts
 
-HERE = Path(__file__).parent
-SCHEMA = json.loads((HERE.parents[1] / "btq_lang" / "evidence" / "verdicts.schema.json").read_text(encoding="utf-8"))
+EVIDENCE = Path(__file__).parents[1]
+SCHEMA = json.loads((EVIDENCE.parents[1] / "btq_lang/evidence/verdicts.schema.json").read_text(encoding="utf-8"))
 
 
 def judged_and_kept(made: Case, store: Path) -> MissionVerdicts:
@@ -162,7 +162,7 @@ def test_every_format_has_a_summary(form: str, kept: Path) -> None:
 def test_the_summary_of_the_laboratory_is_what_its_logs_say(shared: Path, tmp_path: Path) -> None:
     shutil.copy(shared / "logs" / "lab.btlog", tmp_path)
     shutil.copy(shared / "logs" / "lab.battery.csv", tmp_path)
-    shutil.copy(HERE / "lab.btq", tmp_path)
+    shutil.copy(EVIDENCE / "lab.btq", tmp_path)
     mission = ("--mission", "lab.btq", "--signals", "lab.battery.csv", "--format", "json")
     _, judged, _ = run_btq("verify", "lab.btlog", *mission, "--store", "kept", cwd=tmp_path)
     code, summed, errors = run_btq("verify", "--store", "kept", "--format", "json", cwd=tmp_path)
@@ -255,7 +255,7 @@ def test_what_a_killed_writer_leaves_is_not_counted(kept: Path) -> None:
 
 
 def test_the_question_of_the_page(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    page = (HERE.parents[1] / "docs" / "evidence-store.md").read_text(encoding="utf-8")
+    page = (EVIDENCE.parents[1] / "docs" / "evidence-store.md").read_text(encoding="utf-8")
     (program,) = re.findall(r"^```python\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
     (kept / "kept").rename(kept / "evidence")
     monkeypatch.chdir(kept)

@@ -296,7 +296,7 @@ def test_a_blackboard_that_cannot_be_read_ends_only_the_samples(
 def test_a_log_judged_live_has_the_verdicts_of_its_file(
     shared: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    log, mission = shared / "logs" / "lab.btlog", Path(__file__).parent / "lab.btq"
+    log, mission = shared / "logs" / "lab.btlog", Path(__file__).parents[1] / "lab.btq"
     main(["verify", str(log), "--mission", str(mission), "--format", "json"])
     of_file = json.loads(capsys.readouterr().out)
     data = log.read_bytes()

@@ -14,7 +14,7 @@ from btq_lang.evidence.store import engine
 from btq_lang.evidence.store.rows import file_of
 from btq_lang.evidence.store.tables import ROWS
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 COMMON = {"log": "0" * 64, "label": "", "source": "log"}
 MEASURE = """
 import resource, sys

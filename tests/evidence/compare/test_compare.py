@@ -22,7 +22,7 @@ from btq_lang.evidence.store.rows import file_of
 from btq_lang.evidence.store.tables import ROWS
 
 SCHEMA = json.loads(
-    (Path(__file__).parents[2] / "btq_lang/evidence/compare/comparison.schema.json").read_text(encoding="utf-8")
+    (Path(__file__).parents[3] / "btq_lang/evidence/compare/comparison.schema.json").read_text(encoding="utf-8")
 )
 Run = tuple[float, float, bool]  # seconds of Move, seconds of Dock, whether Dock succeeded
 
@@ -433,5 +433,5 @@ def test_as_many_shuffles_as_comparisons_need() -> None:
 
 
 def test_the_table_of_the_page() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "evidence-store.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "evidence-store.md").read_text(encoding="utf-8")
     assert f"$ btq compare evidence v1 v2\n{TABLE}```" in page

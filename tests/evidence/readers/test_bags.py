@@ -6,7 +6,6 @@ import json
 import re
 import shutil
 import sqlite3
-import struct
 import subprocess
 import sys
 from collections.abc import Callable
@@ -16,7 +15,7 @@ from typing import Any, Literal
 import lz4.frame
 import pytest
 from evidence_bags import HUMBLE, LOG, STORE, late_ends, names_of, text, tree_log, write_bag
-from evidence_logs import MAIN, MAIN_XML, START, Row, Verify, rows
+from evidence_logs import MAIN, MAIN_XML, START, Verify, logged, rows
 from rosbags.rosbag2 import storage_mcap
 from rosbags.rosbag2.storage_mcap import zstd
 from test_identity import DEMANDS
@@ -28,18 +27,6 @@ from btq_lang.evidence.readers import read, unpacking
 LIMIT = "QualityReq rq : safety\n    Move takes at most 10 ms\n"
 NAMES = names_of(MAIN_XML)
 TWO_RUNS = "0 1R 2R 8 2S 3S 1S 2I 3I 1I 50 1R 2R 70 2F 1F 2I 1I"
-
-
-def logged(file: Path) -> tuple[str, int, list[Row]]:
-    """The tree, the start and the rows of a .btlog, read without btq."""
-    data = file.read_bytes()
-    (length,) = struct.unpack_from("<i", data, 19)
-    xml = data[23 : 23 + length].decode()
-    (start,) = struct.unpack_from("<q", data, 23 + length)
-    found = [
-        (low | high << 32, uid, status) for low, high, uid, status in struct.iter_unpack("<IHHB", data[31 + length :])
-    ]
-    return xml, start, found
 
 
 @pytest.fixture
