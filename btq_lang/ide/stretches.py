@@ -31,7 +31,7 @@ from btq_lang.ide.meaning import match_of
 from btq_lang.lexer import pieces
 from btq_lang.syntax.tokens import COMMENT, OPERATOR, SYMBOL
 from btq_lang.syntax.tree import Node, Pair, Requirement, Word
-from btq_lang.util.text import LINE_END, Encoding, LineIndex, Span
+from btq_lang.util.text import LINE_END, Encoding, Span, width_of
 from btq_lang.workspace.inputs import definition
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
@@ -170,17 +170,21 @@ def encode(text: str, tokens: list[Token], encoding: Encoding) -> tuple[list[str
     Args:
         tokens: in the order of the text; one that crosses a line end becomes one on each line.
     """
-    lines = LineIndex(text)
+    begins = [*(each.end() for each in LINE_END.finditer(text)), len(text) + 1]  # of the lines after each line
     found: list[str] = []
     line = column = 0  # of the last token
+    at = begin = 0  # the line of the next one, and where it begins
     waiting = tokens[::-1]
     while waiting:
         start, stop, appearance = waiting.pop()
-        at, place, last, end = lines.ends((start, stop), encoding)
-        if at < last:
+        while begins[at] <= start:
+            begin = begins[at]
+            at += 1
+        if stop >= begins[at]:
             waiting += [(first, last, appearance) for first, last in reversed(_lines(text, start, stop))]
             continue
-        found.append(f"{at - line},{place - column if at == line else place},{end - place}{appearance}")
+        place, length = width_of(text[begin:start], encoding), width_of(text[start:stop], encoding)
+        found.append(f"{at - line},{place - column if at == line else place},{length}{appearance}")
         line, column = at, place
     return found, line
 
