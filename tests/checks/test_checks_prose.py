@@ -55,6 +55,17 @@ def test_a_plain_sentence_has_a_clause(violates: bool, sentence: str, clause: st
     assert as_clause(sentence, violates=violates, signals=SIGNALS) == clause
 
 
+QUALIFIERS = (
+    "and or but if when whenever while unless except until after before since during per every between average averaged "
+    "mean median percentile probability probably usually often"
+)
+
+
+@pytest.mark.parametrize("word", QUALIFIERS.split())
+def test_a_sentence_with_a_word_that_may_change_its_bound_has_none(word: str) -> None:
+    assert as_clause(f"takes at most 30 s {word} charging", violates=MET, signals=SIGNALS) is None
+
+
 @pytest.mark.parametrize(
     ("violates", "sentence"),
     [
