@@ -56,8 +56,8 @@ def test_a_plain_sentence_has_a_clause(violates: bool, sentence: str, clause: st
 
 
 QUALIFIERS = (
-    "and or but if when whenever while unless except until after before since during per every between average averaged "
-    "mean median percentile probability probably usually often"
+    "and or but if when whenever while unless except until after before since during per every between average"
+    " averaged mean median percentile probability probably usually often"
 )
 
 

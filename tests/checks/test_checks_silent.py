@@ -217,3 +217,15 @@ def test_a_signal_that_is_a_number_and_an_entry_that_is_a_text(unit: str, type_:
     )
     message = "«battery» the signal `battery` is a number, but the port `battery` of `Read` writes a string"
     assert findings(text, "unit-mismatch") == ([f"1 warning {message}"] if told else [])
+
+
+@pytest.mark.parametrize(("entry", "told"), [("@battery", True), ("battery", False)])
+def test_a_text_that_a_subtree_writes_into_the_root_is_the_main_trees(entry: str, told: bool) -> None:
+    text = (
+        "signal battery : % from {battery}\n"
+        "Action Read\n    output level : string\n"
+        'QualityReq q : safety "Q"\n    leaves battery == 3 %\n'
+        f"BehaviorTree Main\n    SubTree Part satisfies q\nBehaviorTree Part\n    Read (level = {{{entry}}})\n"
+    )
+    message = "«battery» the signal `battery` is a number, but the port `level` of `Read` writes a string"
+    assert findings(text, "unit-mismatch") == ([f"1 warning {message}"] if told else [])
