@@ -195,6 +195,14 @@ def test_a_mission_that_says_no_more_than_its_xml_has_none() -> None:
     assert built("# a comment\nBehaviorTree Main\n    Pick\n")[1] is None
 
 
+def test_what_satisfies_a_requirement_about_other_nodes_is_named() -> None:
+    requirement = 'QualityReq calm : safety "Calmly"\n    Pick takes at most 30 s\n'
+    text = f"{requirement}BehaviorTree Main\n    ->\n        Move satisfies calm\n        Pick\n"
+    _, side = built(text)
+    assert side is not None
+    assert json.loads(side)["traces"] == [{"requirement": "calm", "nodes": [2]}]
+
+
 def test_included_files_are_named() -> None:
     data = said('include "part.btq"\nRoot A\nBehaviorTree A\n    SubTree P\n', part="BehaviorTree P\n    X tags a\n")
     assert data["files"] == ["part.btq", "main.btq"]

@@ -177,6 +177,12 @@ def test_what_is_passed_over_and_what_is_kept() -> None:
     assert done.problems == ()
 
 
+def test_a_section_of_characters_may_be_empty_or_have_one() -> None:
+    done = read("<a><![CDATA[]]><b/><![CDATA[<]]></a>")
+    assert done.document is not None
+    assert elements(done.document) == [("a", []), ("b", []), ("text", "<")]
+
+
 def test_entities_of_a_doctype_are_not_expanded() -> None:
     lol = '<!DOCTYPE a [<!ENTITY x "ha"><!ENTITY y "&x;&x;">]><a b="&y;">&y;</a>'
     done = read(lol)

@@ -644,3 +644,13 @@ def test_a_line_that_ends_after_from() -> None:
 def test_xml_below_what_has_no_block_is_part_of_it() -> None:
     (found,) = parse('include "a.btq"\n    xml "<a/>"\nsignal b : m\n').diagnostics
     assert found.message == "unexpected indentation: the line above opens no block"
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"), [("BehaviourTre", "BehaviorTree"), ("Rot", "Root"), ("TreeNodeModel", "TreeNodesModel")]
+)
+@pytest.mark.parametrize("rest", ["\n", " (a = 1)\n"])
+def test_a_misspelt_item_whose_name_is_optional_is_read(written: str, meant: str, rest: str) -> None:
+    parsed = parse(written + rest)
+    assert [each.message for each in parsed.diagnostics][:1] == [f"unknown word `{written}`; did you mean `{meant}`?"]
+    assert type(parsed.entries[0].item) is type(parse(meant + rest).entries[0].item)
