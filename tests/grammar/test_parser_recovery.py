@@ -370,6 +370,7 @@ A_TIME = "expected a unit of time: ms, s, min, h"
 TITLE = "a title goes in quotes"
 ITEM = "expected an item: BehaviorTree, QualityReq, include, signal, …, found "
 A_FILE = "expected a file in quotes, found "
+A_PORT = "expected a port (input, output or inout), metadata or xml, found "
 
 
 @pytest.mark.parametrize(
@@ -473,6 +474,8 @@ A_FILE = "expected a file in quotes, found "
         ('include my b.btq"  # and\nAction A "x"\n', A_FILE + "`my`", None,
          'include "my b.btq"  # and\nAction A "x"\n'),
         ('Requirement r "t"\n', "unknown word `Requirement`; did you mean `QualityReq`?", None, 'QualityReq r "t"\n'),
+        ("Action A\n    in x\n", A_PORT + "`in`", None, "Action A\n    input x\n"),
+        ("Action A\n    out x\n", A_PORT + "`out`", None, "Action A\n    output x\n"),
         ("tree T\n    A\n", "unknown word `tree`; did you mean `BehaviorTree`?", None, "BehaviorTree T\n    A\n"),
         ('QualityReq REQ.001 : safety "t"\n', "this ID needs quotes", None, 'QualityReq "REQ.001" : safety "t"\n'),
         ("QualityReq 4711 : safety\n", "this ID needs quotes", None, 'QualityReq "4711" : safety\n'),
