@@ -169,6 +169,13 @@ def test_prefixes_that_other_tools_refuse(text: str, said: str | None) -> None:
     assert [each.message for each in read(text).problems] == told
 
 
+def test_the_place_of_a_prefix_that_other_tools_refuse_is_one_character() -> None:
+    """Where they stop reading: all that they say of it."""
+    text = "<a><x:b/></a>"
+    (problem,) = read(text).problems
+    assert (problem.span.start, problem.span.end) == (text.index("/"), text.index("/") + 1)
+
+
 def test_what_is_passed_over_and_what_is_kept() -> None:
     text = '\ufeff<?xml version="1.0" encoding="latin1"?>\n<!DOCTYPE a SYSTEM "file:///etc/passwd">\n<a>t&#252;<![CDATA[<u>]]></a>\n'
     done = read(text)
