@@ -296,6 +296,15 @@ def test_what_a_description_demands() -> None:
     assert 'code="(battery &gt; 20)"' in xml_of(workspace, "main.btq")
 
 
+@pytest.mark.parametrize("script", ["(a := 3) > 2", "(a = 3) > 2", "(a += 1) > 2"])
+def test_a_description_that_changes_an_entry_is_not_enforced(script: str) -> None:
+    text = (
+        'Root Main\nBehaviorTree Main\n    -> (Quality = x)\n        Move (satisfies QualityReq ID = "rq1"'
+        f' description = "SuccessIf {script}")\n'
+    )
+    assert states(Workspace.of({"main.btq": text}), "main.btq") == ["rq1: monitored: its script changes an entry"]
+
+
 # ---- scripts and names ----
 
 
