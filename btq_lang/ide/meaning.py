@@ -20,7 +20,7 @@ from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.node_names import meaning_of
-from btq_lang.workspace.references import Mention, What, called
+from btq_lang.workspace.references import KIND_OF, Mention, What, called
 from btq_lang.workspace.workspace import Workspace
 
 ENGINE = "engine"
@@ -92,7 +92,7 @@ def subject(workspace: Workspace, found: Found) -> Subject:
         return _quality(workspace, path, mention)
     if mention.what is What.NODE:
         return _node(workspace, path, mention)
-    if mention.what in _KINDS:
+    if mention.what in KIND_OF:
         return _defined(workspace, path, mention.what, mention.name)
     if mention.what is What.PARAMETER:
         owner = mention.owner
@@ -112,7 +112,7 @@ def subject(workspace: Workspace, found: Found) -> Subject:
 
 def definition(workspace: Workspace, path: str, wanted: Subject) -> Definition | None:
     """The definition of a subject in the symbols of a file's scope, or else anywhere in the project."""
-    kind = _KINDS.get(wanted.what)
+    kind = KIND_OF.get(wanted.what)
     if kind is None or wanted.home in (ENGINE, STANDARD):
         return None
     found = workspace.find(path, kind, wanted.name)
@@ -206,7 +206,7 @@ def match_of(name: str, edition: str) -> QualityMatch:
 
 
 def _defined(workspace: Workspace, path: str, what: What, name: str) -> Subject:
-    found = workspace.find(path, _KINDS[what], name)
+    found = workspace.find(path, KIND_OF[what], name)
     return Subject(what, name, home_of(found) if found else "")
 
 
@@ -340,14 +340,6 @@ def _rule_at(workspace: Workspace, path: str, offset: int) -> Found | None:
     return None
 
 
-_KINDS = {
-    What.TREE: Kind.TREE,
-    What.NODE: Kind.MODEL,
-    What.REQUIREMENT: Kind.REQUIREMENT,
-    What.SIGNAL: Kind.SIGNAL,
-    What.CONTEXT: Kind.CONTEXT,
-    What.QUALITY: Kind.QUALITY,
-}
 _ESCAPED = re.compile(r"[\"'\\\r\n\t]")
 _IGNORED = re.compile(r"btq:\s*ignore\s*\[([^\]]*)")
 _RULE_NAME = re.compile(r"[\w-]+")

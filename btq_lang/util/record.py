@@ -87,4 +87,4 @@ def fields_of(part: object) -> tuple[str, ...]:
 
 def values_of(part: object) -> tuple[Any, ...]:
     """The values of the fields, in order, of a record."""
-    return type(part)._key(part)[1:]  # type: ignore[attr-defined, no-any-return]  # as above
+    return type(part)._key(part)[1:]  # type: ignore[attr-defined, no-any-return]  # Record makes it for each class

@@ -195,7 +195,7 @@ class LineIndex:
             return Position(line, offset - start)
         return Position(line, width_of(self._text[start:offset], encoding))
 
-    def ends(self, span: tuple[int, int], encoding: Encoding = "code-points") -> tuple[int, int, int, int]:
+    def ends(self, span: Span, encoding: Encoding = "code-points") -> tuple[int, int, int, int]:
         """Line and column of both ends of a span; fast if both are in one line, as nearly always."""
         start, end = span
         if self._text.isascii() and 0 <= start <= end <= len(self._text):

@@ -205,7 +205,7 @@ class _Names(Listener):
         owner: Owner = None,
         pair: syntax.Pair | None = None,
     ) -> None:
-        kind = _KINDS.get(what)
+        kind = KIND_OF.get(what)
         if word is None or kind is None:
             return
         if not defines:
@@ -214,7 +214,7 @@ class _Names(Listener):
             self.symbols.append(Symbol(kind, word.text, word.span, target))
 
     def words(self, what: What, words: tuple[syntax.Word, ...], span: Span, node: syntax.Node | None = None) -> None:
-        self.uses.append(Use(_KINDS[what], ".".join([word.text for word in words]), span, node))
+        self.uses.append(Use(KIND_OF[what], ".".join([word.text for word in words]), span, node))
 
 
 def _model(model: syntax.Model, to: Listener) -> None:
@@ -450,7 +450,7 @@ def _path(path: syntax.Path | None, to: Listener) -> None:
 
 
 _STANDING_FOR_OTHERS: Final = frozenset((*PLACEHOLDERS, "SubTreePlus"))
-_KINDS: Final = {
+KIND_OF: Final = {  # of what is looked up by its name
     What.TREE: Kind.TREE,
     What.NODE: Kind.MODEL,
     What.REQUIREMENT: Kind.REQUIREMENT,
