@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from lxml import etree
 
 from btq_lang.catalog.literals import check_literal
-from btq_lang.catalog.nodes import BUILTINS, available, port_type
+from btq_lang.catalog.nodes import BUILTINS, available, of_version
 
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
 FORBIDDEN = frozenset(" \t\n\r<>&\"'/\\:*?|.")
@@ -112,7 +112,7 @@ def _of_ports(node: etree._Element, version: float) -> Iterator[str]:
         if port is None:
             yield f"{kind.tag} has no port {key}"
         elif port.content == "value":
-            problem = check_literal(port.literal or port_type(port, _text(version)), value, _text(version))
+            problem = check_literal(port.literal or of_version(port, _text(version)).type, value, _text(version))
             if problem is not None and problem.kind == "refused":
                 yield f"{kind.tag}.{key}: {value!r}, expected {problem.expected}"
 

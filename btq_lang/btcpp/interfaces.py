@@ -13,9 +13,10 @@ from btq_lang.catalog.kinds import CHILDREN, NodeKind, PortKind
 from btq_lang.catalog.literals import values_of
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, is_xml_name
-from btq_lang.catalog.nodes import BUILTINS, available, port_type
-from btq_lang.syntax.tree import Model, Port
+from btq_lang.catalog.nodes import BUILTINS, available, of_version
+from btq_lang.syntax.tree import Model
 from btq_lang.util.record import Record
+from btq_lang.workspace.port_types import as_kind
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -78,15 +79,18 @@ def tree_names(workspaces: Iterable[Workspace]) -> list[str]:
 
 
 def _of_engine(kind: NodeKind, version: str) -> Interface:
-    ports = {port.name: _port_of_engine(port, version) for port in kind.ports if is_port_name(port.name)}
+    ports = {port.name: _port_of_engine(of_version(port, version)) for port in kind.ports if is_port_name(port.name)}
     doc = f"{kind.doc} {kind.semantics}"
     return Interface(kind.tag, (kind.category,), *kind.children, ports, kind.category == "SubTree", doc)
 
 
-def _port_of_engine(port: PortKind, version: str) -> PortInterface:
-    values = values_of(port.literal or port_type(port, version)) if port.direction == "input" else ()
+def _port_of_engine(port: PortKind) -> PortInterface:
     default = f"; default: {port.default}" if port.default is not None else ""
-    return PortInterface(port.name, values, port.required, f"{port.doc}{default}")
+    return PortInterface(port.name, _values(port), port.required, f"{port.doc}{default}")
+
+
+def _values(port: PortKind) -> tuple[str, ...]:
+    return values_of(port.literal or port.type) if port.direction == "input" else ()
 
 
 def _models(workspace: Workspace, path: str) -> Iterator[Interface]:
@@ -94,20 +98,13 @@ def _models(workspace: Workspace, path: str) -> Iterator[Interface]:
         for symbol in summary.symbols:
             model = symbol.target
             if symbol.kind is Kind.MODEL and isinstance(model, Model) and model.category.raw != "SubTree":
-                known = map(_port_of_model, model.ports)
+                # Only the robot's program knows whether it requires an input.
+                known = (PortInterface(port.name, _values(port), doc=port.doc) for port in map(as_kind, model.ports))
                 ports = {each.name: each for each in known if is_port_name(each.name) and is_xml_name(each.name)}
                 doc = model.text.text if model.text is not None else ""
                 category = model.category.raw
                 # A model without ports is often unfinished; the checks warn of ports then, and do not refuse them.
                 yield Interface(symbol.name, (category,), *CHILDREN[category], ports, not ports, doc)
-
-
-def _port_of_model(port: Port) -> PortInterface:
-    type_ = port.type.text if port.type is not None else ""
-    values = values_of(type_) if port.direction.raw == "input" else ()
-    doc = port.text.text if port.text is not None else ""
-    # Only the robot's program knows whether it requires an input.
-    return PortInterface(port.id.text if port.id is not None else "", values, doc=doc)
 
 
 def _merged(one: Interface, other: Interface) -> Interface:

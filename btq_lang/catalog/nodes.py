@@ -17,6 +17,7 @@ from btq_lang.catalog.words import KNOWN_WORDS as KNOWN_WORDS
 from btq_lang.catalog.words import OLD_PORTS as OLD_PORTS
 from btq_lang.catalog.words import PLACEHOLDERS as PLACEHOLDERS
 from btq_lang.catalog.words import KnownWord as KnownWord
+from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Flow
@@ -72,11 +73,11 @@ def tags_of(flow: Flow) -> frozenset[str]:
     return frozenset((*found, *(known.word for known in KNOWN_WORDS.values() if known.replacement in found)))
 
 
-def port_type(port: PortKind, version: str) -> str:
-    """The type that a version of the engine gives a port."""
+def of_version(port: PortKind, version: str) -> PortKind:
+    """A port with the type that a version of the engine gives it."""
     if port.type_before is not None and not at_least(version, port.type_before[0]):
-        return port.type_before[1]
-    return port.type
+        return replace(port, type=port.type_before[1])
+    return port
 
 
 # By XML tag.

@@ -223,8 +223,8 @@ def _use(view: View, seen: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
     if seen.is_subtree:
         unknown = seen.node.id is None or not view.defines(Kind.TREE, seen.node.id.text)
         return unknown, unknown, unknown
-    direction, _ = port_of(view, seen, pair.key.text) or ("", "")
-    return direction != "output", direction != "input", True
+    port = port_of(view, seen, pair.key.text)
+    return port is None or port.direction != "output", port is None or port.direction != "input", True
 
 
 def _inside(pair: Pair, name: str) -> Span:

@@ -10,16 +10,16 @@ from math import isfinite
 from btq_lang.catalog.kinds import RESULT
 from btq_lang.catalog.literals import OLD_ENTRY, check_literal, is_pointer
 from btq_lang.catalog.names import is_port_name
-from btq_lang.catalog.nodes import BUILTINS, PortKind, port_type
+from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.units import a_dimension, convert, parse_unit
 from btq_lang.catalog.versions import ENTRY_WITHOUT_DOLLAR, TYPED_CONSTANTS
 from btq_lang.checks import lookups
-from btq_lang.checks.view import View, subtree_ports
+from btq_lang.checks.view import View, port_of
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import BRACED, QUANTITY
-from btq_lang.syntax.tree import Pair, Port, Tree, Word, port_named, quote, written
+from btq_lang.syntax.tree import Pair, Port, Tree, Word, quote, written
 from btq_lang.util.record import Record
 from btq_lang.workspace.port_types import is_number
 from btq_lang.workspace.resolved import ResolvedNode
@@ -165,8 +165,8 @@ def _values(view: View) -> Iterator[tuple[_Target, Word]]:
     """Each literal that is assigned to a port with a type or a unit, with that target."""
     for port in [port for owner in view.owners for port in owner.ports]:
         value = port.default
-        if value is not None and value.kind != BRACED and value.text and (target := _declared(port, False)) is not None:
-            yield target, value
+        if value is not None and value.kind != BRACED and value.text and port.name is not None:
+            yield _Target(port.name.text, port.type.text if port.type else "", converts=False), value
     for seen in view.seen.given:
         if seen.is_placeholder:
             continue
@@ -180,30 +180,16 @@ def _values(view: View) -> Iterator[tuple[_Target, Word]]:
 
 def _target(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> _Target | None:
     key = pair.key.text
-    builtin = BUILTINS["SubTree"] if seen.is_subtree and key == "_autoremap" else seen.kind
-    if builtin is not None:
-        port = builtin.port(key)
-        return _of_builtin(port, view.target) if port is not None else None
-    ports = subtree_ports(view, seen) if seen.is_subtree else view.model_ports(seen)
-    declared = port_named(ports, key)
-    if declared is not None:
-        is_output = declared.direction.raw == "output"
-        return _declared(declared, not seen.is_subtree, is_output)
-    # A node without a model takes any literal, but there is no unit that a quantity could be converted to.
-    return _Target(key, "") if value.kind == QUANTITY and is_port_name(key) else None
-
-
-def _of_builtin(port: PortKind, version: str) -> _Target | None:
+    is_declared = key != "_autoremap" or not seen.is_subtree
+    port = port_of(view, seen, key) if is_declared else BUILTINS["SubTree"].port(key)
+    if port is None:
+        # A node without a model takes any literal, but there is no unit that a quantity could be converted to.
+        is_free = value.kind == QUANTITY and seen.kind is None and is_port_name(key)
+        return _Target(key, "") if is_free else None
     if port.content != "value":
         return None
-    is_output = port.direction == "output"
-    return _Target(port.name, port.literal or port_type(port, version), port.unit, is_output=is_output)
-
-
-def _declared(port: Port, converts: bool, is_output: bool = False) -> _Target | None:
-    if port.name is None:
-        return None
-    return _Target(port.name.text, port.type.text if port.type else "", None, converts, is_output)
+    converts = not (seen.is_subtree and is_declared)
+    return _Target(key, port.literal or port.type, port.unit, converts, port.direction == "output")
 
 
 def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:

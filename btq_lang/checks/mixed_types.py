@@ -96,8 +96,8 @@ def _types(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
         for index, pair in enumerate(seen.node.attributes):
             value = pair.value
             if value is not None and "{" in value.raw and (entry := pointed_at(pair.key.text, value.text)) is not None:
-                _, type_ = port_of(view, seen, pair.key.text) or ("", "")
-                type_ = plain_type(type_) if type_ not in _ANYTHING else ""
+                port = port_of(view, seen, pair.key.text)
+                type_ = plain_type(port.type) if port is not None and port.type not in _ANYTHING else ""
                 _add(found, entry, _Meeting(type_, number, index, _Port(tree, number, index)))
     return found
 

@@ -11,7 +11,7 @@ from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nav2 import ports_of
-from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS, PortKind
 from btq_lang.catalog.versions import ID_IN_COMPACT_FORM, PORTS_OF_SUBTREE, UNDERSCORES, is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import model_related, way_in
@@ -19,9 +19,10 @@ from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, written
-from btq_lang.util.record import Record, replace
+from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
+from btq_lang.workspace.port_types import as_kind
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
@@ -194,20 +195,12 @@ def is_case(seen: ResolvedNode, key: str) -> bool:
     return seen.flow == "switch" and key.startswith("case_") and key[5:].isdecimal()
 
 
-class KnownPort(Record):
-    """A port of a node, whatever declares it."""
-
-    name: str
-    required: bool
-    doc: str
-
-
 class KnownPorts:
     """The ports of a node: their names and those that need a value."""
 
     __slots__ = ("all", "names", "required")
 
-    def __init__(self, ports: tuple[KnownPort, ...]) -> None:
+    def __init__(self, ports: tuple[PortKind, ...]) -> None:
         self.all = ports
         self.names = frozenset([port.name for port in ports])
         self.required = tuple([port for port in ports if port.required])
@@ -215,15 +208,13 @@ class KnownPorts:
 
 def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
     """The ports of a node; None if unknown."""
-    if seen.is_placeholder:
-        return None
-    if seen.is_subtree and not PORTS_OF_SUBTREE.holds(view.target):
+    if seen.is_placeholder or (seen.is_subtree and not PORTS_OF_SUBTREE.holds(view.target)):
         return None
     if seen.is_subtree:
         # The engine reads `default = ""` as none, and requires outputs too.
-        declared = subtree_ports(view, seen)
-        ports = tuple(_declared_port(port, not (port.default and port.default.text)) for port in declared)
-        return KnownPorts(ports) if ports else None
+        declared = [(port, port.default.text if port.default else "") for port in subtree_ports(view, seen)]
+        ports = [replace(as_kind(port), required=port.id is not None and not default) for port, default in declared]
+        return KnownPorts(tuple(ports)) if ports else None
     if seen.kind is not None:
         return _builtin_ports(seen.kind.tag, is_before_4(view.target))
     return view.ask(_model_ports, seen.id.text) if seen.is_defined and seen.id is not None else None
@@ -240,12 +231,9 @@ def _may_have_more(view: View, seen: ResolvedNode) -> bool:
 
 def _model_ports(store: Store[Workspace], viewpoint: str, name: str) -> KnownPorts | None:
     """The ports of a node with a model; of several that differ, those that any has, required if all require them."""
-    models = [
-        [_declared_port(port, port.direction.raw == "input" and port.default is None) for port in ports]
-        for ports in lookups.ports_of_models(store, viewpoint, Kind.MODEL, name)
-    ]
+    models = [[*map(as_kind, ports)] for ports in lookups.ports_of_models(store, viewpoint, Kind.MODEL, name)]
     needed = [{port.name for port in ports if port.required} for ports in models]
-    first: dict[str, KnownPort] = {}
+    first: dict[str, PortKind] = {}
     for port in chain(*models):
         first.setdefault(port.name, port)
     ports = [replace(port, required=all(port.name in each for each in needed)) for port in first.values()]
@@ -276,7 +264,7 @@ def _is_of_pool(view: View, seen: ResolvedNode) -> bool:
     return seen.kind is None and seen.id is not None and seen.is_defined and not view.defines(Kind.MODEL, seen.id.text)
 
 
-def _needed(view: View, seen: ResolvedNode, missing: list[KnownPort]) -> list[KnownPort]:
+def _needed(view: View, seen: ResolvedNode, missing: list[PortKind]) -> list[PortKind]:
     """Those of a node's missing ports that it seems to need.
 
     A model in XML does not say which inputs its node can do without; one of C++ does.  If there are several such nodes
@@ -302,15 +290,10 @@ def _builtin_ports(tag: str, has_old_names: bool) -> KnownPorts:
     old = {today: name for (owner, name), today in OLD_PORTS.items() if owner == tag and has_old_names}
     return KnownPorts(
         tuple(
-            KnownPort(old.get(port.name, port.name), port.required, f"{port.doc[0].lower()}{port.doc[1:]}")
+            replace(port, name=old.get(port.name, port.name), doc=f"{port.doc[0].lower()}{port.doc[1:]}")
             for port in ports
         )
     )
-
-
-def _declared_port(port: Port, required: bool) -> KnownPort:
-    name = port.id
-    return KnownPort(name.text if name else "", required and name is not None, port.text.text if port.text else "")
 
 
 def _meant(seen: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:
@@ -365,7 +348,7 @@ def _declared(view: View, seen: ResolvedNode) -> tuple[Related, ...]:
     return model_related(view, seen, _DECLARED)
 
 
-def _passing_on(view: View, seen: ResolvedNode, missing: list[KnownPort]) -> tuple[Fix, ...]:
+def _passing_on(view: View, seen: ResolvedNode, missing: list[PortKind]) -> tuple[Fix, ...]:
     """The fix that passes to a custom node or a SubTree the blackboard entries named as its ports."""
     if seen.kind is not None:
         return ()

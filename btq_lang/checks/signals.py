@@ -101,8 +101,8 @@ def _of_text(view: View, here: list[Signal]) -> Iterator[Found]:
         for node, pair, is_of_root in (pointer for each in entries for pointer in each.pointers.get(key, ())):
             if not is_of_root and (main is None or node.tree != main.tree):
                 continue
-            direction, type_ = (port_of(view, node, pair.key.text) if node.kind is None else None) or ("", "")
-            if direction == "input" or not is_text(type_):
+            port = port_of(view, node, pair.key.text) if node.kind is None else None
+            if port is None or port.direction == "input" or not is_text(port.type):
                 continue
             port_of_node = f"the port `{pair.key.text}` of `{node.node.head.text}`"
             message = f"the signal `{signal.name}` is a number, but {port_of_node} writes a string"

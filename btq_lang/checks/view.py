@@ -12,7 +12,7 @@ from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS, lookup, port_type, spellings
+from btq_lang.catalog.nodes import BUILTINS, PortKind, lookup, of_version, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.checks import lookups
@@ -40,6 +40,7 @@ from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.port_types import as_kind
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.symbols import Symbol, Use
@@ -340,13 +341,13 @@ def declared_ports(view: View, name: str) -> tuple[Port, ...]:
     return ()
 
 
-def port_of(view: View, seen: ResolvedNode, name: str) -> tuple[str, str] | None:
-    """The direction and the type of a node's port; None if nothing declares it."""
+def port_of(view: View, seen: ResolvedNode, name: str) -> PortKind | None:
+    """A node's port of a name; None if nothing declares it."""
     if seen.kind is not None:
         builtin = seen.kind.port(name)
-        return (builtin.direction, port_type(builtin, view.target)) if builtin is not None else None
+        return of_version(builtin, view.target) if builtin is not None else None
     port = port_named(subtree_ports(view, seen) if seen.is_subtree else view.model_ports(seen), name)
-    return (port.direction.raw, port.type.text if port.type is not None else "") if port is not None else None
+    return as_kind(port) if port is not None else None
 
 
 def misspelt_clause(node: Node) -> str | None:

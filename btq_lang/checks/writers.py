@@ -146,7 +146,7 @@ def _assigned(script: str) -> Iterator[str]:
 def _writes(view: View, node: ResolvedNode, port: str) -> bool | None:
     """Whether a port is written, which it is unless it is an input; None if it is not declared."""
     declared = port_of(view, node, port)
-    return (False if node.kind is not None else None) if declared is None else declared[0] != "input"
+    return (False if node.kind is not None else None) if declared is None else declared.direction != "input"
 
 
 def _passed_on(node: ResolvedNode, name: str) -> Iterator[str]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.catalog.language import phrases_of
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import KNOWN_WORDS, NodeKind, lookup, spellings
+from btq_lang.catalog.nodes import KNOWN_WORDS, NodeKind, PortKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, Quality, parts, siblings
 from btq_lang.catalog.units import BASES, Unit, convert, dimension_name, parse_unit, to_si
 from btq_lang.checks.includes import include_line
@@ -24,7 +24,7 @@ from btq_lang.ide.meaning import (
 )
 from btq_lang.ide.meaning import own_quality as declared_quality
 from btq_lang.ide.outline import clauses_detail
-from btq_lang.ide.ports import NodePort, cpp_link, ports_of_kind, ports_of_tree
+from btq_lang.ide.ports import cpp_link, ports_of_kind, ports_of_tree, signature
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import Apply, Context, Model, QualityDecl, Requirement, Signal, Tree, Word, walk
 from btq_lang.util.text import Edit, Span, counted
@@ -63,16 +63,16 @@ def _head(kind: NodeKind) -> str:
     return f"**{kind.tag}** ({kind.category}) · {written}{children} · since {kind.since}"
 
 
-def _ports(ports: Iterable[NodePort]) -> str:
+def _ports(ports: Iterable[PortKind]) -> str:
     return "\n".join(f"- {port(one)}" for one in ports)
 
 
-def port(one: NodePort) -> str:
+def port(one: PortKind) -> str:
     """A port on one line: `` `input msec : unsigned int` in ms, required: how long ``."""
     notes = [f"in {one.unit}"] if one.unit else []
     notes += ["required"] if one.required else []
     said = f" ({', '.join(notes)})" if notes else ""
-    return f"`{one.signature}`{said}{f': {one.doc}' if one.doc else ''}"
+    return f"`{signature(one)}`{said}{f': {one.doc}' if one.doc else ''}"
 
 
 def tree(workspace: Workspace, path: str, name: str) -> str:

@@ -11,7 +11,7 @@ from btq_lang.ide import describe
 from btq_lang.ide.meaning import Found, Subject, at, definition, everywhere, quality_match, subject
 from btq_lang.ide.navigation import writes
 from btq_lang.ide.place import item_tokens, place_at
-from btq_lang.ide.ports import cpp_link, port_of, ports_of_kind, ports_of_tree
+from btq_lang.ide.ports import cpp_link, port_of, ports_of_kind, ports_of_tree, signature
 from btq_lang.syntax.tokens import NAME
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
@@ -163,7 +163,7 @@ def signature_help(workspace: Workspace, path: str, offset: int) -> Signature | 
         ports = ports_of_kind(workspace, path, node.name, node.quoted)
     if not ports:
         return None
-    parameters = tuple(Parameter(port.signature, describe.port(port)) for port in ports)
+    parameters = tuple(Parameter(signature(port), describe.port(port)) for port in ports)
     label = f"{node.name} ({', '.join(parameter.label for parameter in parameters)})"
     names = [port.name for port in ports]
     if place.key is not None:

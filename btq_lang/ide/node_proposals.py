@@ -8,9 +8,9 @@ from functools import lru_cache
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS, NodeKind, available, is_by_children
+from btq_lang.catalog.nodes import BUILTINS, NodeKind, PortKind, available, is_by_children
 from btq_lang.ide.place import LineNode
-from btq_lang.ide.ports import NodePort, declared_ports, ports_of_kind, ports_of_tree
+from btq_lang.ide.ports import declared_ports, ports_of_kind, ports_of_tree
 from btq_lang.ide.proposals import Proposal, defined, escaped, keys, unknown, words
 from btq_lang.syntax.tree import Entry, Model, is_name, quote, written
 from btq_lang.util.record import replace
@@ -69,13 +69,13 @@ def unknown_nodes(workspace: Workspace, path: str) -> Iterator[Proposal]:
             yield Proposal(name, "node", "used here, not declared", written(name))
 
 
-def ports_of_line(workspace: Workspace, path: str, node: LineNode) -> tuple[NodePort, ...]:
+def ports_of_line(workspace: Workspace, path: str, node: LineNode) -> tuple[PortKind, ...]:
     """The ports of the node of a line; of a SubTree those of its tree, if it declares any."""
     of_tree = ports_of_tree(workspace, path, node.name) if node.is_subtree else ()
     return of_tree or ports_of_kind(workspace, path, node.name, node.quoted)
 
 
-def ports(known: tuple[NodePort, ...], given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
+def ports(known: tuple[PortKind, ...], given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
     """The ports that have no value yet, those that need one first."""
     for port in sorted((one for one in known if one.name not in given), key=lambda one: not one.required):
         default = f" = {port.default}" if port.default else ""
@@ -105,7 +105,7 @@ def attribute_values(key: str) -> Iterator[Proposal]:
         yield from words(("true", "false"), "enum")
 
 
-def port_values(workspace: Workspace, path: str, entry: Entry | None, port: NodePort | None) -> Iterator[Proposal]:
+def port_values(workspace: Workspace, path: str, entry: Entry | None, port: PortKind | None) -> Iterator[Proposal]:
     """The values of a port."""
     if port is not None and port.content == "script":
         yield from words(('""',), "keyword")
@@ -172,11 +172,7 @@ def _builtins(target: str) -> tuple[Proposal, ...]:
 
 def _builtin(kind: NodeKind) -> Iterator[Proposal]:
     """A built-in by its symbol, if it has one, and by its shortest name."""
-    needed = [
-        NodePort(one.name, one.direction, one.type, one.default, True, one.doc, one.unit)
-        for one in kind.ports
-        if one.required
-    ]
+    needed = [replace(port, content="value") for port in kind.ports if port.required]
     below = "\n    $0" if kind.category in ("Control", "Decorator") else ""
     for word in dict.fromkeys((*kind.symbols[:1], min((kind.tag, *kind.aliases), key=len), kind.tag)):
         snippet = _with_ports(word, needed) or (escaped(word) if below else None)
@@ -190,12 +186,12 @@ def _by_children(word: str, smallest: NodeKind) -> Proposal:
     return Proposal(word, "node", smallest.doc, word, snippet, "", word)
 
 
-def _with_ports(head: str, needed: Iterable[NodePort]) -> str | None:
+def _with_ports(head: str, needed: Iterable[PortKind]) -> str | None:
     holes = [f"{escaped(written(port.name))} = {hole(index, port)}" for index, port in enumerate(needed, 1)]
     return f"{escaped(head)} ({' '.join(holes)})" if holes else None
 
 
-def hole(index: int, port: NodePort, in_xml: bool = False) -> str:
+def hole(index: int, port: PortKind, in_xml: bool = False) -> str:
     """A snippet's placeholder for a value of the port; in XML it is in quotes already, and has no unit."""
     if port.content == "script":
         return f"${{{index}:true}}" if in_xml else f'"${{{index}:true}}"'

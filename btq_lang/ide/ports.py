@@ -5,42 +5,17 @@ from __future__ import annotations
 from functools import partial
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import NodeKind, lookup, port_type
-from btq_lang.syntax.tree import Model, Node, Port, Tree
-from btq_lang.util.record import Record
+from btq_lang.catalog.nodes import NodeKind, PortKind, lookup, of_version
+from btq_lang.syntax.tree import Model, Node, Tree
 from btq_lang.util.text import Span
 from btq_lang.workspace import inputs
 from btq_lang.workspace.node_names import meaning_of
+from btq_lang.workspace.port_types import as_kind
 from btq_lang.workspace.references import called
 from btq_lang.workspace.workspace import Workspace
 
 
-class NodePort(Record):
-    """A port of a node.
-
-    Attributes:
-        default: the value if none is given; None if there is none.
-        unit: of a number in it, if known.
-        content: value, script or key.
-    """
-
-    name: str
-    direction: str
-    type: str
-    default: str | None
-    required: bool
-    doc: str
-    unit: str | None = None
-    content: str = "value"
-
-    @property
-    def signature(self) -> str:
-        """As a model declares it: `input station : string = charger`."""
-        default = f" = {self.default or _EMPTY}" if self.default is not None else ""
-        return f"{self.direction} {self.name}{f' : {self.type}' if self.type else ''}{default}"
-
-
-def ports_of(workspace: Workspace, path: str, node: Node) -> tuple[NodePort, ...]:
+def ports_of(workspace: Workspace, path: str, node: Node) -> tuple[PortKind, ...]:
     """The ports of a node; empty if they are unknown."""
     tree = called(node)
     if tree is not None:
@@ -49,35 +24,28 @@ def ports_of(workspace: Workspace, path: str, node: Node) -> tuple[NodePort, ...
     return _ports(workspace, path, meaning.kind, node.id.text) if node.id is not None else ()
 
 
-def port_of(workspace: Workspace, path: str, node: Node, name: str) -> NodePort | None:
+def port_of(workspace: Workspace, path: str, node: Node, name: str) -> PortKind | None:
     """A port of a node, by its name; None if it is unknown."""
     return next((port for port in ports_of(workspace, path, node) if port.name == name), None)
 
 
 def ports_of_kind(
     workspace: Workspace, path: str, name: str, quoted: bool = False, child_count: int | None = None
-) -> tuple[NodePort, ...]:
+) -> tuple[PortKind, ...]:
     """The ports of a built-in or of a model in scope."""
     return _ports(workspace, path, lookup(name, quoted, child_count), name)
 
 
-def _ports(workspace: Workspace, path: str, kind: NodeKind | None, name: str) -> tuple[NodePort, ...]:
+def _ports(workspace: Workspace, path: str, kind: NodeKind | None, name: str) -> tuple[PortKind, ...]:
     if kind is not None:
         version = workspace.project.target
-        return tuple(
-            NodePort(
-                *(port.name, port.direction, port_type(port, version), port.default, port.required, port.doc),
-                *(port.unit, port.content),
-            )
-            for port in kind.ports
-        )
+        return tuple(of_version(port, version) for port in kind.ports)
     found = workspace.scope(path).find(Kind.MODEL, name)
-    if found is None or not isinstance(found.symbol.target, Model):
-        return ()
-    return tuple(_declared(port) for port in found.symbol.target.ports)
+    target = found.symbol.target if found is not None else None
+    return declared_ports(target) if isinstance(target, Model) else ()
 
 
-def ports_of_tree(workspace: Workspace, path: str, name: str) -> tuple[NodePort, ...]:
+def ports_of_tree(workspace: Workspace, path: str, name: str) -> tuple[PortKind, ...]:
     """The ports that a tree declares, in its block or in a model of its own."""
     scope = workspace.scope(path)
     for kind in (Kind.TREE, Kind.MODEL):
@@ -87,21 +55,15 @@ def ports_of_tree(workspace: Workspace, path: str, name: str) -> tuple[NodePort,
     return ()
 
 
-def declared_ports(target: object) -> tuple[NodePort, ...]:
+def declared_ports(target: object) -> tuple[PortKind, ...]:
     """The ports that a tree or a model itself declares."""
-    return tuple([_declared(port) for port in target.ports]) if isinstance(target, (Tree, Model)) else ()
+    return tuple([as_kind(port) for port in target.ports]) if isinstance(target, (Tree, Model)) else ()
 
 
-def _declared(port: Port) -> NodePort:
-    name = port.id
-    return NodePort(
-        name.text if name else "",
-        port.direction.raw,
-        port.type.text if port.type else "",
-        port.default.text if port.default else None,
-        port.direction.raw == "input" and port.default is None,
-        port.text.text if port.text else "",
-    )
+def signature(port: PortKind) -> str:
+    """A port as a model declares it: `input station : string = charger`."""
+    default = f" = {port.default or _EMPTY}" if port.default is not None else ""
+    return f"{port.direction} {port.name}{f' : {port.type}' if port.type else ''}{default}"
 
 
 def cpp_place(workspace: Workspace, path: str, node: str, port: str = "") -> tuple[str, Span] | None:

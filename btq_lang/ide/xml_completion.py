@@ -15,11 +15,11 @@ from btq_lang.btcpp.recognition import defined_in
 from btq_lang.btcpp.typed_xml import TypedTag, typed_tag, without
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS, lookup
+from btq_lang.catalog.nodes import BUILTINS, PortKind, lookup
 from btq_lang.ide import node_proposals as of_nodes
 from btq_lang.ide import proposals as offer
 from btq_lang.ide.place import LineNode, open_brace
-from btq_lang.ide.ports import NodePort, ports_of_kind
+from btq_lang.ide.ports import ports_of_kind
 from btq_lang.ide.proposals import Proposal
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Entry, unquote
@@ -106,7 +106,7 @@ def _with_ports(workspace: Workspace, path: str, name: str) -> str:
     return " ".join([offer.escaped(name), *(_given(port, at) for at, port in enumerate(needed, 1))])
 
 
-def _given(port: NodePort, at: int) -> str:
+def _given(port: PortKind, at: int) -> str:
     return f'{offer.escaped(port.name)}="{of_nodes.hole(at, port, in_xml=True)}"'
 
 

@@ -12,8 +12,9 @@ import re
 from collections.abc import Iterator
 from typing import Final
 
+from btq_lang.catalog.kinds import PortKind
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nodes import BUILTINS, port_type
+from btq_lang.catalog.nodes import BUILTINS, of_version
 from btq_lang.syntax.tree import Model, Node, Pair, Port, Tree, port_named
 from btq_lang.util.record import Record
 from btq_lang.workspace.file import Definition
@@ -58,6 +59,19 @@ def meetings(scope: Scope, version: str, tree: str, port: str) -> Iterator[Meeti
                     seen.add(below)
 
 
+def as_kind(port: Port) -> PortKind:
+    """A port that a tree or a model declares, as one of a built-in; required if it is an input without a default."""
+    name, default = port.id, port.default.text if port.default is not None else None
+    return PortKind(
+        name.text if name is not None else "",
+        port.direction.raw,  # type: ignore[arg-type]  # one of the parser's three
+        port.type.text if port.type is not None else "",
+        port.text.text if port.text is not None else "",
+        default,
+        name is not None and port.direction.raw == "input" and default is None,
+    )
+
+
 def declared_type(ports: tuple[Port, ...], name: str) -> str:
     """The declared type of a port; empty if it has none that restricts values."""
     port = port_named(ports, name)
@@ -83,7 +97,7 @@ def _port_type(scope: Scope, version: str, node: Node, key: str) -> str:
     builtin = BUILTINS.get(tag_of(node))
     if builtin is not None:
         port = builtin.port(key)
-        return _plain(port_type(port, version)) if port is not None else ""
+        return _plain(of_version(port, version).type) if port is not None else ""
     model = scope.find(Kind.MODEL, node.id.text)
     if model is None or not isinstance(model.symbol.target, Model):
         return ""

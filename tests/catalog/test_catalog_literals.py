@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btq_lang.catalog.literals import check_literal, is_pointer
-from btq_lang.catalog.nodes import BUILTINS, port_type
+from btq_lang.catalog.nodes import BUILTINS, of_version
 from btq_lang.catalog.versions import VERSIONS
 
 INT_RANGE = "expected an integer from -2147483648 to 2147483647"
@@ -147,7 +147,7 @@ def test_a_pointer_has_both_braces_and_something_between() -> None:
 def test_the_engine_reads_its_own_defaults(version: str) -> None:
     for kind in BUILTINS.values():
         for port in kind.ports:
-            assert port.default is None or check_literal(port_type(port, version), port.default, version) is None
+            assert port.default is None or check_literal(of_version(port, version).type, port.default, version) is None
 
 
 @given(

@@ -17,7 +17,7 @@ from btq_lang.catalog.nodes import (
     NodeKind,
     available,
     lookup,
-    port_type,
+    of_version,
     spellings,
     xml_tag,
 )
@@ -44,7 +44,7 @@ def as_printed(kind: NodeKind, version: str) -> dict[str, object]:
         {
             "name": port.name,
             "dir": {"input": "Input", "output": "Output", "inout": "InOut"}[port.direction],
-            "type": port_type(port, version),
+            "type": of_version(port, version).type,
             "has_default": port.default is not None,
             "default": port.default or "",
         }
@@ -68,7 +68,7 @@ def test_only_trycatch_and_the_loops_queue_depend_on_the_version() -> None:
         f"{kind.tag}.{port.name}"
         for kind in BUILTINS.values()
         for port in kind.ports
-        if port_type(port, "4.8") != port_type(port, "4.10")
+        if of_version(port, "4.8") != of_version(port, "4.10")
     }
     assert changed == {"LoopInt.queue", "LoopBool.queue", "LoopDouble.queue", "LoopString.queue"}
 
