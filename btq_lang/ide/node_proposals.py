@@ -172,7 +172,7 @@ def _builtins(target: str) -> tuple[Proposal, ...]:
 
 def _builtin(kind: NodeKind) -> Iterator[Proposal]:
     """A built-in by its symbol, if it has one, and by its shortest name."""
-    needed = [replace(port, content="value") for port in kind.ports if port.required]
+    needed = [port for port in kind.ports if port.required]
     below = "\n    $0" if kind.category in ("Control", "Decorator") else ""
     for word in dict.fromkeys((*kind.symbols[:1], min((kind.tag, *kind.aliases), key=len), kind.tag)):
         snippet = _with_ports(word, needed) or (escaped(word) if below else None)

@@ -258,6 +258,7 @@ def test_the_name_that_is_typed_comes_first_for_editors_that_compare_beginnings(
         ("    Move$0", "MoveBase", "    MoveBase (station = ${1:{=\\}})", "    MoveBase"),
         ("    Move$0 (station = x)", "MoveBase", "    MoveBase (station = x)", "    MoveBase (station = x)"),
         ("    Ret$0", "Retry …", "    Retry (num_attempts = ${1:1})\n    $0", "    Retry"),
+        ("    Preco$0", "Precondition", '    Precondition (if = "${1:true}")\n    $0', "    Precondition"),
         ("    Pick (from = {w$0", "=", "    Pick (from = {=}", None),
         ("    Pick (from = {w$0})", "=", "    Pick (from = {=})", None),
         ("    MoveBase (st$0)", "station", "    MoveBase (station = ${0:{=\\}})", "    MoveBase (station = )"),
