@@ -6,7 +6,9 @@ powers of two; a missing or surplus child can return anything.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
+from operator import and_, or_
 from typing import Final
 
 from btq_lang.catalog.kinds import Flow, NodeKind, Role
@@ -37,19 +39,12 @@ def of_kind(kind: NodeKind, node: Node, children: Sequence[int], starting: bool)
         return RUNNING if starting and _number(kind, node, "time") != 0 else SUCCESS | RUNNING
     if flow in GOES_ON:
         return _in_order(children, GOES_ON[flow], kind.pauses, starting)
-    decorated = _decorated(kind, node, children[0] if len(children) == 1 else ANYTHING, starting)
-    if decorated is not None:
-        return decorated
-    if flow == "switch" and children:
-        return _any_of(children if node.attribute("variable") is not None else children[-1:])
-    if flow == "choice" and len(children) in (2, 3):
-        return _if_then_else(children)
+    if flow in _DECORATORS:
+        return _DECORATORS[flow](children[0] if len(children) == 1 else ANYTHING, starting, kind, node)
     if flow == "try" and len(children) > 1:
         tried = _in_order(children[:-1], SUCCESS, False, starting)
-        return tried | (children[-1] & RUNNING if tried & FAILURE else 0)
-    if flow in ("parallel", "parallel-all") and children:
-        return _parallel(kind, node, children)
-    return _of_library(kind, node, children) if children else ANYTHING
+        return tried | _if(tried, FAILURE, children[-1] & RUNNING)
+    return _CONTROLS[flow](children, kind, node) if flow in _CONTROLS and children else ANYTHING
 
 
 def _number(kind: NodeKind, node: Node, role: Role) -> int | None:
@@ -85,100 +80,42 @@ def _in_order(children: Sequence[int], goes_on: int, pauses: bool, starting: boo
     return found | passed | (skipped & SKIPPED)
 
 
+def _if(results: int, status: int, then: int) -> int:
+    """What follows if a status is possible."""
+    return then if results & status else 0
+
+
 def _any_of(children: Sequence[int]) -> int:
-    found = 0
-    for child in children:
-        found |= child
-    return found
+    return reduce(or_, children, 0)
 
 
-def _if_then_else(children: Sequence[int]) -> int:
-    condition, then = children[0], children[1]
-    otherwise = children[2] if len(children) == 3 else FAILURE
-    found = condition & RUNNING
-    if condition & SUCCESS:
-        found |= then
-    if condition & FAILURE:
-        found |= otherwise
+def _if_then_else(children: Sequence[int], *_: object) -> int:
+    if len(children) not in (2, 3):
+        return ANYTHING
+    condition, then, otherwise = (*children, FAILURE)[:3]
+    found = condition & RUNNING | _if(condition, SUCCESS, then) | _if(condition, FAILURE, otherwise)
     return found if not condition & SKIPPED else ANYTHING
 
 
-def _parallel(kind: NodeKind, node: Node, children: Sequence[int]) -> int:
+def _parallel(children: Sequence[int], kind: NodeKind, node: Node) -> int:
     """Without thresholds all must succeed and one may fail; with some, any completed child may decide."""
     found = _any_of(children)
     everyone = ANYTHING
     for child in children:
-        everyone &= child | (SUCCESS if child & SKIPPED else 0)
+        everyone &= child | _if(child, SKIPPED, SUCCESS)
     if not found & (SUCCESS | FAILURE | SKIPPED):
         return found
     if any(_written(kind, node, role) is not None for role in ("successes", "failures")):
         return found | SUCCESS | FAILURE
-    succeeds = SUCCESS if everyone & SUCCESS else 0
-    return (found & (FAILURE | RUNNING)) | succeeds | (SKIPPED if found & SKIPPED else 0)
+    return (found & (FAILURE | RUNNING | SKIPPED)) | (everyone & SUCCESS)
 
 
-def _of_library(kind: NodeKind, node: Node, children: Sequence[int]) -> int:
-    """The statuses of a control node of a library."""
-    found = _any_of(children)
-    first, last = children[0], children[-1]
-    match kind.flow:
-        case "together":  # it throws if a child is skipped
-            everyone = SUCCESS if all(child & SUCCESS for child in children) else 0
-            return found & (FAILURE | RUNNING) | everyone
-        case "resume":  # its index may be beyond its children
-            return found & (FAILURE | RUNNING) | SUCCESS
-        case "recover" if len(children) == 2:
-            return first | (last & RUNNING if first & FAILURE else 0)
-        case "rotate":
-            ends = FAILURE if last & (SUCCESS | SKIPPED) else 0
-            without = _any_of(children[:-1]) | last & ~SUCCESS | ends
-            does = wraps(kind, node)
-            return found if does else without if does is False else found | without
-        case "pause":
-            return found & (FAILURE | RUNNING) | RUNNING | (SUCCESS if first & (SUCCESS | SKIPPED) else 0)
-    return ANYTHING
-
-
-def _decorated(kind: NodeKind, node: Node, child: int, starting: bool) -> int | None:
-    """The statuses of a decorator; None for another flow."""
-    match kind.flow:
-        case "invert":
-            found = child & ~(SUCCESS | FAILURE)
-            return found | (FAILURE if child & SUCCESS else 0) | (SUCCESS if child & FAILURE else 0)
-        case "force-success":
-            return child & ~FAILURE | (SUCCESS if child & FAILURE else 0)
-        case "force-failure":
-            return child & ~SUCCESS | (FAILURE if child & SUCCESS else 0)
-        case "until-failure":
-            return child & ~SUCCESS | (RUNNING if child & (SUCCESS | SKIPPED) else 0)
-        case "repeat":
-            return _again(child, SUCCESS, _number(kind, node, "count"), starting)
-        case "retry":
-            return _again(child, FAILURE, _number(kind, node, "count"), starting)
-        case "timeout":
-            return child | (FAILURE if child & RUNNING and not starting else 0)
-        case "delay":
-            return RUNNING if starting and _number(kind, node, "time") != 0 else child | RUNNING
-        case "once":  # once it has run it is skipped, or repeats a result that it had at any tick
-            return child | (SKIPPED if node.attribute("then_skip") is None else ANYTHING)
-        case "precondition":
-            return child | _otherwise(kind, node)
-        case "for-each":
-            return child | RUNNING | _otherwise(kind, node)
-        case "skip-unless-updated":
-            return child | SKIPPED
-        case "wait-until-updated":
-            return child | RUNNING
-        case "pass":
-            return child
-        case "throttle" | "throttle-or-fail":
-            fails = FAILURE if kind.flow == "throttle-or-fail" else 0
-            return child | fails | (0 if starting else RUNNING)
-        case "pass-or-succeed":
-            return child | SUCCESS
-        case "pass-once":
-            return child if starting else child | FAILURE
-    return None
+def _rotate(children: Sequence[int], kind: NodeKind, node: Node) -> int:
+    """One child after the other; without a first one after the last, it fails after that."""
+    found, last = _any_of(children), children[-1]
+    without = _any_of(children[:-1]) | last & ~SUCCESS | _if(last, SUCCESS | SKIPPED, FAILURE)
+    goes_round = wraps(kind, node)
+    return found if goes_round else without if goes_round is False else found | without
 
 
 def _again(child: int, repeats: int, count: int | None, starting: bool) -> int:
@@ -205,6 +142,46 @@ _LEAVES: Final[Mapping[Flow, int]] = {
     "fails": FAILURE,
     "answers": SUCCESS | FAILURE,
     "waits": SUCCESS | FAILURE | RUNNING,
+}
+_DECORATORS: Final[Mapping[Flow, Callable[[int, bool, NodeKind, Node], int]]] = {
+    "invert": lambda child, *_: (
+        child & ~(SUCCESS | FAILURE) | _if(child, SUCCESS, FAILURE) | _if(child, FAILURE, SUCCESS)
+    ),
+    "force-success": lambda child, *_: child & ~FAILURE | _if(child, FAILURE, SUCCESS),
+    "force-failure": lambda child, *_: child & ~SUCCESS | _if(child, SUCCESS, FAILURE),
+    "until-failure": lambda child, *_: child & ~SUCCESS | _if(child, SUCCESS | SKIPPED, RUNNING),
+    "repeat": lambda child, starting, kind, node: _again(child, SUCCESS, _number(kind, node, "count"), starting),
+    "retry": lambda child, starting, kind, node: _again(child, FAILURE, _number(kind, node, "count"), starting),
+    "timeout": lambda child, starting, *_: child | (0 if starting else _if(child, RUNNING, FAILURE)),
+    "delay": lambda child, starting, kind, node: (
+        RUNNING if starting and _number(kind, node, "time") != 0 else child | RUNNING
+    ),
+    # Once it has run it is skipped, or repeats a result that it had at any tick.
+    "once": lambda child, _, __, node: child | (SKIPPED if node.attribute("then_skip") is None else ANYTHING),
+    "precondition": lambda child, _, kind, node: child | _otherwise(kind, node),
+    "for-each": lambda child, _, kind, node: child | RUNNING | _otherwise(kind, node),
+    "skip-unless-updated": lambda child, *_: child | SKIPPED,
+    "wait-until-updated": lambda child, *_: child | RUNNING,
+    "pass": lambda child, *_: child,
+    "throttle": lambda child, starting, *_: child | (0 if starting else RUNNING),
+    "throttle-or-fail": lambda child, starting, *_: child | (FAILURE if starting else FAILURE | RUNNING),
+    "pass-or-succeed": lambda child, *_: child | SUCCESS,
+    "pass-once": lambda child, starting, *_: child if starting else child | FAILURE,
+}
+_CONTROLS: Final[Mapping[Flow, Callable[[Sequence[int], NodeKind, Node], int]]] = {
+    "switch": lambda children, _, node: _any_of(children if node.attribute("variable") is not None else children[-1:]),
+    "choice": _if_then_else,
+    "parallel": _parallel,
+    "parallel-all": _parallel,
+    # It throws if a child is skipped.
+    "together": lambda children, *_: _any_of(children) & (FAILURE | RUNNING) | reduce(and_, children) & SUCCESS,
+    # Its index may be beyond its children.
+    "resume": lambda children, *_: _any_of(children) & (FAILURE | RUNNING) | SUCCESS,
+    "recover": lambda children, *_: (
+        children[0] | _if(children[0], FAILURE, children[1] & RUNNING) if len(children) == 2 else ANYTHING
+    ),
+    "rotate": _rotate,
+    "pause": lambda children, *_: _any_of(children) & FAILURE | RUNNING | _if(children[0], SUCCESS | SKIPPED, SUCCESS),
 }
 # The status of a child after which the next one is ticked.
 GOES_ON: Final[Mapping[Flow, int]] = {"sequence": SUCCESS, "fallback": FAILURE, "pipeline": SUCCESS}
