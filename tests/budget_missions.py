@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from hypothesis import strategies as st
+from requirement_problems import problems_of
 
 from btq_lang.catalog.nav2 import FILES
 from btq_lang.requirements.resolve import Requirements, requirements
@@ -140,5 +141,5 @@ def resolved(text: str) -> Requirements:
     workspace = Workspace({"main.btq": File("main.btq", text), NAV2.path: NAV2}, Project(node_files=(NAV2.path,)))
     assert workspace.files["main.btq"].parsed.diagnostics == ()
     found = requirements(workspace, "main.btq")
-    assert found.problems == ()
+    assert not problems_of(found)
     return found

@@ -34,13 +34,9 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
     signals = {name: store.ask(signal, path, name) for name in inputs.names(store, path, Kind.SIGNAL)}
     contexts = {name: store.ask(context, path, name) for name in inputs.names(store, path, Kind.CONTEXT)}
     defined = {name: store.ask(requirement, path, name) for name in inputs.names(store, path, Kind.REQUIREMENT)}
-    of_names = (*signals.values(), *contexts.values(), *defined.values())
-    problems = [problem for _, found in of_names for problem in found]
     uses: dict[str, list[Use]] = {}
     for item in inputs.attaching(store, path):
-        attached, found = store.ask(uses_in, path, *item)
-        problems += found
-        for use in attached:
+        for use in store.ask(uses_in, path, *item)[0]:
             uses.setdefault(use.requirement, []).append(use)
     applied: list[Applied] = []
     traces: list[Trace] = []
@@ -48,7 +44,6 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
         held = attached_by(store, path, name, uses.get(name, ()))
         applied += (*store.ask(claimed, path, name), *held.applied)
         traces += held.traces
-        problems += held.problems
     return Requirements(
         store,
         path,
@@ -57,7 +52,6 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
         {name: found for name, (found, _) in defined.items() if found is not None},
         tuple(applied),
         tuple(traces),
-        tuple(problems),
         store.ask(nodes.nodes, path),
         store.ask(nodes.mission, path),
     )
@@ -96,7 +90,6 @@ class Requirements(Record):
         all: every requirement by name, in the order of their definitions, with parameters.
         applied: what applies to what, with arguments.
         traces: `satisfies` at nodes, for requirements whose claims name their own subjects.
-        problems: all that was not understood.
         nodes: the written nodes.
         mission: the main tree's root; None if it is unknown which tree runs.
     """
@@ -108,7 +101,6 @@ class Requirements(Record):
     all: dict[str, Requirement]
     applied: tuple[Applied, ...]
     traces: tuple[Trace, ...]
-    problems: tuple[Problem, ...]
     nodes: Nodes
     mission: ResolvedNode | None
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from check_asserts import assert_clean, split_files
+from requirement_problems import problems_of
 from worked_mission import WORKED
 
 from btq_lang.requirements.model import (
@@ -60,7 +61,7 @@ def where(found: Requirements, name: str) -> list[str]:
 
 def test_the_worked_examples_resolve() -> None:
     found = resolved(WORKED)
-    assert found.problems == ()
+    assert not problems_of(found)
     assert {name: where(found, name) for name in found.all} == {
         "rq1": ["MoveBase - in Main"],
         "rq4": ["MoveBase - in Main"],
@@ -168,7 +169,7 @@ BehaviorTree Other
 )
 def test_a_path_names_one_node(path: str, node: str, through: tuple[str, ...]) -> None:
     found = resolved(PATHS.replace("{path}", path).replace('Alone "by itself"', 'Alone (name = "by itself")'))
-    assert found.problems == ()
+    assert not problems_of(found)
     subject = one(found, "rq1").subject
     assert isinstance(subject, Target)
     name = subject.node.node.name
@@ -189,7 +190,7 @@ def test_a_path_names_one_node(path: str, node: str, through: tuple[str, ...]) -
 )
 def test_paths_that_name_none_or_several(path: str, message: str) -> None:
     found = resolved(PATHS.replace("{path}", path))
-    assert [problem.diagnostic.message for problem in found.problems] == [message]
+    assert [problem.diagnostic.message for problem in problems_of(found)] == [message]
     assert found.applied == ()
 
 
@@ -208,7 +209,7 @@ def test_other_subjects() -> None:
 def test_a_tag_that_nothing_has() -> None:
     text = 'QualityReq slow "t"\n    takes at most 9 s\napply slow to every node tagged drivng\n'
     text += "BehaviorTree Main\n    A Home tags driving, heavy\n"
-    (problem,) = resolved(text).problems
+    (problem,) = problems_of(resolved(text))
     assert problem.diagnostic.message == "no node has the tag `drivng`; did you mean `driving`?"
     assert [fix.title for fix in problem.diagnostic.fixes] == ["Replace `drivng` with `driving`"]
 
@@ -225,12 +226,12 @@ def test_every() -> None:
 def test_trees_that_run_each_other_have_no_top() -> None:
     text = 'QualityReq rq1 "t"\n    Nowhere/X takes at most 1 s\n'
     text += "BehaviorTree A\n    SubTree B\nBehaviorTree B\n    ->\n        SubTree A\n        X\n"
-    assert [problem.diagnostic.rule for problem in resolved(text).problems] == ["unmatched-path"]
+    assert [problem.diagnostic.rule for problem in problems_of(resolved(text))] == ["unmatched-path"]
 
 
 def test_two_demands_in_one_clause_are_two_clauses() -> None:
     text = "QualityReq q\n    takes at most 30 s and succeeds\nBehaviorTree Main\n    Action Dock satisfies q\n"
-    (problem,) = resolved(text).problems
+    (problem,) = problems_of(resolved(text))
     assert (problem.diagnostic.message, problem.diagnostic.notes) == (
         "unknown node `and`",
         ("a clause states one demand; write `succeeds within 30 s`, or `succeeds` on a line of its own",),
@@ -239,9 +240,9 @@ def test_two_demands_in_one_clause_are_two_clauses() -> None:
 
 def test_a_library_does_not_know_whose_nodes_it_speaks_of() -> None:
     text = '//- main.btq\nQualityReq rq1 "t"\n    X takes at most 1 s\nBehaviorTree A\n    Y\n'
-    assert len(resolved(text).problems) == 1
-    assert resolved(text + '//- other.btq\ninclude "main.btq"\n').problems == ()
-    assert resolved(text.replace("QualityReq", 'include "trees.xml"\nQualityReq', 1)).problems == ()
+    assert len(problems_of(resolved(text))) == 1
+    assert not problems_of(resolved(text + '//- other.btq\ninclude "main.btq"\n'))
+    assert not problems_of(resolved(text.replace("QualityReq", 'include "trees.xml"\nQualityReq', 1)))
 
 
 # ---- who has which --------------------------------------------------------------------------------------------------
@@ -280,7 +281,7 @@ BehaviorTree Main
 )
 def test_the_most_specific_application_counts(apply: str, one: str, expected: list[str] | None) -> None:
     found = resolved(APPLY.replace("{apply}", apply).replace("{one}", one))
-    assert found.problems == ()
+    assert not problems_of(found)
     got = [
         f"{each.node.node.name.text} {each.arguments[0].value.text}"
         for each in found.applied
@@ -294,8 +295,8 @@ def test_two_values_of_one_rank() -> None:
     found = resolved(
         APPLY.replace("{apply}", "apply slow to every A\napply slow(limit = 1 s) to every A").replace("{one}", "")
     )
-    assert len(found.problems) == 3
-    assert found.problems[0].diagnostic.message == (
+    assert len(problems_of(found)) == 3
+    assert problems_of(found)[0].diagnostic.message == (
         "`slow` has two values for `A One`: limit = 9 s, other = 2 m and limit = 1 s, other = 2 m"
     )
     assert found.applied == ()
@@ -338,7 +339,7 @@ QualityReq rq1(low : m/s = 0.5 m/s, where : text, on : bool = true) "t"
 
 def condition(text: str) -> object:
     found = resolved(SIGNALS.replace("{condition}", text))
-    assert found.problems == ()
+    assert not problems_of(found)
     return found.all["rq1"].claims[0].condition
 
 
@@ -412,7 +413,7 @@ def test_conditions() -> None:
 )
 def test_conditions_that_mean_nothing(text: str, rule: str, message: str) -> None:
     found = resolved(SIGNALS.replace("{condition}", text))
-    assert [(problem.diagnostic.rule, problem.diagnostic.message) for problem in found.problems] == [(rule, message)]
+    assert [(each.diagnostic.rule, each.diagnostic.message) for each in problems_of(found)] == [(rule, message)]
     assert found.all["rq1"].claims == ()
 
 
@@ -436,17 +437,17 @@ def test_conditions_that_mean_nothing(text: str, rule: str, message: str) -> Non
 )
 def test_bounds_of_the_wrong_sort(clauses: str, message: str) -> None:
     found = resolved(SIGNALS.replace("keeps {condition}", clauses))
-    assert [problem.diagnostic.message for problem in found.problems] == [message]
+    assert [problem.diagnostic.message for problem in problems_of(found)] == [message]
 
 
 def test_contexts_in_contexts() -> None:
     chain = "".join(f"context c{n} : c{n + 1}\n" for n in range(60)) + "context c60 : true\n"
     found = resolved(chain)
-    assert {problem.diagnostic.rule for problem in found.problems} == {"nested-too-deep"}
+    assert {problem.diagnostic.rule for problem in problems_of(found)} == {"nested-too-deep"}
     assert found.contexts["c30"] is not None
     assert found.contexts["c0"] is None
     found = resolved("context a : b or true\ncontext b : a\ncontext c : b or true\n")
-    assert [problem.diagnostic.message for problem in found.problems] == [
+    assert [problem.diagnostic.message for problem in problems_of(found)] == [
         "the context `a` refers to itself",
         "the context `b` refers to itself",
     ]
@@ -456,7 +457,7 @@ def test_more_than_any_number() -> None:
     found = resolved(
         'QualityReq rq1 "t"\n    takes at most 1e999 s\n    tries at most 1e999\n    runs at least 1 per 1e308 h\n'
     )
-    assert [(problem.diagnostic.rule, problem.diagnostic.message) for problem in found.problems] == [
+    assert [(problem.diagnostic.rule, problem.diagnostic.message) for problem in problems_of(found)] == [
         ("invalid-literal", "`1e999 s` exceeds the range of numbers"),
         ("invalid-literal", "`1e999` exceeds the range of numbers"),
         ("invalid-literal", "`1e308 h` exceeds the range of numbers"),
@@ -473,7 +474,7 @@ def classic(text: str) -> list[tuple[str, str, object]]:
         "signal speed : m/s from {speed}\nBehaviorTree Main\n    ->\n        B\n"
         f'        A (satisfies QualityReq ID = "rq1" description = "{description}")\n'
     )
-    assert found.problems == ()
+    assert not problems_of(found)
     requirement = found.all["rq1"]
     assert requirement.action == ("fail" if requirement.claims else None)
     assert requirement.classic is bool(requirement.claims)

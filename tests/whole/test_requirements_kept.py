@@ -12,6 +12,7 @@ import missions
 import pytest
 from by_day import of_the_day
 from kept_checks import Kept
+from requirement_problems import problems_of
 
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Place
@@ -244,8 +245,8 @@ def said(workspace: Workspace, found: Requirements) -> Iterator[object]:
         arguments = [(each.name, each.value.text) for each in applied.arguments]
         yield applied.requirement.name, claims, arguments, [*map(named, applied.nodes)], at(applied.place), applied.how
     yield [(trace.requirement, named(trace.node)) for trace in found.traces]
-    yield [(at(each.place), each.diagnostic.rule, each.diagnostic.message) for each in found.problems]
-    yield [[at(related.place) for related in each.diagnostic.related] for each in found.problems]
+    yield [(at(each.place), each.diagnostic.rule, each.diagnostic.message) for each in problems_of(found)]
+    yield [[at(related.place) for related in each.diagnostic.related] for each in problems_of(found)]
     budgets = Budgets(found.store, found.viewpoint)
     for node in found.nodes.all:
         yield shown(budgets.of(node), named), shown(budgets.composed(node), named), likely(budgets.success(node), named)
