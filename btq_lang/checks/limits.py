@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import inf, prod
+from math import prod
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension
@@ -38,14 +38,13 @@ def limit_too_small(demanded: Demanded) -> Iterator[Found]:
 def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
     """A limit on a node that completes within one tick: the time is not checked while it runs."""
     for applied, claim, node, place in demanded.claims:
-        if not VERBS[claim.verb].limits or not applied.requirement.is_enforceable or claim.highest is None:
-            continue
-        if demanded.budgets.composed(node).waits:
+        most = claim.highest if VERBS[claim.verb].limits and applied.requirement.is_enforceable else None
+        if most is None or demanded.budgets.composed(node).waits:
             continue
         yield found_at(
             place,
             "limit-on-synchronous-node",
-            f"{node.shown} completes within one tick, so the engine cannot stop it after {_typed(claim)}",
+            f"{node.shown} completes within one tick, so the engine cannot stop it after `{most[1]}`",
             related=(Related(node.place, "never returns RUNNING"),),
             notes=(
                 "`btq verify` can only check it in the logs afterwards; "
@@ -130,10 +129,8 @@ def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
     """`tries at most` and the number of attempts of Retry and Repeat do not match."""
     for _, claim, node, place in demanded.claims:
         most = claim.highest if VERBS[claim.verb].operand == "count" else None
-        if most is None or most[0] == inf or not isinstance(claim.per, Target):
-            continue
-        loops = _loops(node, claim.per.node)
-        if not loops:
+        loops = _loops(node, claim.per.node) if most is not None and isinstance(claim.per, Target) else []
+        if most is None or not loops:
             continue
         count = prod(times for _, times in loops)
         related = tuple(Related(loop.place, f"{times} times") for loop, times in loops)
@@ -235,8 +232,3 @@ def _dimension(claim: Claim) -> Dimension | None:
     value = claim.limit.value if claim.limit is not None else None
     value = value.cases[0].value if isinstance(value, Table) else value
     return value.unit.dimension if isinstance(value, Value) else None
-
-
-def _typed(claim: Claim) -> str:
-    most = claim.highest
-    return f"`{most[1]}`" if most is not None and most[0] < inf else "its limit"

@@ -156,7 +156,7 @@ def _is_renewed_above(store: Store[Workspace], viewpoint: str, tree: str | None,
     if tree not in store.ask(_reached, viewpoint):
         return True
     for name in _with_callers(store, viewpoint, tree):
-        for caller in _callers(store, viewpoint, name):
+        for caller in store.ask(nodes.callers, viewpoint, name):
             writing, carrying = store.ask(_renewing, viewpoint, caller.path, caller.facts, key)
             if id(caller) in writing or _is_renewed_beside(writing, carrying, caller):
                 return True
@@ -165,11 +165,7 @@ def _is_renewed_above(store: Store[Workspace], viewpoint: str, tree: str | None,
 
 def _with_callers(store: Store[Workspace], viewpoint: str, *trees: str | None) -> Iterator[str | None]:
     """Trees and all that run them, directly or not."""
-    return reached(trees, lambda tree: [caller.tree for caller in _callers(store, viewpoint, tree)])
-
-
-def _callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[ResolvedNode, ...]:
-    return store.ask(nodes.callers, viewpoint, tree) if tree is not None else ()
+    return reached(trees, lambda tree: [caller.tree for caller in store.ask(nodes.callers, viewpoint, tree)])
 
 
 def _reached(store: Store[Workspace], viewpoint: str) -> frozenset[str | None]:

@@ -26,7 +26,7 @@ def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
             continue
         if claim.limit is not None and claim.highest is None:
             continue  # too short a time is only noticed afterwards
-        swallower = _in_tree(node) or (demanded.view.ask(_above, node.tree) if node.tree is not None else None)
+        swallower = _in_tree(node) or demanded.view.ask(_above, node.tree)
         if swallower is None:
             continue
         above, reason = swallower
@@ -39,7 +39,7 @@ def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
         )
 
 
-def _above(store: Store[Workspace], viewpoint: str, tree: str) -> Swallower | None:
+def _above(store: Store[Workspace], viewpoint: str, tree: str | None) -> Swallower | None:
     """Where a failure of a tree ends, if it ends on every way up."""
     first: Swallower | None = None
     seen: set[int] = set()
@@ -61,9 +61,7 @@ def _above(store: Store[Workspace], viewpoint: str, tree: str) -> Swallower | No
 
 def _callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[ResolvedNode, ...]:
     """The SubTree nodes that run a tree; empty for the mission's, where failures end."""
-    if tree is None or tree == store.ask(_main_tree, viewpoint):
-        return ()
-    return store.ask(callers, viewpoint, tree)
+    return store.ask(callers, viewpoint, tree) if tree != store.ask(_main_tree, viewpoint) else ()
 
 
 def _main_tree(store: Store[Workspace], viewpoint: str) -> str | None:

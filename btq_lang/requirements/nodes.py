@@ -28,12 +28,12 @@ def nodes(store: Store[Workspace], viewpoint: str) -> Nodes:
     return Nodes([store.ask(tree_nodes, viewpoint, path, facts) for path, facts in inputs.trees(store, viewpoint)])
 
 
-def callers(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[ResolvedNode, ...]:
+def callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[ResolvedNode, ...]:
     """The SubTree nodes that run a tree."""
     return store.ask(_callers_by_tree, viewpoint).get(tree, ())
 
 
-def _callers_by_tree(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[ResolvedNode, ...]]:
+def _callers_by_tree(store: Store[Workspace], viewpoint: str) -> dict[str | None, tuple[ResolvedNode, ...]]:
     return store.ask(nodes, viewpoint).callers_by_tree
 
 
@@ -96,10 +96,10 @@ class Nodes:
 
     def callers(self, tree: str | None) -> tuple[ResolvedNode, ...]:
         """The SubTree nodes that run a tree."""
-        return self.callers_by_tree.get(tree, ()) if tree is not None else ()
+        return self.callers_by_tree.get(tree, ())
 
     @cached_property
-    def callers_by_tree(self) -> dict[str, tuple[ResolvedNode, ...]]:
+    def callers_by_tree(self) -> dict[str | None, tuple[ResolvedNode, ...]]:
         """The same for all trees that are run."""
         found: dict[str, list[ResolvedNode]] = {}
         for tree in self.trees:
