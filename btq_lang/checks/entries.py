@@ -17,7 +17,7 @@ from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.scripts import is_script
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View, port_of
-from btq_lang.syntax.tree import Pair, Signal, Tree
+from btq_lang.syntax.tree import Pair, Signal, Tree, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.item_index import Facts
@@ -60,20 +60,15 @@ def blackboards(store: Store[Workspace], viewpoint: str) -> Blackboards:
 
 
 def _mentions(view: View, path: str, tree: Facts) -> Iterator[Mention]:
-    for seen in view.seen_in(path, tree).given:
-        for pair in seen.node.attributes:
-            value = pair.value
-            if value is None:
-                continue
-            raw = value.raw
-            if "{" in raw and (name := pointed_at(pair.key.text, value.text)) is not None:
-                inner = Span(value.start, value.end) if name == pair.key.text else _inside(pair, name)
-                yield Mention(name, inner, seen, *_use(view, seen, pair), False)
-            elif is_script(seen, pair):
-                yield from _in_script(view, seen, pair)
-            elif seen.kind is not None and (port := seen.kind.port(pair.key.text)) and port.content == "key":
-                creates = port.direction != "input"
-                yield Mention(value.text, value.span, seen, not creates, creates, creates, False)
+    for seen, pair, value in view.seen_in(path, tree).values():
+        if "{" in value.raw and (name := pointed_at(pair.key.text, value.text)) is not None:
+            inner = value.span if name == pair.key.text else _inside(value, name)
+            yield Mention(name, inner, seen, *_use(view, seen, pair), False)
+        elif is_script(seen, pair):
+            yield from _in_script(view, seen, value)
+        elif seen.kind is not None and (port := seen.kind.port(pair.key.text)) and port.content == "key":
+            creates = port.direction != "input"
+            yield Mention(value.text, value.span, seen, not creates, creates, creates, False)
 
 
 class Handling(Record):
@@ -227,18 +222,16 @@ def _use(view: View, seen: ResolvedNode, pair: Pair) -> tuple[bool, bool, bool]:
     return port is None or port.direction != "output", port is None or port.direction != "input", True
 
 
-def _inside(pair: Pair, name: str) -> Span:
+def _inside(value: Word, name: str) -> Span:
     """The name in `{name}`, in quotes or not."""
-    assert pair.value is not None, "there is a pointer"
-    at = pair.value.raw.find(name)
-    start = pair.value.start + at
-    return Span(start, start + len(name)) if at > 0 else pair.value.span
+    at = value.raw.find(name)
+    start = value.start + at
+    return Span(start, start + len(name)) if at > 0 else value.span
 
 
-def _in_script(view: View, seen: ResolvedNode, pair: Pair) -> Iterator[Mention]:
+def _in_script(view: View, seen: ResolvedNode, value: Word) -> Iterator[Mention]:
     from btq_lang.syntax.script.tree import variables  # most files have no script, and it is large
 
-    assert pair.value is not None, "there is a script"
-    for variable in variables(view.script(pair.value.text)):
-        span = in_source(pair.value, variable.span)
+    for variable in variables(view.script(value.text)):
+        span = in_source(value, variable.span)
         yield Mention(variable.name, span, seen, variable.reads, variable.writes, variable.creates, True)

@@ -49,8 +49,7 @@ def old_entry(view: View) -> Iterator[Diagnostic]:
     """`${key}`, an entry of the blackboard to version 3 of the engine, and a text to version 4."""
     if not ENTRY_WITHOUT_DOLLAR.holds(view.target):
         return
-    pairs = (pair for seen in view.seen.given for pair in seen.node.attributes)
-    begun = [(pair.key, pair.value) for pair in pairs if pair.value is not None and "${" in pair.value.raw[:3]]
+    begun = [(pair.key, value) for _, pair, value in view.seen.values() if "${" in value.raw[:3]]
     values = [value for key, value in begun if OLD_ENTRY.fullmatch(value.text) and is_port_name(key.text)]
     typed = {value.span: target for target, value in _values(view)} if values else {}
     for value in values:
@@ -167,15 +166,11 @@ def _values(view: View) -> Iterator[tuple[_Target, Word]]:
         value = port.default
         if value is not None and value.kind != BRACED and value.text and port.name is not None:
             yield _Target(port.name.text, port.type.text if port.type else "", converts=False), value
-    for seen in view.seen.given:
-        if seen.is_placeholder:
+    for seen, pair, value in view.seen.values():
+        if seen.is_placeholder or (value.kind == BRACED and pair.key.text != "_autoremap"):
             continue
-        for pair in seen.node.attributes:
-            value = pair.value
-            if value is None or (value.kind == BRACED and pair.key.text != "_autoremap"):
-                continue
-            if (target := _target(view, seen, pair, value)) is not None:
-                yield target, value
+        if (target := _target(view, seen, pair, value)) is not None:
+            yield target, value
 
 
 def _target(view: View, seen: ResolvedNode, pair: Pair, value: Word) -> _Target | None:

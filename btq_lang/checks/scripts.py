@@ -19,11 +19,10 @@ from btq_lang.workspace.resolved import ResolvedNode
 def script_error(view: View) -> Iterator[Diagnostic]:
     """What is wrong with a script, in any version that the project targets: script-error, empty-script,
     script-version."""
-    for seen in view.seen.given:
-        for pair in seen.node.attributes:
-            expects_value = _expects_value(seen, pair)
-            if expects_value is not None and pair.value is not None:
-                yield from _problems(view, seen, pair.key.text, pair.value, expects_value)
+    for seen, pair, value in view.seen.values():
+        expects_value = _expects_value(seen, pair)
+        if expects_value is not None:
+            yield from _problems(view, seen, pair.key.text, value, expects_value)
 
 
 def is_script(seen: ResolvedNode, pair: Pair) -> bool:

@@ -5,9 +5,11 @@ One invariant: it only sorts; all properties are the nodes' own (workspace/resol
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final
 
 from btq_lang.catalog.kinds import Flow
+from btq_lang.syntax.tree import Pair, Word
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
@@ -59,6 +61,11 @@ class SortedNodes:
                 self.by_tag.setdefault(seen.kind.tag, []).append(seen)
             if seen.flow:
                 self.by_flow.setdefault(seen.flow, []).append(seen)
+
+    def values(self) -> Iterator[tuple[ResolvedNode, Pair, Word]]:
+        """The attributes that have a value."""
+        for seen in self.given:
+            yield from ((seen, pair, pair.value) for pair in seen.node.attributes if pair.value is not None)
 
     def of_flow(self, *flows: Flow) -> list[ResolvedNode]:
         """The nodes of these flows, flow by flow."""

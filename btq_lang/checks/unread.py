@@ -95,12 +95,9 @@ def foreign_error_code(view: View) -> Iterator[Diagnostic]:
 def tree_of_goal(view: View) -> Iterator[Diagnostic]:
     """A tree that bt_navigator does not find, or skips or refuses."""
     goals = view.factory.goals if view.factory is not None else ()
-    for seen in view.seen.given if goals else ():
-        if seen.id is None or TREE_OF_GOAL not in (ports_of(seen.id.text) or ()):
-            continue
-        for pair in seen.node.attributes:
-            if pair.key.text == TREE_OF_GOAL and pair.value is not None:
-                yield from (replace(each, span=pair.value.span) for name, each in goals if name == pair.value.text)
+    for seen, pair, value in view.seen.values() if goals else ():
+        if pair.key.text == TREE_OF_GOAL and seen.id is not None and TREE_OF_GOAL in (ports_of(seen.id.text) or ()):
+            yield from (replace(each, span=value.span) for name, each in goals if name == value.text)
 
 
 def _actions_with_codes_in(view: View, distribution: str, tree: str, name: str) -> set[str]:
