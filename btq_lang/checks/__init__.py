@@ -168,13 +168,13 @@ CHECKS: dict[type, tuple[Check, ...]] = {
     syntax.Signal: (
         kinds.duplicate_definition,
         empty.empty_text,
-        requirements.unused_signal,
+        requirements.unused_word,
         measures.unresolved,
         demands.demands,
     ),
     syntax.Context: (
         kinds.duplicate_definition,
-        requirements.unused_context,
+        requirements.unused_word,
         measures.unresolved,
     ),
     syntax.Requirement: (

@@ -16,7 +16,7 @@ from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
 from btq_lang.checks import lookups
 from btq_lang.checks.engines import old_words
 from btq_lang.checks.lookups import Declaration
-from btq_lang.checks.view import COUNTS, View, misspelt_clause
+from btq_lang.checks.view import COUNTS, SECOND, View, misspelt_clause
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
@@ -165,13 +165,13 @@ def category_mismatch(view: View) -> Iterator[Diagnostic]:
 def clause_as_node(view: View) -> Iterator[Diagnostic]:
     """`keeps` in the block of a node is a node of that name."""
     nodes = view.seen
-    for seen in nodes.given:
-        for pair in seen.node.attributes:
-            if pair.key.raw in ("satisfices", "satisfies") and pair.value is not None and not view.is_xml:
-                message = f"btq reads `{pair.key.raw} =` as a port of {seen.shown_kind} here"
-                note = f"write `{pair.key.raw}` without `=`: `{pair.key.raw} {pair.value.raw}`"
-                fix = replace_fix("Remove `=`", Span(pair.key.end, pair.value.start), " ")
-                yield Diagnostic("clause-as-node", pair.key.span, message, notes=(note,), fixes=(fix,))
+    for seen, pair, value in nodes.values():
+        word = pair.key.raw
+        if word in ("satisfices", "satisfies") and not view.is_xml:
+            message = f"btq reads `{word} =` as a port of {seen.shown_kind} here"
+            note = f"write `{word}` without `=`: `{word} {value.raw}`"
+            fix = replace_fix("Remove `=`", Span(pair.key.end, value.start), " ")
+            yield Diagnostic("clause-as-node", pair.key.span, message, notes=(note,), fixes=(fix,))
     for seen in nodes.strangers:  # no built-in has such a name
         name = seen.node.kind
         meant = misspelt_clause(seen.node)
@@ -197,19 +197,17 @@ def duplicate_definition(view: View) -> Iterator[Diagnostic]:
     """A second signal, context or quality of one name, or a second model with another interface."""
     for first, second in view.clashes(*_DEFINED_ONCE):
         if not _is_same_model(first.symbol, second.symbol):
-            both = Related(first.place, COUNTS), Related(second.place, "second definition")
+            both = Related(first.place, COUNTS), Related(second.place, SECOND)
             yield _second(second.symbol, view.head, both, "this file includes a second definition of")
-    for symbol in view.facts.summary.symbols:
-        if symbol.kind not in _DEFINED_ONCE or not view.is_repeated(symbol.kind, symbol.name):
-            continue
-        other, which = view.another(symbol)
-        if other is None or _is_same_model(other.symbol, symbol) or _is_of_node(view, other, symbol):
+    for symbol, other, counts in view.repeated(*_DEFINED_ONCE):
+        if _is_same_model(other.symbol, symbol) or _is_of_node(view, other, symbol):
             continue
         only_one = f"Nav2 registers a node `{symbol.name}`, and a program can register only one"
         differing = ", ".join(differences(other.symbol, symbol))
         unlike = (f"they differ in {differing}",) if differing else ()
         notes = (*unlike, *((only_one,) if other.path in FILES.values() else ()))
-        yield _second(symbol, symbol.span, (Related(other.place, which),), "duplicate definition of", notes)
+        related = (Related(other.place, COUNTS if counts else SECOND),)
+        yield _second(symbol, symbol.span, related, "duplicate definition of", notes)
 
 
 def declared_category(seen: ResolvedNode) -> str | None:

@@ -8,9 +8,9 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.qualities import other_word
-from btq_lang.checks.view import COUNTS, View, misspelt_clause
+from btq_lang.checks.view import COUNTS, SECOND, View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Related, Tag, replace_fix
-from btq_lang.syntax.tree import Claim, Context, OnViolation, Requirement, Signal, Tree, Word, written
+from btq_lang.syntax.tree import Claim, Context, OnViolation, Requirement, Signal, Tree, written
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
@@ -45,18 +45,12 @@ def conflicting_requirement(view: View) -> Iterator[Diagnostic]:
             related = (Related(first.place, COUNTS), Related(second.place, "other definition"))
             message = f"this file includes a second requirement `{second.symbol.name}` with different content"
             yield Diagnostic("conflicting-requirement", view.head, message, related=related)
-    for symbol in view.facts.summary.symbols:
-        if symbol.kind is not Kind.REQUIREMENT or not view.is_repeated(symbol.kind, symbol.name):
-            continue
-        other, which = view.another(symbol)
-        if other is not None and _differ(symbol, other.symbol):
-            yield Diagnostic(
-                "conflicting-requirement",
-                symbol.span,
-                f"conflicting definitions of the requirement `{symbol.name}`",
-                related=(Related(other.place, which),),
-                notes=(_other_way(view, symbol),),
-            )
+    for symbol, other, counts in view.repeated(Kind.REQUIREMENT):
+        if _differ(symbol, other.symbol):
+            message = f"conflicting definitions of the requirement `{symbol.name}`"
+            which = Related(other.place, COUNTS if counts else SECOND)
+            notes = (_other_way(view, symbol),)
+            yield Diagnostic("conflicting-requirement", symbol.span, message, related=(which,), notes=notes)
 
 
 def unused_requirement(view: View) -> Iterator[Diagnostic]:
@@ -99,16 +93,18 @@ def requirement_without_text(view: View) -> Iterator[Diagnostic]:
         yield Diagnostic("requirement-without-text", symbol.span, message, notes=(note,))
 
 
-def unused_signal(view: View) -> Iterator[Diagnostic]:
-    """A signal that no condition, no bound and no `uses` names."""
-    if isinstance(view.item, Signal):
-        yield from _unused(view, Kind.SIGNAL, view.item.name, "unused-signal", "no clause uses the signal")
-
-
-def unused_context(view: View) -> Iterator[Diagnostic]:
-    """A context that no condition names."""
-    if isinstance(view.item, Context):
-        yield from _unused(view, Kind.CONTEXT, view.item.name, "unused-context", "no condition uses the context")
+def unused_word(view: View) -> Iterator[Diagnostic]:
+    """A signal that no condition, no bound and no `uses` names, or a context that no condition names."""
+    kind = Kind.SIGNAL if isinstance(view.item, Signal) else Kind.CONTEXT
+    name = view.item.name if isinstance(view.item, Signal | Context) else None
+    if name is None or not view.has_trees or view.is_used_elsewhere:
+        return  # a file of signals, or a library: their users may be anywhere
+    if not view.defines_here(kind, name.text) or view.look_up(lookups.is_asked_for, name.text):
+        return
+    if not view.ask(_is_meant, name.text) and view.is_read:  # else its user may be on a line that could not be read
+        rule, users = ("unused-signal", "clause") if kind is Kind.SIGNAL else ("unused-context", "condition")
+        message = f"no {users} uses the {kind.value} `{name.text}`"
+        yield Diagnostic(rule, name.span, message, tags=(Tag.UNNECESSARY,))
 
 
 def _other_way(view: View, symbol: Symbol) -> str:
@@ -139,15 +135,6 @@ def _idle_action(view: View, requirement: Requirement) -> str | None:
 
 def _is_empty(requirement: Requirement) -> bool:
     return not requirement.clauses and (requirement.text is None or not requirement.text.text.strip())
-
-
-def _unused(view: View, kind: Kind, name: Word | None, rule: str, message: str) -> Iterator[Diagnostic]:
-    if name is None or not view.has_trees or view.is_used_elsewhere:
-        return  # a file of signals, or a library: their users may be anywhere
-    if not view.defines_here(kind, name.text) or view.look_up(lookups.is_asked_for, name.text):
-        return
-    if not view.ask(_is_meant, name.text) and view.is_read:  # else its user may be on a line that could not be read
-        yield Diagnostic(rule, name.span, f"{message} `{name.text}`", tags=(Tag.UNNECESSARY,))
 
 
 def _is_meant(store: Store[Workspace], viewpoint: str, name: str) -> bool:

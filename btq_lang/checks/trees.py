@@ -98,17 +98,10 @@ def duplicate_tree(view: View) -> Iterator[Diagnostic]:
             related=(Related(first.place, "first one"), Related(second.place, "second one")),
             notes=(_LAST_WINS,),
         )
-    name = view.tree_name
-    if name is None or not view.is_repeated(Kind.TREE, name.text):
-        return
-    if not view.defines_here(Kind.TREE, name.text):
-        related = view.declared_at(Kind.TREE, name.text, "first one")
-    elif (other := view.look_up(lookups.another_declaration, Kind.TREE, name.text)) is not None:
-        related = (Related(other.place, "second one"),)  # the program registers both files
-    else:
-        return
-    message = f"duplicate tree `{name.text}`"
-    yield Diagnostic("duplicate-tree", name.span, message, related=related, notes=(_LAST_WINS,))
+    for symbol, other, counts in view.repeated(Kind.TREE):
+        related = (Related(other.place, "first one" if counts else "second one"),)
+        message = f"duplicate tree `{symbol.name}`"
+        yield Diagnostic("duplicate-tree", view.head, message, related=related, notes=(_LAST_WINS,))
 
 
 def recursive_tree(view: View) -> Iterator[Diagnostic]:

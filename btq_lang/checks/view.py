@@ -55,6 +55,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 COUNTS = "first definition, which takes effect"
+SECOND = "second definition"
 
 
 class _OfFile(Generic[T]):
@@ -201,13 +202,16 @@ class View:
         found = self.definition(kind, name)
         return found is not None and found[1] is self.facts
 
-    def another(self, symbol: Symbol) -> tuple[Declaration | None, str]:
-        """A second definition of a name that the item defines, and which one it is: for the one that takes effect, one
-        in another file of the factory, for any other the one that takes effect."""
-        first = self.declaration(symbol.kind, symbol.name)
-        if first is not None and first.symbol is not symbol:
-            return first, COUNTS
-        return self.look_up(lookups.another_declaration, symbol.kind, symbol.name), "second definition"
+    def repeated(self, *kinds: Kind) -> Iterator[tuple[Symbol, Declaration, bool]]:
+        """The names that the item and another one define, with that definition, and whether it is the one that takes
+        effect; else it is in another file of the factory."""
+        for symbol in self.facts.summary.symbols:
+            if symbol.kind in kinds and self.is_repeated(symbol.kind, symbol.name):
+                first = self.declaration(symbol.kind, symbol.name)
+                counts = first is not None and first.symbol is not symbol
+                other = first if counts else self.look_up(lookups.another_declaration, symbol.kind, symbol.name)
+                if other is not None:
+                    yield symbol, other, counts
 
     def has_names(self, kind: Kind) -> bool:
         """Whether there is any name of a kind in scope."""
@@ -367,11 +371,11 @@ def _torn_places(store: Store[Workspace], viewpoint: str, facts: Facts) -> list[
 
 
 def _has_trees(store: Store[Workspace], viewpoint: str) -> bool:
-    return View(store, viewpoint).look_up(lookups.first_tree) is not None
+    return bool(lookups.trees(store, viewpoint))
 
 
 def _is_first_tree(store: Store[Workspace], viewpoint: str, tree: Facts) -> bool:
-    return View(store, viewpoint).look_up(lookups.first_tree) is tree
+    return lookups.trees(store, viewpoint)[:1] == (tree,)
 
 
 def _is_main_tree(store: Store[Workspace], viewpoint: str, name: str) -> bool | None:
