@@ -6,7 +6,7 @@ escape or a line end of two characters being one piece.
 
 from __future__ import annotations
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, relocated
 from btq_lang.syntax.tree import Word, quote
 from btq_lang.util.record import replace
 from btq_lang.util.text import Edit, Span, apply_edits
@@ -26,14 +26,10 @@ def in_source(word: Word, span: Span) -> Span:
 
 def moved(diagnostic: Diagnostic, word: Word) -> Diagnostic:
     """A diagnostic that counts from the start of a value's text, with its fixes, as one of the value."""
-    return replace(
-        diagnostic,
-        span=in_source(word, diagnostic.span),
-        related=tuple(
-            Related(Place(in_source(word, related.place.span)), related.message) for related in diagnostic.related
-        ),
-        fixes=tuple(Fix(fix.title, _changes(fix.changes, word), fix.safe) for fix in diagnostic.fixes),
-    )
+    fixes = tuple(Fix(fix.title, _changes(fix.changes, word), fix.safe) for fix in diagnostic.fixes)
+    span = in_source(word, diagnostic.span)
+    placed = relocated(replace(diagnostic, fixes=()), span, lambda place: Place(in_source(word, place.span)))
+    return replace(placed, fixes=fixes)
 
 
 def _changes(changes: tuple[Change, ...], word: Word) -> tuple[Change, ...]:

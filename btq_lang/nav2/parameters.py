@@ -22,6 +22,7 @@ from btq_lang.catalog.nav2.navigator import (
     outside_entries,
 )
 from btq_lang.nav2.yaml_reader import Value, read_yaml
+from btq_lang.util.reach import reached
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
@@ -167,29 +168,24 @@ def read_parameters(text: str) -> Parameters:
 
 def _nodes(top: Value) -> Iterator[tuple[Value, Value]]:
     """The names of nodes with their parameters, whatever the namespaces around them."""
-    waiting, seen = [top], {id(top)}
-    for value in waiting:
-        for key, below in value.entries:
-            parameters = below.get(_PARAMETERS)
-            if parameters is not None:
-                yield key, parameters
-            elif id(below) not in seen:  # an alias may name it many times
-                seen.add(id(below))
-                waiting.append(below)
+    around = reached([top], lambda value: [below for _, below in value.entries if below.get(_PARAMETERS) is None])
+    for key, below in (entry for value in around for entry in value.entries):
+        if (parameters := below.get(_PARAMETERS)) is not None:
+            yield key, parameters
 
 
 def _misspelt(top: Value, has_no_node: bool) -> Iterator[tuple[Text, str]]:
     """The keys that are nearly those around the parameters of bt_navigator, each with what is meant."""
-    waiting, seen = [top], {id(top)}
-    for value in waiting:
-        for key, below in value.entries:
-            if near(key.text or "", (_PARAMETERS,)):
-                yield Text(key.text or "", key.span), _PARAMETERS
-            elif has_no_node and below.get(_PARAMETERS) is not None and near(_last(key), (NODE,)):
-                yield Text(_last(key), key.span), NODE
-            elif below.get(_PARAMETERS) is None and id(below) not in seen:
-                seen.add(id(below))
-                waiting.append(below)
+
+    def inside(value: Value) -> list[Value]:
+        entries = [(key.text or "", below) for key, below in value.entries if below.get(_PARAMETERS) is None]
+        return [below for key, below in entries if not near(key, (_PARAMETERS,))]
+
+    for key, below in (entry for value in reached([top], inside) for entry in value.entries):
+        if near(key.text or "", (_PARAMETERS,)):
+            yield Text(key.text or "", key.span), _PARAMETERS
+        elif has_no_node and below.get(_PARAMETERS) is not None and near(_last(key), (NODE,)):
+            yield Text(_last(key), key.span), NODE
 
 
 def _flat(node: Value) -> Iterator[tuple[tuple[Value, ...], Value]]:
