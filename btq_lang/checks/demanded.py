@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from btq_lang.btcpp.enforceability import Judge
 
 Found: TypeAlias = tuple[Place, Diagnostic]
-
-
 Guard: TypeAlias = tuple[tuple[Signal, ...], Place]
 
 

@@ -25,11 +25,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.factories import Factory
 
 _MOST_NAMES = 5  # in one message
-
-
 _DEEPEST_OF_4_6 = 97  # below a BehaviorTree: its XML reader (tinyxml2 8.0) stops at 100 open elements
-
-
 _LAST_WINS = "the engine does not report this: it runs the last one that it reads"
 
 

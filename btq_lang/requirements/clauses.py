@@ -247,9 +247,5 @@ def parameter_of(reader: Reader, written: syntax.Parameter) -> model.Parameter:
 
 
 _TIMED: Final = ("duration", "deadline", "reaction")
-
-
 _COUNTED: Final = Wanted("a number", (model.NO_DIMENSION, COUNT), None)
-
-
 _SHARE: Final = Wanted("a percentage", (PERCENT,), "%")

@@ -16,23 +16,11 @@ from btq_lang.util.record import Record, values_of
 from btq_lang.workspace.resolved import ResolvedNode
 
 Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]
-
-
 Happening: TypeAlias = Literal["starts", "succeeds", "fails", "finishes", "halts", "when"]
-
-
 Action: TypeAlias = Literal["fail", "halt", "warn", "log"]
-
-
 Method: TypeAlias = Literal["monitor", "analysis", "test", "review"]
-
-
 Experiments: TypeAlias = Literal["activations", "runs"]
-
-
 Behaviour: TypeAlias = Literal["level", "counter", "gauge"]
-
-
 Sort: TypeAlias = Literal["number", "bool", "text"]
 
 
@@ -183,11 +171,7 @@ class Table(Record):
 
 
 Simple: TypeAlias = Value | Flag | Text | Read | Parameter
-
-
 Bounded: TypeAlias = Simple | Table
-
-
 Number: TypeAlias = Bounded | Aggregate | Minus | Arithmetic
 
 
