@@ -89,18 +89,14 @@ def invalid_literal(view: View) -> Iterator[Diagnostic]:
         notes = (f"`{target.port}` has the type {target.type}",)
         if target.type == RESULT:
             notes = (f"`{target.port}` is a BT::NodeStatus, and IDLE is not allowed",)
-        if not target.converts:
-            message = f"expected {problem.expected} for `{target.port}`, found {problem.found or _shown(text)}"
-            yield Diagnostic("invalid-literal", value.span, message, notes=notes, severity=Severity.WARNING)
-        elif problem.kind == "refused":
-            message = f"expected {problem.expected} for `{target.port}`, found {problem.found or _shown(text)}"
-            fixes = _accepted(target, value, version)
-            yield Diagnostic("invalid-literal", value.span, message, notes=notes, fixes=fixes)
-        else:
+        if target.converts and problem.kind != "refused":
             message = f"the engine reads `{text}` as {problem.reads} and silently drops the rest"
-            yield Diagnostic(
-                "trailing-text-in-number", value.span, message, fixes=_as_quantity(value, target, problem.reads)
-            )
+            fixes = _as_quantity(value, target, problem.reads)
+            yield Diagnostic("trailing-text-in-number", value.span, message, fixes=fixes)
+            continue
+        message = f"expected {problem.expected} for `{target.port}`, found {problem.found or _shown(text)}"
+        fixes, severity = (_accepted(target, value, version), None) if target.converts else ((), Severity.WARNING)
+        yield Diagnostic("invalid-literal", value.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
 def number_for_text(view: View) -> Iterator[Diagnostic]:

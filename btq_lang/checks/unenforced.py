@@ -38,12 +38,11 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
 
 def not_enforced_between(view: View, name: str) -> Iterator[Found]:
     """The same for the claims of a requirement that are about no particular node."""
-    between = view.ask(claimed_of_no_tree, name)
-    judge = judge_of(view) if between else None
-    for applied in between:
+    for applied in view.ask(claimed_of_no_tree, name):
+        judge = judge_of(view)
         for claim in applied.requirement.claims:
             place = reported_at(view, applied, claim)
-            why = judge.why_not(applied, claim) if place is not None and judge is not None else None
+            why = judge.why_not(applied, claim) if place is not None else None
             if place is not None and why is not None:
                 yield place, _found(applied, place, why, ())
 

@@ -7,9 +7,9 @@ nodes run is not known here.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
-from btq_lang.catalog.kinds import PortKind
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks import lookups
 from btq_lang.checks.pointers import remaps_all
@@ -70,15 +70,16 @@ def _entries_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts
         for pair in node.node.attributes:
             if pair.value is None:
                 continue
-            text = pair.value.text
-            port = pair.key.text
+            text, port = pair.value.text, pair.key.text
+            built_in = node.kind.port(port) if node.kind is not None else None
+            content = built_in.content if built_in is not None else ""
             is_entry = is_pointer(text)
             if is_entry:
                 key = key_of(text, port)
                 pointers.setdefault(key.removeprefix("@"), []).append((node, pair, key[:1] == "@"))
-            if _is_script(node, port):
+            if content == "script" or port in _SCRIPTS:
                 writes += ((node, name) for name in _assigned(text))
-            elif (built_in := _names_entry(node, port)) is not None and built_in.direction != "input":
+            elif built_in is not None and content == "key" and built_in.direction != "input":
                 writes.append((node, text.strip("{}")))
                 is_open = is_open or is_entry
             elif is_entry:
@@ -122,18 +123,6 @@ def isolated(view: View, writes: Sequence[tuple[ResolvedNode, str]], key: str) -
     return writers[0]
 
 
-def _is_script(node: ResolvedNode, key: str) -> bool:
-    attribute = RESERVED_ATTRIBUTES.get(key)
-    port = node.kind.port(key) if node.kind is not None else None
-    return (attribute is not None and attribute.is_script) or (port is not None and port.content == "script")
-
-
-def _names_entry(node: ResolvedNode, key: str) -> PortKind | None:
-    """The port of a built-in whose value is the name of an entry."""
-    port = node.kind.port(key) if node.kind is not None else None
-    return port if port is not None and port.content == "key" else None
-
-
 def _assigned(script: str) -> Iterator[str]:
     from btq_lang.syntax.script.parser import parse_script
     from btq_lang.syntax.script.tree import variables
@@ -155,3 +144,6 @@ def _passed_on(node: ResolvedNode, name: str) -> Iterator[str]:
     yield from (port for port, text in given.items() if is_pointer(text) and key_of(text, port) == name)
     if remaps_all(node) and name not in given and name[:1] != "_":
         yield name
+
+
+_SCRIPTS: Final = frozenset([key for key, attribute in RESERVED_ATTRIBUTES.items() if attribute.is_script])

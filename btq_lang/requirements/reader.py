@@ -32,7 +32,6 @@ from btq_lang.requirements.terms import (
     sum_level,
     term_of,
     unit_beside,
-    unit_symbol,
 )
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.quantities import parse_quantity
@@ -230,9 +229,9 @@ class Reader(PathReader):
         if name in ("true", "false"):
             return Term(model.Flag(name == "true"), "bool", None, None, word.span)
         if name in self.parameters:
-            return term_of(self.parameters[name], word)
+            return term_of(self.parameters[name], self.parameters[name], word.span)
         if (signal := self.signal(name)) is not None:
-            return term_of(model.Read(signal), word)
+            return term_of(model.Read(signal), signal, word.span)
         if self.is_context(name):
             self.complain("unit-mismatch", word.span, f"`{name}` is a context, not a value")
         elif in_bound or not self._is_subtraction(word):
@@ -503,12 +502,9 @@ class Reader(PathReader):
             self.complain("unit-mismatch", span, message)
             return None
         unit = signal.unit
-        if unit is None:
-            return Term(value, "number", None, None, span)
-        level: Level = "level" if unit.offset else "either"
-        if function in ("change", "stddev"):
+        if unit is not None and function in ("change", "stddev"):
             return Term(value, "number", unit.dimension, "K" if unit.offset else unit.symbol, span, "difference")
-        return Term(value, "number", unit.dimension, unit_symbol(unit), span, level)
+        return term_of(value, signal, span)
 
     def _arithmetic(self, written: syntax.Binary) -> Term | None:
         left, right = self._expression(written.left), self._expression(written.right)

@@ -82,13 +82,13 @@ def simple(value: model.Number) -> model.Simple | None:
     return value if isinstance(value, model.Value | model.Flag | model.Text | model.Read | model.Parameter) else None
 
 
-def term_of(value: model.Read | model.Parameter, word: syntax.Word) -> Term:
-    kind = value.signal if isinstance(value, model.Read) else value
+def term_of(value: model.Number, kind: model.Signal | model.Parameter, span: Span) -> Term:
+    """A value of the sort and the unit of a signal or a parameter."""
     unit = kind.unit
     if kind.sort != "number" or unit is None:
-        return Term(value, kind.sort, None, None, word.span)
-    level: Level = "level" if unit.offset else "either"
-    return Term(value, "number", unit.dimension, unit_symbol(unit), word.span, level)
+        return Term(value, kind.sort, None, None, span)
+    symbol = unit.symbol if unit.dimension != model.NO_DIMENSION else None
+    return Term(value, "number", unit.dimension, symbol, span, "level" if unit.offset else "either")
 
 
 def unit_beside(term: Term | None) -> str:
@@ -96,10 +96,6 @@ def unit_beside(term: Term | None) -> str:
     if term is None or (term.sort == "number" and term.unit is None):
         return "m" if term is None or not term.is_bare else "1"
     return term.unit or term.sort
-
-
-def unit_symbol(unit: Unit) -> str | None:
-    return unit.symbol if unit.dimension != model.NO_DIMENSION else None
 
 
 def sum_level(operator: str, left: Level, right: Level) -> Level | None:
