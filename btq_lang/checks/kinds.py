@@ -48,7 +48,7 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
         elif name is None:
             continue
         elif view.defines(Kind.TREE, name.text):
-            if not is_of_tree_named(view, name.text):  # else the tree's name is the mistake
+            if view.tree_name is None or view.tree_name.text != name.text:  # else the tree's name is the mistake
                 yield _tree_as_node(view, seen, name)
         elif view.is_pooled(Kind.MODEL, name.text):
             continue  # models that differ: whichever the program means, it is known
@@ -60,11 +60,6 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("unknown-node", name.span, message, fixes=(fix,))
         elif not (_is_refused(view, seen, name) or _is_clause(seen) or misspelt_clause(seen.node)):
             yield from _unknown(view, seen, name)
-
-
-def is_of_tree_named(view: View, name: str) -> bool:
-    """Whether an item is a tree of a name: no node in it can mean that tree."""
-    return view.tree_name is not None and view.tree_name.text == name
 
 
 def not_an_engine_node(view: View) -> Iterator[Diagnostic]:

@@ -23,15 +23,15 @@ from btq_lang.workspace.resolved import ResolvedNode
 Key = TypeVar("Key", bound=tuple[str, ...])
 
 
-def is_of_nav2(view: View, distribution: str, node: str) -> bool:
-    """Whether a distribution has a node."""
-    return _ports(view, distribution, node) is not None
+def ports_in(view: View, distribution: str, node: str) -> frozenset[str] | None:
+    """The names of the ports of a node in a distribution; None if it does not have the node."""
+    return lookups.ports_in_file(view.store, FILES[distribution], Kind.MODEL, node)
 
 
 def changes_of(view: View, seen: ResolvedNode, name: Word, steps: tuple[str, ...]) -> Iterator[Diagnostic]:
     """What changes for a node of Nav2 on some steps."""
     renamed = _first(RENAMED, ((step, name.text) for step in steps))
-    before, ports = _ports(view, steps[0], name.text), _ports(view, steps[-1], renamed or name.text)
+    before, ports = ports_in(view, steps[0], name.text), ports_in(view, steps[-1], renamed or name.text)
     if before is not None and ports is not None:
         yield from _without_ports(seen, name.text, before - ports, steps)
     is_forward = DISTRIBUTIONS.index(steps[-1]) > DISTRIBUTIONS.index(steps[0])
@@ -41,7 +41,7 @@ def changes_of(view: View, seen: ResolvedNode, name: Word, steps: tuple[str, ...
         if change.since in steps[1:] and change.concerns(name.text) and (not change.when or _collects(view, seen))
         for found in changed(view, seen, name, change)
     ]
-    if _ports(view, steps[-1], name.text) is None:
+    if ports_in(view, steps[-1], name.text) is None:
         yield _without_node(view, name, renamed, steps, [each.message for each in differing])
     else:
         yield from differing
@@ -73,16 +73,11 @@ def changed(view: View, seen: ResolvedNode, name: Word, change: Change) -> Itera
     )
 
 
-def _ports(view: View, distribution: str, node: str) -> frozenset[str] | None:
-    """The names of the ports of a node in a distribution; None if it does not have the node."""
-    return lookups.ports_in_file(view.store, FILES[distribution], Kind.MODEL, node)
-
-
 def _without_node(
     view: View, name: Word, renamed: str | None, steps: tuple[str, ...], differing: Iterable[str]
 ) -> Diagnostic:
     """The finding for a node that is gone, with what else changes on the way: it is to be replaced in any case."""
-    gone = next(step for step in steps if _ports(view, step, name.text) is None)
+    gone = next(step for step in steps if ports_in(view, step, name.text) is None)
     instead = INSTEAD.get((gone, name.text))
     return Diagnostic(
         "target-breaks",

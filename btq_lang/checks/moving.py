@@ -32,12 +32,12 @@ def moving_on(view: View) -> Iterator[Diagnostic]:
     steps = _steps(view)
     if not steps:
         return
-    from btq_lang.checks.moved_nodes import changes_of, is_of_nav2  # as above
+    from btq_lang.checks.moved_nodes import changes_of, ports_in  # as above
 
     for seen in view.nodes:
         if seen.is_subtree:
             yield from _subtree(seen) if steps[0] in _OF_3 and _FIRST_OF_4 in steps else ()
-        elif seen.id is not None and is_of_nav2(view, steps[0], seen.id.text):
+        elif seen.id is not None and ports_in(view, steps[0], seen.id.text) is not None:
             yield from changes_of(view, seen, seen.id, steps)
 
 

@@ -201,7 +201,7 @@ def _located(named: Text, find: FindPackage, is_folder: bool = False) -> Located
         return Located(named, path)
     for package in packages:
         lacks = f"the package in {package} has no such {_KINDS[is_folder]}"
-        if _is_installed(package):
+        if os.path.basename(os.path.dirname(package)) == "share":  # it is installed
             return Located(named, None, lacks, Severity.ERROR)
         found = _inside(package, is_folder)
         elsewhere = [each for each in found if os.path.basename(each) == os.path.basename(path)]
@@ -235,10 +235,6 @@ def file_with(tree: str, root: str) -> Place | None:
             if re.search(rf"""\sID\s*=\s*["']{re.escape(tree)}["']""", match[0]):
                 return Place(Span(*match.span()), path)
     return None
-
-
-def _is_installed(package: str) -> bool:
-    return os.path.basename(os.path.dirname(package)) == "share"
 
 
 def _inside(package: str, is_folder: bool) -> list[str]:
