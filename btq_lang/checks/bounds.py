@@ -58,17 +58,13 @@ def uses_of_gauge(view: View) -> Iterator[Diagnostic]:
         at = signal.behaviour.span if signal.behaviour else Span(*[(signal.source or signal.unit).end] * 2)
         place = Place(at, declaration.path, declaration.owner.item)
         words = ("level", "counter") if signal.unit.text == "%" else ("counter", "level")
-        yield Diagnostic(
-            "uses-of-gauge",
-            claim.resource.span,
-            f"`{claim.resource.text}` is neither a counter nor a level, so its use is undefined",
-            related=(Related(declaration.place, "declared here"),),
-            notes=("the use of a counter is its final minus its initial value; the use of a level is the opposite",),
-            fixes=tuple(
-                Fix(f"Declare it as a {word}", (Change(place, word if signal.behaviour else f" {word}"),))
-                for word in words
-            ),
+        message = f"`{claim.resource.text}` is neither a counter nor a level, so its use is undefined"
+        fixes = tuple(
+            Fix(f"Declare it as a {word}", (Change(place, word if signal.behaviour else f" {word}"),)) for word in words
         )
+        notes = ("the use of a counter is its final minus its initial value; the use of a level is the opposite",)
+        related = (Related(declaration.place, "declared here"),)
+        yield Diagnostic("uses-of-gauge", claim.resource.span, message, related=related, notes=notes, fixes=fixes)
 
 
 def _claims(view: View) -> Iterator[tuple[syntax.Requirement, syntax.Claim]]:

@@ -47,13 +47,8 @@ def child_count(view: View) -> Iterator[Diagnostic]:
             extra = seen.node.children[most]
             span = extra.head.span if isinstance(extra, Node) else Span(extra.start, extra.end)
             related += (Related(Place(span), "first extra child"),)
-        yield Diagnostic(
-            "child-count",
-            seen.node.head.span,
-            f"{_called(seen)} requires {_range(least, most)}, found {count or 'none'}",
-            related=related,
-            notes=notes,
-        )
+        message = f"{_called(seen)} requires {_range(least, most)}, found {count or 'none'}"
+        yield Diagnostic("child-count", seen.node.head.span, message, related=related, notes=notes)
 
 
 def switch_cases(view: View) -> Iterator[Diagnostic]:
@@ -98,13 +93,10 @@ def parallel_threshold(view: View) -> Iterator[Diagnostic]:
             threshold = int(value.text) if value is not None and _INTEGER.fullmatch(value.text) else 0
             if value is None or threshold <= count:
                 continue
-            yield Diagnostic(
-                "parallel-threshold",
-                value.span,
-                f"`{port.name}` is {threshold}, but the node has only {count} child{'ren' if count > 1 else ''}",
-                notes=("the engine throws when the node is ticked; -1 means all children",),
-                fixes=(replace_fix("Write `-1` for all children", value.span, "-1"),),
-            )
+            message = f"`{port.name}` is {threshold}, but the node has only {count} child{'ren' if count > 1 else ''}"
+            notes = ("the engine throws when the node is ticked; -1 means all children",)
+            fixes = (replace_fix("Write `-1` for all children", value.span, "-1"),)
+            yield Diagnostic("parallel-threshold", value.span, message, notes=notes, fixes=fixes)
 
 
 def _is_by_children(seen: ResolvedNode) -> bool:

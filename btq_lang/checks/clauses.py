@@ -41,12 +41,9 @@ def clause_without_odds(view: View) -> Iterator[Diagnostic]:
             is_confidence = isinstance(clause, syntax.Confidence)
             if is_confidence or (isinstance(clause, syntax.Window) and clause.experiments is not None):
                 said = "a confidence" if is_confidence else "the window"
-                yield Diagnostic(
-                    "clause-without-odds",
-                    Span(clause.start, clause.end),
-                    f"{said} has no effect here: without a required probability a single violation counts",
-                    notes=("state how often it must hold: `in at least 95 % of activations`",),
-                )
+                message = f"{said} has no effect here: without a required probability a single violation counts"
+                notes = ("state how often it must hold: `in at least 95 % of activations`",)
+                yield Diagnostic("clause-without-odds", Span(clause.start, clause.end), message, notes=notes)
 
 
 def unused_parameter(view: View) -> Iterator[Diagnostic]:
@@ -67,16 +64,13 @@ def _duplicate(view: View, counts: syntax.Clause, clause: syntax.Clause, is_alon
     text = view.text
     said, again = (" ".join(text[each.start : each.end].split()) for each in (counts, clause))
     removals = [(again, clause)] if said == again else [(again, clause), (said, counts)]
-    return Diagnostic(
-        "duplicate-clause",
-        Span(clause.start, clause.end),
-        f"the requirement already states {_ONCE[type(clause)]}: `{said}`",
-        related=(Related(Place(Span(counts.start, counts.end)), "this one takes effect"),),
-        fixes=tuple(
-            replace_fix(f"Remove `{words}`", with_blanks(text, each), "", safe=is_alone and said == again)
-            for words, each in removals
-        ),
+    message = f"the requirement already states {_ONCE[type(clause)]}: `{said}`"
+    fixes = tuple(
+        replace_fix(f"Remove `{words}`", with_blanks(text, each), "", safe=is_alone and said == again)
+        for words, each in removals
     )
+    related = (Related(Place(Span(counts.start, counts.end)), "this one takes effect"),)
+    return Diagnostic("duplicate-clause", Span(clause.start, clause.end), message, related=related, fixes=fixes)
 
 
 def with_blanks(text: str, clause: syntax.Clause | syntax.NodeClause) -> Span:

@@ -51,13 +51,9 @@ def _delays(view: View) -> Iterator[Diagnostic]:
 
 def _loop(seen: ResolvedNode, value: Word, number: float) -> Diagnostic:
     fixes = (replace_fix("Write `-1` for endless", value.span, "-1"),) if number < 0 else ()
-    return Diagnostic(
-        "count-of-nothing",
-        value.span,
-        f"{seen.shown_kind} never runs its child with `{value.raw}`",
-        notes=("-1 means endless, other numbers below 1 mean never",),
-        fixes=fixes,
-    )
+    message = f"{seen.shown_kind} never runs its child with `{value.raw}`"
+    notes = ("-1 means endless, other numbers below 1 mean never",)
+    return Diagnostic("count-of-nothing", value.span, message, notes=notes, fixes=fixes)
 
 
 def _timeout(kind: NodeKind, value: Word) -> Diagnostic:

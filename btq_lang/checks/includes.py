@@ -38,13 +38,9 @@ def missing_include(view: View) -> Iterator[Diagnostic]:
         f"`{project.shown(place)}`{' (no folder)' if place in project.lost_paths else ''}"
         for place in (folder or ".", *project.include_paths)
     )
-    yield Diagnostic(
-        "missing-include",
-        include.path.span,
-        f"cannot find the file `{path}`" if path else "missing file name after `include`",
-        notes=(f"searched {places}; add folders with `include-paths` in btq.toml",),
-        fixes=fixes,
-    )
+    message = f"cannot find the file `{path}`" if path else "missing file name after `include`"
+    notes = (f"searched {places}; add folders with `include-paths` in btq.toml",)
+    yield Diagnostic("missing-include", include.path.span, message, notes=notes, fixes=fixes)
 
 
 def cyclic_include(view: View) -> Iterator[Diagnostic]:
@@ -56,12 +52,9 @@ def cyclic_include(view: View) -> Iterator[Diagnostic]:
     if target is None or view.path not in lookups.closure(view.store, target):
         return
     how = "itself" if target == view.path else f"`{include.path.text}`, which includes this file again"
-    yield Diagnostic(
-        "cyclic-include",
-        include.path.span,
-        f"this file includes {how}",
-        notes=("the engine follows the cycle until it crashes",),
-    )
+    message = f"this file includes {how}"
+    notes = ("the engine follows the cycle until it crashes",)
+    yield Diagnostic("cyclic-include", include.path.span, message, notes=notes)
 
 
 def include_with_errors(view: View, errors_in: ErrorsIn) -> Iterator[Diagnostic]:

@@ -94,13 +94,10 @@ def newer_engine_node(view: View) -> Iterator[Diagnostic]:
                 continue
             since = "4" if is_before_4(missing[0]) else seen.kind.since
             pin = f'if you run {view.target}, set `engine = "{view.target}"` in btq.toml'
-            yield Diagnostic(
-                "newer-engine-node",
-                seen.id.span,
-                f"`{seen.kind.tag}` requires BehaviorTree.CPP {since}; {missing[0]} does not have it",
-                notes=() if view.is_pinned else (pin,),
-                severity=None if view.is_pinned else Severity.WARNING,
-            )
+            message = f"`{seen.kind.tag}` requires BehaviorTree.CPP {since}; {missing[0]} does not have it"
+            severity = None if view.is_pinned else Severity.WARNING
+            notes = () if view.is_pinned else (pin,)
+            yield Diagnostic("newer-engine-node", seen.id.span, message, notes=notes, severity=severity)
 
 
 @lru_cache(1_000)  # every tree of every file calls it
@@ -331,14 +328,10 @@ def _tree_as_node(view: View, seen: ResolvedNode, name: Word) -> Diagnostic:
     """`PickPlace` or `Action PickPlace` where PickPlace is a tree."""
     category = seen.node.category
     span, text = (Span(name.start, name.start), "SubTree ") if category is None else (category.span, "SubTree")
-    return Diagnostic(
-        "unknown-node",
-        name.span,
-        f"`{name.text}` is a tree, not a node",
-        related=view.declared_at(Kind.TREE, name.text, "tree definition"),
-        fixes=(replace_fix(f"Write `SubTree {written(name.text)}`", span, text),),
-        severity=Severity.ERROR,
-    )
+    message = f"`{name.text}` is a tree, not a node"
+    fixes = (replace_fix(f"Write `SubTree {written(name.text)}`", span, text),)
+    related = view.declared_at(Kind.TREE, name.text, "tree definition")
+    return Diagnostic("unknown-node", name.span, message, related=related, fixes=fixes, severity=Severity.ERROR)
 
 
 def _is_refused(view: View, seen: ResolvedNode, name: Word) -> bool:

@@ -41,16 +41,13 @@ def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
         most = claim.highest if VERBS[claim.verb].limits and applied.requirement.is_enforceable else None
         if most is None or demanded.budgets.composed(node).waits:
             continue
-        yield found_at(
-            place,
-            "limit-on-synchronous-node",
-            f"{node.shown} completes within one tick, so the engine cannot stop it after `{most[1]}`",
-            related=(Related(node.place, "never returns RUNNING"),),
-            notes=(
-                "`btq verify` can only check it in the logs afterwards; "
-                "remove `on violation`, or limit a node that returns RUNNING",
-            ),
+        message = f"{node.shown} completes within one tick, so the engine cannot stop it after `{most[1]}`"
+        notes = (
+            "`btq verify` can only check it in the logs afterwards; "
+            "remove `on violation`, or limit a node that returns RUNNING",
         )
+        related = (Related(node.place, "never returns RUNNING"),)
+        yield found_at(place, "limit-on-synchronous-node", message, related=related, notes=notes)
 
 
 def dead_bound(demanded: Demanded) -> Iterator[Found]:

@@ -55,14 +55,11 @@ def old_entry(view: View) -> Iterator[Diagnostic]:
     for value in values:
         key, target = value.text[1:], typed.get(value.span)
         refused = target is not None and check_literal(target.type, value.text, view.target) is not None
-        yield Diagnostic(
-            "old-entry",
-            value.span,
-            f"the engine reads `{value.text}` as a text, not as an entry",
-            notes=("version 3 of the engine read it as an entry",),
-            fixes=(replace_fix(f"Replace `{value.text}` with `{key}`", value.span, key),),
-            severity=Severity.ERROR if refused else None,
-        )
+        message = f"the engine reads `{value.text}` as a text, not as an entry"
+        fixes = (replace_fix(f"Replace `{value.text}` with `{key}`", value.span, key),)
+        notes = ("version 3 of the engine read it as an entry",)
+        severity = Severity.ERROR if refused else None
+        yield Diagnostic("old-entry", value.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
 def invalid_literal(view: View) -> Iterator[Diagnostic]:
@@ -237,14 +234,9 @@ def _number_for_text(value: Word, met: tuple[Place, str, str], severity: Severit
         f"BehaviorTree.CPP {TYPED_CONSTANTS.since} and later refuse to load this tree: `{value.text}` is a number, "
         f"{port} a string"
     )
-    return Diagnostic(
-        "number-for-text",
-        value.span,
-        message,
-        related=(Related(place, "the string port"),),
-        notes=(f"pass an entry that holds the string: `Script (code = \"text := '{value.text}'\")`, then `{{text}}`",),
-        severity=severity,
-    )
+    notes = (f"pass an entry that holds the string: `Script (code = \"text := '{value.text}'\")`, then `{{text}}`",)
+    related = (Related(place, "the string port"),)
+    return Diagnostic("number-for-text", value.span, message, related=related, notes=notes, severity=severity)
 
 
 def _ports_of_trees(view: View) -> Iterator[tuple[Word, Port]]:

@@ -162,18 +162,15 @@ def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Itera
         related = [_related(view, first.port, f"created here as {first.type}")]
         if later.port.tree != tree or later.port.node != later.node:
             related.append(_related(view, later.port, f"used here as {later.type}"))
-        yield Diagnostic(
-            "entry-with-two-types",
-            span,
+        message = (
             f"`{port.key.text}` of {seen.shown_kind} creates `{{{key}}}` as {first.type}, "
-            f"but `{later_port.key.text}` of {later_seen.shown_kind} has the type {later.type}",
-            related=tuple(related),
-            notes=(
-                "BehaviorTree.CPP refuses to load this tree; use an entry for each type, "
-                "and copy the value in a script: `other := entry`",
-            ),
-            severity=severity,
+            f"but `{later_port.key.text}` of {later_seen.shown_kind} has the type {later.type}"
         )
+        notes = (
+            "BehaviorTree.CPP refuses to load this tree; use an entry for each type, "
+            "and copy the value in a script: `other := entry`",
+        )
+        yield Diagnostic("entry-with-two-types", span, message, related=tuple(related), notes=notes, severity=severity)
 
 
 def _port(view: View, port: _Port) -> tuple[ResolvedNode, Pair]:

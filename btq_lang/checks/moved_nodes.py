@@ -79,13 +79,10 @@ def _without_node(
     """The finding for a node that is gone, with what else changes on the way: it is to be replaced in any case."""
     gone = next(step for step in steps if ports_in(view, step, name.text) is None)
     instead = INSTEAD.get((gone, name.text))
-    return Diagnostic(
-        "target-breaks",
-        name.span,
-        f"Nav2 has no `{name.text}` in {gone.title()}" + _called(renamed),
-        notes=(*([f"write {instead}"] if instead else ()), *differing),
-        fixes=(replace_fix(f"Replace `{name.text}` with `{renamed}`", name.span, renamed),) if renamed else (),
-    )
+    message = f"Nav2 has no `{name.text}` in {gone.title()}" + _called(renamed)
+    fixes = (replace_fix(f"Replace `{name.text}` with `{renamed}`", name.span, renamed),) if renamed else ()
+    notes = (*([f"write {instead}"] if instead else ()), *differing)
+    return Diagnostic("target-breaks", name.span, message, notes=notes, fixes=fixes)
 
 
 def _without_ports(seen: ResolvedNode, node: str, gone: frozenset[str], steps: tuple[str, ...]) -> Iterator[Diagnostic]:
@@ -94,12 +91,9 @@ def _without_ports(seen: ResolvedNode, node: str, gone: frozenset[str], steps: t
         if port not in gone:
             continue
         renamed = _first(RENAMED_PORTS, ((step, node, port) for step in steps))
-        yield Diagnostic(
-            "target-breaks",
-            pair.key.span,
-            f"`{node}` has no port `{port}` in {steps[-1].title()}" + _called(renamed),
-            fixes=(replace_fix(f"Replace `{port}` with `{renamed}`", pair.key.span, renamed),) if renamed else (),
-        )
+        message = f"`{node}` has no port `{port}` in {steps[-1].title()}" + _called(renamed)
+        fixes = (replace_fix(f"Replace `{port}` with `{renamed}`", pair.key.span, renamed),) if renamed else ()
+        yield Diagnostic("target-breaks", pair.key.span, message, fixes=fixes)
 
 
 def _called(renamed: str | None) -> str:

@@ -118,14 +118,9 @@ def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> D
     note = f"`btq build` writes it as `{legal}`"
     if taken is not None:
         note = f"`btq build` cannot write it as `{legal}`, which is {taken}"
-    return Diagnostic(
-        "forbidden-name",
-        name.span,
-        f"the engine refuses the tree ID `{name.text}`: {reason}",
-        notes=(note,),
-        fixes=fixes,
-        severity=Severity.WARNING if taken is None else Severity.ERROR,
-    )
+    message = f"the engine refuses the tree ID `{name.text}`: {reason}"
+    severity = Severity.WARNING if taken is None else Severity.ERROR
+    return Diagnostic("forbidden-name", name.span, message, notes=(note,), fixes=fixes, severity=severity)
 
 
 def _refused(what: str, name: Word, reason: str, fixes: tuple[Fix, ...] = ()) -> Diagnostic:

@@ -40,12 +40,8 @@ def classic_placeholder(view: View) -> Iterator[Diagnostic]:
             continue  # reported as a clash
         what = "the condition" if seen.category == "Condition" else "the action"
         fix = _short_form(view, seen, name)
-        yield Diagnostic(
-            "classic-placeholder",
-            seen.node.kind.span,
-            f"`{seen.node.kind.text}` without code is a placeholder for {what} `{name}`",
-            fixes=(fix,) if fix is not None else (),
-        )
+        message = f"`{seen.node.kind.text}` without code is a placeholder for {what} `{name}`"
+        yield Diagnostic("classic-placeholder", seen.node.kind.span, message, fixes=(fix,) if fix is not None else ())
 
 
 def placeholder_clash(view: View) -> Iterator[Diagnostic]:
@@ -60,12 +56,8 @@ def placeholder_clash(view: View) -> Iterator[Diagnostic]:
         if taken is not None:
             yield Diagnostic("placeholder-clash", name.span, f"`{name.text}` becomes the node ID `{legal}`, {taken}")
         elif other != name.text and (first := view.ask(_first_place, legal)) is not None:
-            yield Diagnostic(
-                "placeholder-clash",
-                name.span,
-                f"`{other}` and `{name.text}` both become the node ID `{legal}`",
-                related=(Related(first, "first one"),),
-            )
+            message = f"`{other}` and `{name.text}` both become the node ID `{legal}`"
+            yield Diagnostic("placeholder-clash", name.span, message, related=(Related(first, "first one"),))
 
 
 def _first_name(store: Store[Workspace], viewpoint: str, legal: str) -> str | None:

@@ -166,13 +166,9 @@ def duplicate_port(view: View) -> Iterator[Diagnostic]:
             if name is None or not name.text:
                 continue
             if first.setdefault(name.text, name) is not name:
-                yield Diagnostic(
-                    "duplicate-definition",
-                    name.span,
-                    f"duplicate port `{name.text}`",
-                    related=(Related(Place(first[name.text].span), "first one"),),
-                    severity=Severity.WARNING,
-                )
+                message = f"duplicate port `{name.text}`"
+                related = (Related(Place(first[name.text].span), "first one"),)
+                yield Diagnostic("duplicate-definition", name.span, message, related=related, severity=Severity.WARNING)
 
 
 def misspelt_type(view: View) -> Iterator[Diagnostic]:

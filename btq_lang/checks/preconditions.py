@@ -32,16 +32,13 @@ def one_shot_monitor(view: View) -> Iterator[Diagnostic]:
             start = view.spelt("->" if is_failure else "?")
             if is_failure and not view.is_xml:
                 watched, start = f"{watched}, or a requirement with `keeps`", f"a requirement with `needs`, or {start}"
-            yield Diagnostic(
-                "one-shot-monitor",
-                pair.key.span,
-                f"the engine checks `{key}` once, when {seen.shown_kind} starts, and not while it runs",
-                notes=(
-                    f"to check it at every tick, use {watched}",
-                    f"to check it once, use {start} with a ScriptCondition in front of the node",
-                ),
-                severity=None if is_failure else Severity.HINT,
+            message = f"the engine checks `{key}` once, when {seen.shown_kind} starts, and not while it runs"
+            notes = (
+                f"to check it at every tick, use {watched}",
+                f"to check it once, use {start} with a ScriptCondition in front of the node",
             )
+            severity = None if is_failure else Severity.HINT
+            yield Diagnostic("one-shot-monitor", pair.key.span, message, notes=notes, severity=severity)
 
 
 def while_skip_is_success(view: View) -> Iterator[Diagnostic]:
@@ -79,12 +76,9 @@ def skipped_condition(view: View) -> Iterator[Diagnostic]:
         condition, parent = _skipped(seen)
         if parent is None or not (parent.flow == "together" or (parent.flow == "choice" and not condition.index)):
             continue
-        yield Diagnostic(
-            "skipped-condition",
-            pair.key.span,
-            f"if `{pair.key.text}` skips {seen.shown_kind}, {parent.shown_kind} throws and the mission ends",
-            notes=(f"move `{pair.key.text}` to {parent.shown_kind}, or check it in a ScriptCondition",),
-        )
+        message = f"if `{pair.key.text}` skips {seen.shown_kind}, {parent.shown_kind} throws and the mission ends"
+        notes = (f"move `{pair.key.text}` to {parent.shown_kind}, or check it in a ScriptCondition",)
+        yield Diagnostic("skipped-condition", pair.key.span, message, notes=notes)
 
 
 def _skipped(seen: ResolvedNode) -> tuple[ResolvedNode, ResolvedNode | None]:

@@ -33,13 +33,10 @@ def prose_constraint(view: View) -> Iterator[Diagnostic]:
         proposals = (_as_clause(each, signals) for each in found)
         clauses = tuple(dict.fromkeys(clause for clause in proposals if clause is not None))
         keyword = found[0].keyword
-        yield Diagnostic(
-            "prose-constraint",
-            in_source(requirement.text, keyword),
-            f"no tool can check the prose after `{requirement.text.text[keyword.start : keyword.end]}`",
-            notes=_notes(clauses),
-            fixes=_fixes(view, requirement.text, symbol.name, clauses),
-        )
+        message = f"no tool can check the prose after `{requirement.text.text[keyword.start : keyword.end]}`"
+        fixes = _fixes(view, requirement.text, symbol.name, clauses)
+        notes = _notes(clauses)
+        yield Diagnostic("prose-constraint", in_source(requirement.text, keyword), message, notes=notes, fixes=fixes)
 
 
 def _not_checked(view: View, requirement: Requirement, name: str) -> list[Constraint]:

@@ -44,13 +44,10 @@ def _unknown(view: View, use: Use, match: QualityMatch) -> Iterator[Diagnostic]:
     meant = tuple(dict.fromkeys((*own, *match.near)))[:3]
     if not meant and not view.is_complete:
         return  # it may be declared on a line that could not be read
-    yield Diagnostic(
-        "unknown-quality",
-        use.span,
-        f"unknown quality `{use.name}`{did_you_mean(meant)}",
-        notes=() if meant else (f"declare your own quality with a line `quality {written(_last(use))}`",),
-        fixes=tuple(replace_fix(f"Replace `{use.name}` with `{name}`", _whole(view, use), name) for name in meant),
-    )
+    message = f"unknown quality `{use.name}`{did_you_mean(meant)}"
+    fixes = tuple(replace_fix(f"Replace `{use.name}` with `{name}`", _whole(view, use), name) for name in meant)
+    notes = () if meant else (f"declare your own quality with a line `quality {written(_last(use))}`",)
+    yield Diagnostic("unknown-quality", use.span, message, notes=notes, fixes=fixes)
 
 
 def _old(view: View, use: Use, match: QualityMatch) -> Diagnostic:
@@ -78,17 +75,14 @@ def _old(view: View, use: Use, match: QualityMatch) -> Diagnostic:
 def _ambiguous(view: View, use: Use, match: QualityMatch) -> Diagnostic:
     # The old name of a characteristic, `usability`, is read as what the characteristic is called now.
     usual = match.candidates[0].id if match.candidates[0].id in successors(fold(use.name)) else None
-    return Diagnostic(
-        "ambiguous-quality",
-        use.span,
-        f"ambiguous quality name `{use.name}`" + (f"; btq reads it as `{usual}`" if usual else ""),
-        notes=(match.explanation,) if match.explanation else (),
-        fixes=tuple(
-            replace_fix(f"Replace it with `{candidate.id}`: {candidate.name}", _whole(view, use), candidate.id)
-            for candidate in match.candidates[:4]
-        ),
-        severity=Severity.INFO if usual else None,
+    message = f"ambiguous quality name `{use.name}`" + (f"; btq reads it as `{usual}`" if usual else "")
+    fixes = tuple(
+        replace_fix(f"Replace it with `{candidate.id}`: {candidate.name}", _whole(view, use), candidate.id)
+        for candidate in match.candidates[:4]
     )
+    notes = (match.explanation,) if match.explanation else ()
+    severity = Severity.INFO if usual else None
+    return Diagnostic("ambiguous-quality", use.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
 def other_word(view: View, use: Use, rule: str, *, requirement: bool, safe: bool = True) -> Diagnostic:

@@ -101,13 +101,10 @@ def _second_async_sequence(seen: ResolvedNode, version: str) -> Diagnostic | Non
     if len(found) < 2:
         return None
     first, second, *_ = found
-    return Diagnostic(
-        "reactive-multiple-async",
-        second.node.head.span,
-        f"the engine refuses a second {second.tag} in {seen.shown_kind}",
-        related=(Related(Place(first.node.head.span), "first one"),),
-        severity=Severity.ERROR,
-    )
+    message = f"the engine refuses a second {second.tag} in {seen.shown_kind}"
+    related = (Related(Place(first.node.head.span), "first one"),)
+    severity = Severity.ERROR
+    return Diagnostic("reactive-multiple-async", second.node.head.span, message, related=related, severity=severity)
 
 
 def _is_async_sequence(kind: NodeKind) -> bool:
@@ -168,20 +165,17 @@ def _can_be_asked_again(view: View, seen: ResolvedNode) -> bool:
 
 def _not_asked_again(view: View, seen: ResolvedNode, guard: ResolvedNode, branch: Node, *, fixable: bool) -> Diagnostic:
     kind, reactive = seen.node.head, view.spelt("R?")
-    return Diagnostic(
-        "condition-without-recheck",
-        kind.span,
-        f"while {branch.shown} runs, {guard.shown} is not checked again",
-        related=(
-            Related(Place(guard.node.head.span), "checked once, and then not again until the Fallback has completed"),
-            Related(Place(branch.head.span), "not interrupted"),
-        ),
-        notes=(
-            f"{seen.shown_kind} resumes the running child; {reactive} starts with the first child at every tick",
-            f"keep {seen.shown_kind} if the choice is to be made only once",
-        ),
-        fixes=(replace_fix(f"Check at every tick: {reactive}", kind.span, _reactive(kind)),) if fixable else (),
+    message = f"while {branch.shown} runs, {guard.shown} is not checked again"
+    notes = (
+        f"{seen.shown_kind} resumes the running child; {reactive} starts with the first child at every tick",
+        f"keep {seen.shown_kind} if the choice is to be made only once",
     )
+    related = (
+        Related(Place(guard.node.head.span), "checked once, and then not again until the Fallback has completed"),
+        Related(Place(branch.head.span), "not interrupted"),
+    )
+    fixes = (replace_fix(f"Check at every tick: {reactive}", kind.span, _reactive(kind)),) if fixable else ()
+    return Diagnostic("condition-without-recheck", kind.span, message, related=related, notes=notes, fixes=fixes)
 
 
 def _reactive(kind: Word) -> str:

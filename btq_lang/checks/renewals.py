@@ -42,19 +42,16 @@ def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
         if shown is None:
             continue
         names = " and ".join(f"`{key}`" for key in keys)
-        yield found_at(
-            shown,
-            "guard-never-renewed",
-            f"no node writes {names} while {node.shown} runs, so the result is fixed when the node starts",
-            related=(
-                *(Related(writer.place, "writes it, but not while the node runs") for writer in writers[:3]),
-                Related(node.place, "guarded node"),
-            ),
-            notes=(
-                "write it beside the node: below the same Parallel, or before it in a reactive control node, `R->`",
-                "ignore this if the robot's program writes it; to check only at the start, write `needs`",
-            ),
+        message = f"no node writes {names} while {node.shown} runs, so the result is fixed when the node starts"
+        notes = (
+            "write it beside the node: below the same Parallel, or before it in a reactive control node, `R->`",
+            "ignore this if the robot's program writes it; to check only at the start, write `needs`",
         )
+        related = (
+            *(Related(writer.place, "writes it, but not while the node runs") for writer in writers[:3]),
+            Related(node.place, "guarded node"),
+        )
+        yield found_at(shown, "guard-never-renewed", message, related=related, notes=notes)
 
 
 def _watched(requirement: Requirement, claim: Claim) -> Iterable[Signal]:

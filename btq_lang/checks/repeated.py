@@ -48,14 +48,9 @@ def _in_clauses(view: View, clauses: tuple[syntax.NodeClause, ...]) -> Iterator[
 
 
 def _repeated(view: View, span: Span, first: Span, fixes: tuple[Fix, ...] = ()) -> Diagnostic:
-    return Diagnostic(
-        "named-twice",
-        span,
-        f"duplicate `{view.text[span.start : span.end]}` has no effect",
-        related=(Related(Place(first), "first one"),),
-        fixes=fixes,
-        tags=(Tag.UNNECESSARY,),
-    )
+    message = f"duplicate `{view.text[span.start : span.end]}` has no effect"
+    related = (Related(Place(first), "first one"),)
+    return Diagnostic("named-twice", span, message, related=related, fixes=fixes, tags=(Tag.UNNECESSARY,))
 
 
 def _names(view: View, clause: syntax.NodeClause) -> Iterator[tuple[object, Span, bool]]:

@@ -69,13 +69,9 @@ def unused_requirement(view: View) -> Iterator[Diagnostic]:
         return  # a quality or a node of this name, which probably means it, is reported
     if not view.is_read or view.look_up(lookups.names_unknown_requirements):
         return  # its user may be on a line that could not be read, or misspell it
-    yield Diagnostic(
-        "unused-requirement",
-        requirement.name.span,
-        f"unused requirement `{name}`: no `satisfies` or `apply` attaches it to a node",
-        notes=(f"attach it to a node with `satisfies {written(name)}` or `apply`",),
-        tags=(Tag.UNNECESSARY,),
-    )
+    message = f"unused requirement `{name}`: no `satisfies` or `apply` attaches it to a node"
+    notes = (f"attach it to a node with `satisfies {written(name)}` or `apply`",)
+    yield Diagnostic("unused-requirement", requirement.name.span, message, notes=notes, tags=(Tag.UNNECESSARY,))
 
 
 def requirement_without_text(view: View) -> Iterator[Diagnostic]:

@@ -31,13 +31,9 @@ def memory_lost(view: View) -> Iterator[Diagnostic]:
         if parent is None or _keeps(parent, seen):
             continue
         effect = "never succeeds" if seen.flow == "notices" else "holds nothing back"
-        yield Diagnostic(
-            "memory-lost",
-            seen.node.head.span,
-            f"{seen.shown} {effect} here: {parent.shown} resets it before it ticks it again",
-            related=(Related(Place(parent.node.head.span), "resets it"),),
-            notes=(_kept_elsewhere(seen),),
-        )
+        message = f"{seen.shown} {effect} here: {parent.shown} resets it before it ticks it again"
+        related = (Related(Place(parent.node.head.span), "resets it"),)
+        yield Diagnostic("memory-lost", seen.node.head.span, message, related=related, notes=(_kept_elsewhere(seen),))
 
 
 def last_success_lost(view: View) -> Iterator[Diagnostic]:
@@ -51,14 +47,11 @@ def last_success_lost(view: View) -> Iterator[Diagnostic]:
             continue
         value = seen.node.attribute(port.name)
         title, text = f"Let the first child follow the last one: `{port.name} = true`", f'{port.name} = "true"'
-        yield Diagnostic(
-            "last-success-lost",
-            seen.node.head.span,
-            f"{seen.shown} fails after its last child, {last.shown}, even if that succeeds",
-            related=(Related(Place(last.head.span), "its success is lost"),),
-            notes=(f"it succeeds with its last child only with `{port.name}`",),
-            fixes=(replace_fix(title, value.span, "true"),) if value else adding_fix(view, seen.node, title, text),
-        )
+        message = f"{seen.shown} fails after its last child, {last.shown}, even if that succeeds"
+        fixes = (replace_fix(title, value.span, "true"),) if value else adding_fix(view, seen.node, title, text)
+        notes = (f"it succeeds with its last child only with `{port.name}`",)
+        related = (Related(Place(last.head.span), "its success is lost"),)
+        yield Diagnostic("last-success-lost", seen.node.head.span, message, related=related, notes=notes, fixes=fixes)
 
 
 def _keeps(parent: ResolvedNode, child: ResolvedNode) -> bool:

@@ -122,10 +122,6 @@ def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[Found]:
                 related.append(Related(place, "the engine checks this"))
     for name, (signal, related) in reported.items():
         place = signal.place if signal.place.path == view.path else related[0].place
-        yield found_at(
-            place,
-            "signal-may-be-unset",
-            f"`{name}` has no initial value: the mission ends if a guard reads it before anything writes it",
-            related=tuple(related[:3]),
-            notes=("add an initial value: `initially …`",),
-        )
+        message = f"`{name}` has no initial value: the mission ends if a guard reads it before anything writes it"
+        notes = ("add an initial value: `initially …`",)
+        yield found_at(place, "signal-may-be-unset", message, related=tuple(related[:3]), notes=notes)

@@ -30,13 +30,10 @@ def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
         if swallower is None:
             continue
         above, reason = swallower
-        yield found_at(
-            place,
-            "swallowed-failure",
-            f"when {node.shown} fails because of this, {above.shown} {reason}",
-            related=(Related(above.place, "the failure stops here"), Related(node.place, "failing node")),
-            notes=("to stop the mission instead, write `on violation halt`",),
-        )
+        message = f"when {node.shown} fails because of this, {above.shown} {reason}"
+        related = (Related(above.place, "the failure stops here"), Related(node.place, "failing node"))
+        notes = ("to stop the mission instead, write `on violation halt`",)
+        yield found_at(place, "swallowed-failure", message, related=related, notes=notes)
 
 
 def _above(store: Store[Workspace], viewpoint: str, tree: str | None) -> Swallower | None:

@@ -74,13 +74,10 @@ def nested_too_deep(view: View) -> Iterator[Diagnostic]:
         if level <= _DEEPEST_OF_4_6:
             continue
         pin = f'if you run a later version, set `engine = "{view.target}"` in btq.toml'
-        yield Diagnostic(
-            "nested-too-deep",
-            seen.node.head.span,
-            f"BehaviorTree.CPP 4.6 reads at most {_DEEPEST_OF_4_6} levels of nodes",
-            notes=(OF_ITS_OWN,) if view.is_pinned else (OF_ITS_OWN, pin),
-            severity=None if view.is_pinned else Severity.WARNING,
-        )
+        message = f"BehaviorTree.CPP 4.6 reads at most {_DEEPEST_OF_4_6} levels of nodes"
+        notes = (OF_ITS_OWN,) if view.is_pinned else (OF_ITS_OWN, pin)
+        severity = None if view.is_pinned else Severity.WARNING
+        yield Diagnostic("nested-too-deep", seen.node.head.span, message, notes=notes, severity=severity)
         return
 
 
@@ -112,12 +109,9 @@ def recursive_tree(view: View) -> Iterator[Diagnostic]:
     places += [(seen.id.text, seen.id.span) for seen in view.seen.subtrees if seen.id is not None]
     span = next(span for called, span in places if called == circle[1])
     way = " → ".join(f"`{step}`" for step in circle)
-    yield Diagnostic(
-        "recursive-tree",
-        span,
-        f"the tree `{name}` contains itself" + (f": {way}" if len(circle) > 2 else ""),
-        notes=("BehaviorTree.CPP 4.9 and later refuse it, earlier versions crash; use Repeat or Retry instead",),
-    )
+    message = f"the tree `{name}` contains itself" + (f": {way}" if len(circle) > 2 else "")
+    notes = ("BehaviorTree.CPP 4.9 and later refuse it, earlier versions crash; use Repeat or Retry instead",)
+    yield Diagnostic("recursive-tree", span, message, notes=notes)
 
 
 def unused_tree(view: View) -> Iterator[Diagnostic]:
@@ -179,13 +173,9 @@ def _missing_main_trees(view: View, factory: Factory) -> Iterator[Diagnostic]:
     for main in factory.main if is_sure else ():
         if not view.defines(Kind.TREE, main):
             likely = did_you_mean(view.near(main, Kind.TREE))
-            yield Diagnostic(
-                "unknown-main-tree",
-                view.head,
-                f"the factory `{factory.name}` has no tree `{main}`, which is its main tree{likely}",
-                notes=("this is the first tree that it registers; `main` is in the project file",),
-                severity=Severity.ERROR,
-            )
+            message = f"the factory `{factory.name}` has no tree `{main}`, which is its main tree{likely}"
+            notes = ("this is the first tree that it registers; `main` is in the project file",)
+            yield Diagnostic("unknown-main-tree", view.head, message, notes=notes, severity=Severity.ERROR)
 
 
 def nothing_to_load(view: View) -> Iterator[Diagnostic]:
@@ -197,13 +187,8 @@ def nothing_to_load(view: View) -> Iterator[Diagnostic]:
         note = "what it defines is unknown"
         if pattern.startswith("package://"):
             note = f"btq looks for packages in this workspace, and in AMENT_PREFIX_PATH; {note}"
-        yield Diagnostic(
-            "missing-include",
-            view.head,
-            f"no file matches `{pattern}`, a pattern of the factory `{factory.name}`",
-            notes=(note,),
-            severity=Severity.HINT,
-        )
+        message = f"no file matches `{pattern}`, a pattern of the factory `{factory.name}`"
+        yield Diagnostic("missing-include", view.head, message, notes=(note,), severity=Severity.HINT)
 
 
 def tree_root_count(view: View) -> Iterator[Diagnostic]:

@@ -56,14 +56,10 @@ def _found(
         "nothing stops the robot, and `btq verify` can only check it in the logs afterwards; "
         "remove `on violation`, or write `on violation warn`"
     )
-    return Diagnostic(
-        "not-enforced",
-        place.span,
-        f"the engine cannot enforce {asked}: {why}",
-        related=related,
-        notes=() if is_bundled or requirement.classic else (note,),
-        severity=Severity.HINT if is_bundled else None,
-    )
+    message = f"the engine cannot enforce {asked}: {why}"
+    notes = () if is_bundled or requirement.classic else (note,)
+    severity = Severity.HINT if is_bundled else None
+    return Diagnostic("not-enforced", place.span, message, related=related, notes=notes, severity=severity)
 
 
 def _is_reported_otherwise(

@@ -89,13 +89,9 @@ def _in_switch(seen: ResolvedNode) -> Diagnostic | None:
 
 def _unreachable(child: Node | Verbatim, reason: str, culprit: Node | None) -> Diagnostic:
     span = child.head.span if isinstance(child, Node) else Span(child.start, child.end)
-    return Diagnostic(
-        "unreachable-child",
-        span,
-        f"{_shown(child)} can never run: {reason}",
-        related=(Related(Place(culprit.head.span), "reason"),) if culprit is not None else (),
-        tags=(Tag.UNNECESSARY,),
-    )
+    message = f"{_shown(child)} can never run: {reason}"
+    related = (Related(Place(culprit.head.span), "reason"),) if culprit is not None else ()
+    return Diagnostic("unreachable-child", span, message, related=related, tags=(Tag.UNNECESSARY,))
 
 
 def _shown(child: Node | Verbatim) -> str:

@@ -27,17 +27,14 @@ def version_3_file(view: View) -> Iterator[Diagnostic]:
     elif distribution is not None:
         declared = f", but {distribution.title()} has {ENGINES[distribution]}"
     start = view.item.start
-    yield Diagnostic(
-        "version-3-file",
-        Span(start, start + len("Root")),
-        f"this file is for version 3 of the engine: it has {shown}{declared}",
-        notes=(
-            f'if the robot runs version 3, write `engine = "{VERSION_3}"` or `nodes = ["nav2-humble"]` into btq.toml',
-            f"`btq check --target {DEFAULT_VERSION}` finds what version 4 refuses or takes otherwise, and `btq import` "
-            "translates the file",
-        ),
-        severity=Severity.ERROR if declared else None,
+    message = f"this file is for version 3 of the engine: it has {shown}{declared}"
+    notes = (
+        f'if the robot runs version 3, write `engine = "{VERSION_3}"` or `nodes = ["nav2-humble"]` into btq.toml',
+        f"`btq check --target {DEFAULT_VERSION}` finds what version 4 refuses or takes otherwise, and `btq import` "
+        "translates the file",
     )
+    severity = Severity.ERROR if declared else None
+    yield Diagnostic("version-3-file", Span(start, start + len("Root")), message, notes=notes, severity=severity)
 
 
 _SHOWN = 4

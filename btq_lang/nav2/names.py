@@ -34,12 +34,9 @@ def file_findings(parameters: Parameters) -> Iterator[Diagnostic]:
 def distribution_unknown(parameters: Parameters) -> Diagnostic:
     """Says that nothing tells for which distribution a file is."""
     choices = ", ".join(f'"nav2-{each}"' for each in DISTRIBUTIONS)
-    return Diagnostic(
-        "nav2-distribution",
-        parameters.place or Span(0, 0),
-        "the parameters of bt_navigator do not tell for which distribution of ROS 2 they are",
-        notes=(f"write `nodes = [...]` with one of {choices} into btq.toml",),
-    )
+    message = "the parameters of bt_navigator do not tell for which distribution of ROS 2 they are"
+    notes = (f"write `nodes = [...]` with one of {choices} into btq.toml",)
+    return Diagnostic("nav2-distribution", parameters.place or Span(0, 0), message, notes=notes)
 
 
 def parameter_findings(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]:

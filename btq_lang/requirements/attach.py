@@ -338,13 +338,9 @@ def _arguments(
         names = " and ".join(f"`{name}`" for name in missing)
         related = (Related(of_name.place, "defined here"),)
         example = ", ".join(f"{name} = …" for name in missing)
-        reader.complain(
-            "wrong-argument",
-            span,
-            f"`{of_name.name}` requires a value for {names}",
-            related=related,
-            notes=(f"write `{of_name.name}({example})`, or add a default to its definition",),
-        )
+        message = f"`{of_name.name}` requires a value for {names}"
+        notes = (f"write `{of_name.name}({example})`, or add a default to its definition",)
+        reader.complain("wrong-argument", span, message, related=related, notes=notes)
     if missing or not complete:
         return None
     values = ((each.name, given.get(each.name, each.default)) for each in of_name.parameters)
@@ -357,14 +353,9 @@ def _no_parameter(reader: Reader, of_name: model.Requirement, argument: syntax.A
     likely = [name for name in near(word.text, known) if syntax.is_name(name)]
     fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, name) for name in likely)
     notes = (f"its parameters: {', '.join(f'`{name}`' for name in known)}",) if known else ("it has no parameters",)
-    reader.complain(
-        "wrong-argument",
-        word.span,
-        f"`{of_name.name}` has no parameter `{word.text}`{did_you_mean(likely)}",
-        related=(Related(of_name.place, "defined here"),),
-        notes=notes,
-        fixes=fixes,
-    )
+    message = f"`{of_name.name}` has no parameter `{word.text}`{did_you_mean(likely)}"
+    related = (Related(of_name.place, "defined here"),)
+    reader.complain("wrong-argument", word.span, message, related=related, notes=notes, fixes=fixes)
 
 
 def _most_specific(of_name: model.Requirement, uses: Sequence[model.Use]) -> tuple[list[model.Use], Problems]:

@@ -169,16 +169,10 @@ class PathReader:
         related = tuple(Related(target.node.place, f"in the tree `{target.node.tree}`") for target in found[:_SHOWN])
         some = found[:_LOOKED_AT]
         paths = dict.fromkeys(path for target in some if (path := self._path_to(target)) is not None)
-        self.complain(
-            "ambiguous-path",
-            span,
-            f"ambiguous path `{shown}`: {len(found)} nodes match",
-            related=related,
-            notes=(
-                "a path must match one node; write `every` for all of them, in a clause or in `apply … to every …`",
-            ),
-            fixes=tuple(replace_fix(f"Write `{path}`", span, path) for path in list(paths)[:_SHOWN]),
-        )
+        message = f"ambiguous path `{shown}`: {len(found)} nodes match"
+        notes = ("a path must match one node; write `every` for all of them, in a clause or in `apply … to every …`",)
+        fixes = tuple(replace_fix(f"Write `{path}`", span, path) for path in list(paths)[:_SHOWN])
+        self.complain("ambiguous-path", span, message, related=related, notes=notes, fixes=fixes)
 
     def _missing(self, names: tuple[str, ...], shown: str) -> str:
         if len(names) > 1 and self.find(names[-1:]):

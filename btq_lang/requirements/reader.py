@@ -266,13 +266,10 @@ class Reader(PathReader):
         for at, character in enumerate(word.text):
             left, right = word.text[:at], word.text[at + 1 :]
             if character == "-" and self._is_declared(left) and self._is_declared(right):
-                self.complain(
-                    "subtraction-without-blanks",
-                    word.span,
-                    f"undefined name `{word.text}`; write spaces around `-` to subtract",
-                    notes=("without spaces `-` is part of the name",),
-                    fixes=(replace_fix(f"Write `{left} - {right}`", word.span, f"{left} - {right}", safe=True),),
-                )
+                message = f"undefined name `{word.text}`; write spaces around `-` to subtract"
+                fixes = (replace_fix(f"Write `{left} - {right}`", word.span, f"{left} - {right}", safe=True),)
+                notes = ("without spaces `-` is part of the name",)
+                self.complain("subtraction-without-blanks", word.span, message, notes=notes, fixes=fixes)
                 return True
         return False
 
