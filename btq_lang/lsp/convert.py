@@ -10,6 +10,7 @@ import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
+from itertools import chain
 from json.encoder import encode_basestring_ascii as as_json
 from typing import TYPE_CHECKING
 from urllib.parse import quote, unquote, urlsplit
@@ -32,6 +33,7 @@ if TYPE_CHECKING:  # all these import the checks; the server must start fast
     from btq_lang.workspace.workspace import Workspace
 
 
+Range = tuple[int, int, int, int]  # line and column of its start, then those of its end
 _MOST_KEPT = 2_000  # texts, of about 300 characters each
 
 
@@ -137,21 +139,23 @@ class Converter:
     def findings(self, workspace: Workspace, path: str, found: Findings) -> Json:
         """All diagnostics of a file, as a JSON list.
 
-        All of them are sent after every keystroke, but most items are unchanged or only moved: the JSON of an item is
-        cached until the item, or something it refers to, moves.
+        All of them are sent after every keystroke, but most items are unchanged or only moved: what an item says is
+        cached with lines counted from those of the items, and if only these differ, they are filled in again.
         """
         files, encoding = workspace.files, self.encoding
         written: list[str] = []
         for reported, starts in found.of_items:
             begins = [files[at].item_places[id(item)] for at, item in reported.items]
             ends = [files[at].source_lines.ends(span, encoding) for at, span in reported.fixed if at in files]
-            where = self._spellings, begins, ends
-            if reported.written is not None and reported.written[0] == where:
-                written.append(reported.written[1])
-                continue
-            written.append(self._diagnostics(workspace, path, reported.placed(starts)))
-            if reported.items:  # in files that are not edited it would only take memory
-                reported.written = where, written[-1]
+            lines = [*(line for line, _ in begins), 0]
+            where = self._spellings, [before for _, before in begins], ends
+            known: _Written | None = reported.written
+            if known is None or known.where != where:
+                template, ranges = self._diagnostics(workspace, path, reported.placed(starts))
+                known = _Written(where, template, list(zip(reported.counted_from(), ranges, strict=True)), lines)
+                if reported.items:  # in files that are not edited it would only take memory
+                    reported.written = known
+            written.append(known.at(lines))
         return Json(f"[{', '.join(written)}]")
 
     def problems(self, text: str, found: Iterable[LoadProblem]) -> Json:
@@ -166,33 +170,33 @@ class Converter:
             written.append(f'{{"range": {range_}, "severity": 1, "source": "btq", "message": {as_json(one.message)}}}')
         return Json(f"[{', '.join(written)}]")
 
-    def _diagnostics(self, workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> str:
-        """Diagnostics as JSON; their spans already refer to the original file.
-
-        When a line is added or removed, everything after it is written again with other line numbers: the text of each
-        diagnostic is cached, and all lines and columns are filled in at once.
+    def _diagnostics(self, workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> tuple[str, list[Range]]:
+        """Diagnostics as JSON with `%d` in place of lines and columns, and these, of their spans and related places;
+        their spans already refer to the original file.
         """
         written: list[str] = []
-        numbers: list[int] = []
+        ranges: list[Range] = []
         encoding, files = self.encoding, workspace.files
         ends = files[path].source_lines.ends
         for one in found:
-            numbers += ends(one.span, encoding)
+            ranges.append(ends(one.span, encoding))
             related: list[tuple[str, str]] = []
             for each in one.related:
                 at = each.place.path or path
                 # The place in a log is its start: a log has no lines.
-                numbers += files[at].source_lines.ends(each.place.span, encoding) if at in files else (0, 0, 0, 0)
+                ranges.append(files[at].source_lines.ends(each.place.span, encoding) if at in files else (0, 0, 0, 0))
                 related.append((self.uri(at), each.message))
             written.append(_template(one.rule, one.message, one.notes, one.severity, one.tags, tuple(related)))
-        return ", ".join(written) % tuple(numbers)
+        return ", ".join(written), ranges
 
     def _range_as_json(self, lines: LineIndex, span: Span) -> str:
         return _RANGE % lines.ends(span, self.encoding)
 
     def action(self, workspace: Workspace, path: str, action: Action, versions: Mapping[str, int] | None) -> Plain:
-        mends, preferred = action.diagnostic, {"isPreferred": True} if action.preferred else {}
-        found = {"diagnostics": [json.loads(self._diagnostics(workspace, path, [mends]))]} if mends is not None else {}
+        preferred, found = {"isPreferred": True} if action.preferred else {}, {}
+        if action.diagnostic is not None:
+            template, ranges = self._diagnostics(workspace, path, [action.diagnostic])
+            found = {"diagnostics": [json.loads(template % tuple(chain.from_iterable(ranges)))]}
         edit = self.workspace_edit(versions, (workspace, action.edits))
         return {"title": action.title, "kind": action.kind, **preferred, **found, "edit": edit}
 
@@ -259,6 +263,36 @@ class Converter:
                 f'"include": {as_json(one.include)}}}{more}}}'
             )
         return Json(f'{{"isIncomplete": false, "items": [{", ".join(items)}]}}')
+
+
+class _Written:
+    """The diagnostics of an item as JSON, wherever the items begin that it counts from.
+
+    Attributes:
+        where: what else the JSON depends on.
+    """
+
+    __slots__ = ("_lines", "_ranges", "_template", "_text", "where")
+
+    def __init__(self, where: object, template: str, ranges: list[tuple[int, Range]], lines: list[int]) -> None:
+        """ranges: what fills the template in, each after the index of what it counts from in `lines`."""
+        self.where = where
+        self._template = template
+        self._ranges = [
+            (at, (first - lines[at], start, last - lines[at], end)) for at, (first, start, last, end) in ranges
+        ]
+        self._lines: list[int] = []
+        self._text = ""
+
+    def at(self, lines: list[int]) -> str:
+        """The JSON where the items begin in these lines."""
+        if lines != self._lines:
+            numbers: list[int] = []
+            for at, (first, start, last, end) in self._ranges:
+                by = lines[at]
+                numbers += (first + by, start, last + by, end)
+            self._lines, self._text = lines, self._template % tuple(numbers)
+        return self._text
 
 
 @lru_cache(_MOST_KEPT)

@@ -7,7 +7,7 @@ after an edit, offsets of items that only moved are not recomputed until they ar
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from btq_lang.diagnostics.model import Diagnostic, Place, relocated
 
@@ -23,7 +23,7 @@ class Reported:
         items: the item, then the others that places count from, each after its file; empty if everything counts from
             the start of a file.
         fixed: the related places that do, after their files.
-        written: a cache for writers: their other inputs, and their output.
+        written: a cache for who writes them.
     """
 
     __slots__ = ("diagnostics", "fixed", "items", "written")
@@ -37,7 +37,7 @@ class Reported:
         others = [(at.path, at.anchor) for at in anchors if at.path is not None and at.anchor is not None]
         self.items = (*item, *others)
         self.fixed = tuple([(at.path, at.span) for at in related if at.path is not None and at.anchor is None])
-        self.written: tuple[object, str] | None = None
+        self.written: Any = None
 
     def __eq__(self, other: object) -> bool:
         """Whether both have equal diagnostics of the very same item."""
@@ -51,6 +51,18 @@ class Reported:
         """The starts of the items."""
         files = workspace.files
         return [files[path].start_of(item) for path, item in self.items]
+
+    def counted_from(self) -> list[int]:
+        """The index of the item that the span of each diagnostic counts from, followed by those of its related places;
+        -1 for one that counts from the start of its file.
+        """
+        numbers = {id(item): number for number, (_, item) in enumerate(self.items)}
+        found: list[int] = []
+        for one in self.diagnostics:
+            places = [each.place for each in one.related]
+            own = [0 if at.path is None else -1 for at in places]
+            found += (0, *(numbers.get(id(at.anchor), number) for at, number in zip(places, own, strict=True)))
+        return found
 
     def placed(self, starts: Sequence[int]) -> list[Diagnostic]:
         """The diagnostics, with every place counted from the start of its file; `starts`: of the items."""

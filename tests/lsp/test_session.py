@@ -222,6 +222,20 @@ def shown_by(session: Session, path: str, convert: Converter) -> str:
     return convert.findings(workspace, path, session.findings(path))
 
 
+@pytest.mark.parametrize("line", ["\n", "\n\n  # here\n"])
+def test_findings_follow_lines_that_come_and_go_in_either_file(folder: Path, line: str) -> None:
+    path, other = str(folder / "main.btq"), str(folder / "skills.btq")
+    texts = {path: MAIN.replace("Place", "Pick (form = 1)"), other: SKILLS}
+    session, convert = session_of(folder, texts), Converter()
+    shown_by(session, path, convert)
+    for edited in (other, path, other, path):
+        before = session.open[edited]
+        session.edit(edited, before.removeprefix(line) if before.startswith(line) else line + before)
+        shown = shown_by(session, path, convert)
+        assert shown == shown_by(session, path, Converter())
+        assert '"relatedInformation": [{' in shown
+
+
 def patched(data: list[int], changes: list[Change]) -> list[int]:
     """The integers after changes that all refer to the original; the changes are in order and do not overlap."""
     patched, end = [], 0
