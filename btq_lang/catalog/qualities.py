@@ -269,15 +269,29 @@ class _Index:
 
 def _of_edition(edition: Edition) -> Iterable[Quality]:
     for its, kind, source, model in MODELS:
-        for id_, definition, below in model if its == edition else ():
+        for id_, definition, below in _rows(model) if its == edition else ():
             yield Quality(id_, _name(id_), definition, None, kind, source)
             for part, part_definition in below:
                 yield Quality(f"{id_}.{part}", _name(part), part_definition, id_, kind, source)
-    for id_, definition, nearest, measures in ROBOTICS:
+    for id_, definition, ((nearest, measures),) in _rows(ROBOTICS):
         name = id_.replace("-", " ")
         yield Quality(id_, name, definition, None, "robotics", "robotics practice", nearest, measures)
-    for parent, part, definition in AI:
-        yield Quality(f"{parent}.{part}", _name(part), definition, parent, "ai", "ISO/IEC 25059:2023")
+    for parent, _, below in _rows(AI):
+        for part, definition in below:
+            yield Quality(f"{parent}.{part}", _name(part), definition, parent, "ai", "ISO/IEC 25059:2023")
+
+
+def _rows(outline: str) -> list[tuple[str, str, list[tuple[str, str]]]]:
+    """The lines of an outline, in two at their first `:`, each with those that are indented below it."""
+    rows: list[tuple[str, str, list[tuple[str, str]]]] = []
+    for line in outline.splitlines():
+        name, _, text = line.partition(":")
+        said = " ".join(text.split())
+        if name.startswith(" "):
+            rows[-1][2].append((name.strip(), said))
+        else:
+            rows.append((name, said, []))
+    return rows
 
 
 def _name(id_: str) -> str:
