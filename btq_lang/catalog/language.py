@@ -7,6 +7,7 @@ known here.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from functools import cache
 from typing import Final
 
@@ -67,320 +68,165 @@ _MODEL: Final = "a model: the interface of a node"
 _PLACE: Final = "at the top level of a file, the interface of {}; in a tree, the category of the node that follows"
 _SPAN: Final = "from FindPart succeeds to Sort succeeds takes at most 12 s"
 
-# By group: the words, how they are written, the short description in a list, and what they mean.
-_TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
-    "item": (
-        ("BehaviorTree", "BehaviorTree Deliver", "a tree", "a tree: its ports, and one node with all below it"),
-        ("Root", "Root Deliver", "the main tree", "names the main tree: the tree that the engine runs"),
-        (
-            "include",
-            'include "skills.btq"',
-            "another file's names",
-            "makes the trees, models and requirements of another file available, a .btq file or BehaviorTree.CPP XML",
-        ),
-        (
-            "QualityReq",
-            'QualityReq rq1 : reliability "In time"',
-            "a requirement",
-            "a requirement: its ID, its quality, a title, and clauses with its demands",
-        ),
-        (
-            "signal",
-            "signal battery : % from {battery_level} level initially 100 %",
-            "a measured value",
-            "a value on the robot's blackboard, with its unit, for use in conditions",
-        ),
-        (
-            "context",
-            "context humans_near : distance < 2 m",
-            "a named condition",
-            "a situation that conditions can name",
-        ),
-        (
-            "apply",
-            "apply slow to every MoveBase except ToDock",
-            "a requirement for many nodes",
-            "attaches a requirement to nodes anywhere in the mission",
-        ),
-        (
-            "quality",
-            'quality hygiene : safety "Nothing is carried along"',
-            "a custom quality",
-            "your own quality, below a known one",
-        ),
-        (
-            "qualities",
-            "qualities iso25010-2011",
-            "the edition of the quality model",
-            "the edition of ISO/IEC 25010 whose names the file uses",
-        ),
-        (
-            "TreeNodesModel",
-            "TreeNodesModel",
-            "models, and their place in the XML",
-            "models that the XML contains at this place; without it they come last",
-        ),
-        ("Action", "Action MoveBase", _MODEL, _PLACE.format("an action")),
-        ("Condition", "Condition BatteryLow", _MODEL, _PLACE.format("a condition")),
-        ("Control", "Control RoundRobin", _MODEL, _PLACE.format("a node with children")),
-        ("Decorator", "Decorator RateController", _MODEL, _PLACE.format("a node with one child")),
-        ("SubTree", "SubTree PickPlace", "a model: the ports of a tree", _PLACE.format("a tree")),
-        ("xml", "xml '<Extra/>'", "unchanged XML", "one XML element, written unchanged by `btq build`"),
-    ),
-    "part of a signal": (
-        ("level", "signal charge : % level", "goes down with use", "its use is the initial minus the final value"),
-        ("counter", "signal energy : Wh counter", "goes up with use", "its use is the final minus the initial value"),
-        ("gauge", "signal speed : m/s gauge", "a plain value", "a value that is not used up"),
-        (
-            "fresh within",
-            "signal speed : m/s fresh within 200 ms",
-            "its age",
-            "in a log an older reading counts as unknown; guards read the latest one, whatever its age",
-        ),
-        (
-            "initially",
-            "signal speed : m/s initially 0 m/s",
-            "before the first reading",
-            "its value before the first reading, which guards read at first",
-        ),
-    ),
-    "part of a model": (
-        ("input", "input goal : Pose", "a port", "a port that the node reads"),
-        ("output", "output path : Path", "a port", "a port that the node writes"),
-        ("inout", "inout queue : Queue", "a port", "a port that the node reads and writes"),
-        ("metadata", 'metadata (author = "me")', "for other tools", "values for other tools: `<Metadata>`"),
-    ),
-    "clause of a node": (
-        (
-            "satisfices",
-            "satisfices safety, comfort",
-            "mark a concern: a quality",
-            "early design: the node affects a quality, not yet by a measurable amount",
-        ),
-        (
-            "satisfies",
-            "satisfies in_time",
-            "attach a requirement",
-            "late design: a measurable requirement holds for the node",
-        ),
-        (
-            "tags",
-            "tags driving, indoor",
-            "mark the node for `apply`",
-            "makes the node one of those that `every node tagged driving` selects",
-        ),
-        ("parameters", "parameters station = home", "ports, in the classic syntax", "the node's ports"),
-    ),
-    "attribute of a node": (
-        (
-            "name",
-            'MoveBase (name = "ToBench")',
-            "instance name",
-            "the name of this one node; short: `MoveBase ToBench`",
-        ),
-        (
-            "ID",
-            "SubTree (ID = PickPlace)",
-            "the kind of node",
-            "the node's kind, or a SubTree's tree; short: `SubTree PickPlace`",
-        ),
-        (
-            "Quality",
-            "MoveBase (satisfices Quality = safety)",
-            "a quality, in the classic syntax",
-            "a concern of the node; short: `satisfices safety`",
-        ),
-    ),
-    "attribute of the file": (
-        (
-            "BTCPP_format",
-            'Root Deliver (BTCPP_format = "4")',
-            "the version of the XML",
-            "the version of the format; `btq build` writes 4 by default",
-        ),
-        (
-            "main_tree_to_execute",
-            'Root (main_tree_to_execute = "Deliver")',
-            "the main tree",
-            "the tree that runs; short: `Root Deliver`",
-        ),
-        (
-            "ros_pkg",
-            'include "trees.xml" (ros_pkg = "my_robot")',
-            "the package of the file",
-            "the ROS package below which the engine looks for an included file",
-        ),
-    ),
-    "classic form": (
-        (
-            "description",
-            'QualityReq ID = "rq1" description = "In time"',
-            "a requirement's text",
-            'what is required, in words; short: `QualityReq rq1 : time-behaviour "In time"`',
-        ),
-        (
-            "SuccessIf",
-            'QualityReq ID = "rq1" description = "SuccessIf takes at most 30 s"',
-            "a hard constraint in a description",
-            "what must hold: `btq build` enforces a clause after it; prose is for people only",
-        ),
-        (
-            "FailureIf",
-            'QualityReq ID = "rq1" description = "FailureIf takes more than 30 s"',
-            "a hard constraint in a description",
-            "what must not happen: `btq build` enforces a clause after it; prose is for people only",
-        ),
-    ),
-    "subject": (
-        ("mission", "mission takes at most 1 h", "subject: the whole run", "the whole run: the main tree"),
-        ("every", "every MoveArm takes at most 8 s", "subject: each node of a kind", "each node of an ID or a kind"),
-        ("from", _SPAN, "subject: between two events", "the time from an event to the next event after `to`"),
-        ("to", _SPAN, "the later event", "the event that ends the time"),
-        (
-            "sum of",
-            "sum of ToBox, ToHome takes at most 120 s",
-            "subject: several nodes together",
-            "the durations of several nodes in one run, added up",
-        ),
-    ),
-    "claim": tuple(phrase for verb in VERBS.values() for phrase in verb.phrases),
-    "bound": (
-        ("at most", "takes at most 30 s", "an upper bound", "this or less"),
-        ("at least", "takes at least 1 s", "a lower bound", "this or more"),
-        ("less than", "takes less than 30 s", "an upper bound", "less than this"),
-        ("more than", "takes more than 1 s", "a lower bound", "more than this"),
-        (
-            "between",
-            "takes between 0.2 s and 1 s",
-            "a lower and an upper bound",
-            "from the first value to the second",
-        ),
-        ("within", "succeeds within 30 s", "an upper bound", "no later than this"),
-        ("if", "takes at most 6 min if night else 8 min", "a value for a situation", "the value while that holds"),
-        ("else", "takes at most 6 min if night else 8 min", "the value otherwise", "the value in all other situations"),
-        (
-            "per",
-            "tries at most 3 per PickTray",
-            "counting period",
-            "the period for counting: a node's activation, or a time",
-        ),
-        ("of", "uses at most 20 Wh of energy", "of what", "the signal that is used, or what a probability counts"),
-        ("after", "starts within 2 s after Batch succeeds", "since when", "the event that starts a time"),
-    ),
-    "event": (
-        ("starts", "follows Pick starts", "it leaves IDLE", "the node leaves IDLE"),
-        ("succeeds", "follows Pick succeeds", "SUCCESS", "the node returns SUCCESS"),
-        ("fails", "follows Pick fails", "FAILURE", "the node returns FAILURE"),
-        ("finishes", "follows Pick finishes", "SUCCESS or FAILURE", "the node returns SUCCESS or FAILURE"),
-        (
-            "halts",
-            "follows Pick halts",
-            "it is halted while it runs",
-            "another node or the program halts the node while it runs",
-        ),
-        ("when", "starts within 1 s after when humans_near", "a condition", "a condition becomes true"),
-    ),
-    "clause": (
-        (
-            "while",
-            "while humans_near",
-            "only while a condition holds",
-            "counts only the time (or the activations) in which the condition holds",
-        ),
-        (
-            "when",
-            "when fragile",
-            "only when a condition holds",
-            "counts only activations at whose start the condition holds",
-        ),
-        (
-            "in at least",
-            "in at least 98 % of activations",
-            "how often",
-            "allows some violations; also `of runs` and `with probability >= 98 %`",
-        ),
-        ("with probability", "with probability >= 98 % of runs", "how often", "allows some violations"),
-        ("activations", "in at least 98 % of activations", "from its start to its end", "each time that the node runs"),
-        ("runs", "in at least 98 % of runs", "whole missions", "each time that the mission runs"),
-        (
-            "confidence",
-            "confidence 95 %",
-            "how sure",
-            "the required statistical confidence of a verdict on the probability",
-        ),
-        ("over last", "over last 200 activations", "window", "ignores older ones; also `over last 7 d`"),
-        (
-            "on violation",
-            "on violation fail",
-            "what happens: fail, halt, warn or log",
-            "what the robot does: `fail` the node, `halt` the mission, `warn` or `log`; default: only monitored",
-        ),
-        (
-            "goal",
-            "goal 20 s",
-            "a better value",
-            "a value better than the bound; it never changes a verdict",
-        ),
-        ("because", 'because "visitors do not know the robot"', "the reason", "the reason"),
-        (
-            "verified by",
-            "verified by review",
-            "monitor, analysis, test or review",
-            "the verification method: `monitor`, `test`, `analysis` or `review`",
-        ),
-    ),
-    "action": (
-        (
-            "fail",
-            "on violation fail",
-            "stop the node",
-            "stops the node and makes it fail; its parent handles the failure",
-        ),
-        (
-            "halt",
-            "on violation halt",
-            "stop the mission",
-            "halts the mission at the next tick, even if a parent handles the failure",
-        ),
-        ("warn", "on violation warn", "notify", "notifies the operators; nothing stops"),
-        ("log", "on violation log", "record", "writes to the log; nothing stops"),
-    ),
-    "method": (
-        ("monitor", "verified by monitor", "from logs", "tools check it from logs; the default"),
-        ("analysis", "verified by analysis", "by people", "people analyze it; no tool computes it"),
-        ("test", "verified by test", "by people", "a test shows it; no tool computes it"),
-        ("review", "verified by review", "by people", "people review it; no tool computes it"),
-    ),
-    "selector": (
-        ("every", "apply slow to every MoveBase", "all nodes of a kind", "all nodes of an ID or a kind"),
-        ("under", "apply slow to every MoveBase under Dock", "below a node", "only the nodes below another node"),
-        ("every node tagged", "apply slow to every node tagged driving", "by a tag", "all nodes with a tag"),
-        ("except", "apply slow to every MoveBase except ToDock", "all but these", "excludes these nodes"),
-    ),
-    "part of a condition": (
-        ("and", "needs calm and battery > 10 %", "both", "both sides hold"),
-        ("or", "needs calm or battery > 10 %", "one of them", "one of the sides holds"),
-        ("not", "needs not calm", "it does not hold", "the condition after it does not hold"),
-        ("node", "keeps calm or not node FollowPath", "a node runs", "that node is running"),
-        ("true", "keeps door == true", "a bool value", "a value of a bool signal"),
-        ("false", "keeps door == false", "a bool value", "a value of a bool signal"),
-        *(
-            (name, f"leaves {name}(force) < 8 N", what, f"{what}, over the node's activation")
-            for name, what in (
-                ("max", "the largest value"),
-                ("min", "the smallest value"),
-                ("mean", "the mean"),
-                ("p95", "the 95th percentile"),
-                ("stddev", "the standard deviation"),
-                ("change", "how much it changes"),
-                ("count", "the number of readings"),
-            )
-        ),
-    ),
-}
-PHRASES: Final = tuple(
-    Phrase(words, part, form, brief, meaning) for part, rows in _TABLE.items() for words, form, brief, meaning in rows
-)
+_CLAIMS: Final = "\n".join("    " + " | ".join(phrase) for verb in VERBS.values() for phrase in verb.phrases)
+
+# By group, a line a phrase: its words, how they are written, the short description in a list, and what they mean.  A
+# line that is too long for the page goes on after a backslash.
+_TABLE: Final = f"""\
+item
+    BehaviorTree | BehaviorTree Deliver | a tree | a tree: its ports, and one node with all below it
+    Root | Root Deliver | the main tree | names the main tree: the tree that the engine runs
+    include | include "skills.btq" | another file's names | \
+        makes the trees, models and requirements of another file available, a .btq file or BehaviorTree.CPP XML
+    QualityReq | QualityReq rq1 : reliability "In time" | a requirement | \
+        a requirement: its ID, its quality, a title, and clauses with its demands
+    signal | signal battery : % from {{battery_level}} level initially 100 % | a measured value | \
+        a value on the robot's blackboard, with its unit, for use in conditions
+    context | context humans_near : distance < 2 m | a named condition | a situation that conditions can name
+    apply | apply slow to every MoveBase except ToDock | a requirement for many nodes | \
+        attaches a requirement to nodes anywhere in the mission
+    quality | quality hygiene : safety "Nothing is carried along" | a custom quality | \
+        your own quality, below a known one
+    qualities | qualities iso25010-2011 | the edition of the quality model | \
+        the edition of ISO/IEC 25010 whose names the file uses
+    TreeNodesModel | TreeNodesModel | models, and their place in the XML | \
+        models that the XML contains at this place; without it they come last
+    Action | Action MoveBase | {_MODEL} | {_PLACE.format("an action")}
+    Condition | Condition BatteryLow | {_MODEL} | {_PLACE.format("a condition")}
+    Control | Control RoundRobin | {_MODEL} | {_PLACE.format("a node with children")}
+    Decorator | Decorator RateController | {_MODEL} | {_PLACE.format("a node with one child")}
+    SubTree | SubTree PickPlace | a model: the ports of a tree | {_PLACE.format("a tree")}
+    xml | xml '<Extra/>' | unchanged XML | one XML element, written unchanged by `btq build`
+part of a signal
+    level | signal charge : % level | goes down with use | its use is the initial minus the final value
+    counter | signal energy : Wh counter | goes up with use | its use is the final minus the initial value
+    gauge | signal speed : m/s gauge | a plain value | a value that is not used up
+    fresh within | signal speed : m/s fresh within 200 ms | its age | \
+        in a log an older reading counts as unknown; guards read the latest one, whatever its age
+    initially | signal speed : m/s initially 0 m/s | before the first reading | \
+        its value before the first reading, which guards read at first
+part of a model
+    input | input goal : Pose | a port | a port that the node reads
+    output | output path : Path | a port | a port that the node writes
+    inout | inout queue : Queue | a port | a port that the node reads and writes
+    metadata | metadata (author = "me") | for other tools | values for other tools: `<Metadata>`
+clause of a node
+    satisfices | satisfices safety, comfort | mark a concern: a quality | \
+        early design: the node affects a quality, not yet by a measurable amount
+    satisfies | satisfies in_time | attach a requirement | late design: a measurable requirement holds for the node
+    tags | tags driving, indoor | mark the node for `apply` | \
+        makes the node one of those that `every node tagged driving` selects
+    parameters | parameters station = home | ports, in the classic syntax | the node's ports
+attribute of a node
+    name | MoveBase (name = "ToBench") | instance name | the name of this one node; short: `MoveBase ToBench`
+    ID | SubTree (ID = PickPlace) | the kind of node | the node's kind, or a SubTree's tree; short: `SubTree PickPlace`
+    Quality | MoveBase (satisfices Quality = safety) | a quality, in the classic syntax | \
+        a concern of the node; short: `satisfices safety`
+attribute of the file
+    BTCPP_format | Root Deliver (BTCPP_format = "4") | the version of the XML | \
+        the version of the format; `btq build` writes 4 by default
+    main_tree_to_execute | Root (main_tree_to_execute = "Deliver") | the main tree | \
+        the tree that runs; short: `Root Deliver`
+    ros_pkg | include "trees.xml" (ros_pkg = "my_robot") | the package of the file | \
+        the ROS package below which the engine looks for an included file
+classic form
+    description | QualityReq ID = "rq1" description = "In time" | a requirement's text | \
+        what is required, in words; short: `QualityReq rq1 : time-behaviour "In time"`
+    SuccessIf | QualityReq ID = "rq1" description = "SuccessIf takes at most 30 s" | \
+        a hard constraint in a description | \
+        what must hold: `btq build` enforces a clause after it; prose is for people only
+    FailureIf | QualityReq ID = "rq1" description = "FailureIf takes more than 30 s" | \
+        a hard constraint in a description | \
+        what must not happen: `btq build` enforces a clause after it; prose is for people only
+subject
+    mission | mission takes at most 1 h | subject: the whole run | the whole run: the main tree
+    every | every MoveArm takes at most 8 s | subject: each node of a kind | each node of an ID or a kind
+    from | {_SPAN} | subject: between two events | the time from an event to the next event after `to`
+    to | {_SPAN} | the later event | the event that ends the time
+    sum of | sum of ToBox, ToHome takes at most 120 s | subject: several nodes together | \
+        the durations of several nodes in one run, added up
+claim
+{_CLAIMS}
+bound
+    at most | takes at most 30 s | an upper bound | this or less
+    at least | takes at least 1 s | a lower bound | this or more
+    less than | takes less than 30 s | an upper bound | less than this
+    more than | takes more than 1 s | a lower bound | more than this
+    between | takes between 0.2 s and 1 s | a lower and an upper bound | from the first value to the second
+    within | succeeds within 30 s | an upper bound | no later than this
+    if | takes at most 6 min if night else 8 min | a value for a situation | the value while that holds
+    else | takes at most 6 min if night else 8 min | the value otherwise | the value in all other situations
+    per | tries at most 3 per PickTray | counting period | the period for counting: a node's activation, or a time
+    of | uses at most 20 Wh of energy | of what | the signal that is used, or what a probability counts
+    after | starts within 2 s after Batch succeeds | since when | the event that starts a time
+event
+    starts | follows Pick starts | it leaves IDLE | the node leaves IDLE
+    succeeds | follows Pick succeeds | SUCCESS | the node returns SUCCESS
+    fails | follows Pick fails | FAILURE | the node returns FAILURE
+    finishes | follows Pick finishes | SUCCESS or FAILURE | the node returns SUCCESS or FAILURE
+    halts | follows Pick halts | it is halted while it runs | another node or the program halts the node while it runs
+    when | starts within 1 s after when humans_near | a condition | a condition becomes true
+clause
+    while | while humans_near | only while a condition holds | \
+        counts only the time (or the activations) in which the condition holds
+    when | when fragile | only when a condition holds | counts only activations at whose start the condition holds
+    in at least | in at least 98 % of activations | how often | \
+        allows some violations; also `of runs` and `with probability >= 98 %`
+    with probability | with probability >= 98 % of runs | how often | allows some violations
+    activations | in at least 98 % of activations | from its start to its end | each time that the node runs
+    runs | in at least 98 % of runs | whole missions | each time that the mission runs
+    confidence | confidence 95 % | how sure | the required statistical confidence of a verdict on the probability
+    over last | over last 200 activations | window | ignores older ones; also `over last 7 d`
+    on violation | on violation fail | what happens: fail, halt, warn or log | \
+        what the robot does: `fail` the node, `halt` the mission, `warn` or `log`; default: only monitored
+    goal | goal 20 s | a better value | a value better than the bound; it never changes a verdict
+    because | because "visitors do not know the robot" | the reason | the reason
+    verified by | verified by review | monitor, analysis, test or review | \
+        the verification method: `monitor`, `test`, `analysis` or `review`
+action
+    fail | on violation fail | stop the node | stops the node and makes it fail; its parent handles the failure
+    halt | on violation halt | stop the mission | \
+        halts the mission at the next tick, even if a parent handles the failure
+    warn | on violation warn | notify | notifies the operators; nothing stops
+    log | on violation log | record | writes to the log; nothing stops
+method
+    monitor | verified by monitor | from logs | tools check it from logs; the default
+    analysis | verified by analysis | by people | people analyze it; no tool computes it
+    test | verified by test | by people | a test shows it; no tool computes it
+    review | verified by review | by people | people review it; no tool computes it
+selector
+    every | apply slow to every MoveBase | all nodes of a kind | all nodes of an ID or a kind
+    under | apply slow to every MoveBase under Dock | below a node | only the nodes below another node
+    every node tagged | apply slow to every node tagged driving | by a tag | all nodes with a tag
+    except | apply slow to every MoveBase except ToDock | all but these | excludes these nodes
+part of a condition
+    and | needs calm and battery > 10 % | both | both sides hold
+    or | needs calm or battery > 10 % | one of them | one of the sides holds
+    not | needs not calm | it does not hold | the condition after it does not hold
+    node | keeps calm or not node FollowPath | a node runs | that node is running
+    true | keeps door == true | a bool value | a value of a bool signal
+    false | keeps door == false | a bool value | a value of a bool signal
+    max | leaves max(force) < 8 N | the largest value | the largest value, over the node's activation
+    min | leaves min(force) < 8 N | the smallest value | the smallest value, over the node's activation
+    mean | leaves mean(force) < 8 N | the mean | the mean, over the node's activation
+    p95 | leaves p95(force) < 8 N | the 95th percentile | the 95th percentile, over the node's activation
+    stddev | leaves stddev(force) < 8 N | the standard deviation | the standard deviation, over the node's activation
+    change | leaves change(force) < 8 N | how much it changes | how much it changes, over the node's activation
+    count | leaves count(force) < 8 N | the number of readings | the number of readings, over the node's activation
+"""
+
+
+def _phrases(outline: str) -> Iterator[Phrase]:
+    part = ""
+    for line in outline.splitlines():
+        if line.startswith(" "):
+            words, form, brief, meaning = map(str.strip, line.split(" | "))
+            yield Phrase(words, part, form, brief, meaning)
+        else:
+            part = line
+
+
+PHRASES: Final = tuple(_phrases(_TABLE))
 
 # Signs: the sign, how it is written, and what it means.
 SIGNS: Final = (
