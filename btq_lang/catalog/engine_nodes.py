@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.catalog.kinds import RESULT, Direction, NodeKind, PortKind
+from btq_lang.catalog.kinds import RESULT, Direction, NodeKind, PortKind, action, control, decorator
 from btq_lang.catalog.versions import VERSION_3
 
 if TYPE_CHECKING:
@@ -45,10 +45,8 @@ def _key(name: str, direction: Direction, type_: str, doc: str, *, removes: bool
 # ---- control nodes ----
 
 _CONTROL: Final = (
-    NodeKind(
+    control(
         "Sequence",
-        "Control",
-        (1, None),
         "Ticks its children in order until one fails.",
         "SUCCESS when all children have succeeded, FAILURE as soon as one fails. While a child is RUNNING, "
         "the next tick resumes that child and does not tick the children before it, so a condition in front "
@@ -58,10 +56,8 @@ _CONTROL: Final = (
         flow="sequence",
         since=VERSION_3,
     ),
-    NodeKind(
+    control(
         "Fallback",
-        "Control",
-        (1, None),
         "Ticks its children in order until one succeeds.",
         "SUCCESS as soon as a child succeeds, FAILURE when all have failed. While a child is RUNNING, the "
         "next tick resumes that child: a condition that failed before it is not checked again and cannot "
@@ -70,17 +66,15 @@ _CONTROL: Final = (
         flow="fallback",
         since=VERSION_3,
     ),
-    NodeKind(
+    control(
         "Parallel",
-        "Control",
-        (1, None),
         "Ticks all its children and succeeds or fails by counting.",
         "SUCCESS when success_count children have succeeded, FAILURE when failure_count have failed or "
         "success_count is out of reach; it then halts the children that still run. A negative count counts "
         "from the end: -1 means all children. The children share one thread: they are ticked one after the "
         "other, never at the same time. A count above the number of children throws at the first tick. With "
         "the default success_count, skipped children count as succeeded.",
-        (
+        ports=(
             _input("success_count", "int", "How many children must succeed; -1 means all", "-1", role="successes"),
             _input("failure_count", "int", "How many failures make it fail; -1 means all", "1", role="failures"),
         ),
@@ -88,22 +82,18 @@ _CONTROL: Final = (
         flow="parallel",
         since=VERSION_3,
     ),
-    NodeKind(
+    control(
         "ParallelAll",
-        "Control",
-        (1, None),
         "Ticks all its children to their end, then counts the failures.",
         "Unlike Parallel it halts no child: it completes when every child has. FAILURE when max_failures or "
         "more have failed, although the name suggests more than max_failures; so 0 always fails, and -1 means "
         "all children. If all children are skipped, so is the node.",
-        (_input("max_failures", "int", "How many failures make it fail; -1 means all", "1", role="failures"),),
+        ports=(_input("max_failures", "int", "How many failures make it fail; -1 means all", "1", role="failures"),),
         symbols=("All||", "All⇉"),
         flow="parallel-all",
     ),
-    NodeKind(
+    control(
         "ReactiveSequence",
-        "Control",
-        (1, None),
         "A Sequence that starts with its first child at every tick.",
         "Conditions in front of an action are checked at every tick while the action runs, and one that fails "
         "halts it: this is how to keep a condition. Give it only one asynchronous child, the last one: "
@@ -115,10 +105,8 @@ _CONTROL: Final = (
         inspects_children=True,
         since=VERSION_3,
     ),
-    NodeKind(
+    control(
         "ReactiveFallback",
-        "Control",
-        (1, None),
         "A Fallback that starts with its first child at every tick.",
         "A condition in front of an action is checked at every tick while the action runs, and halts it when "
         "it becomes true. Give it only one asynchronous child, the last one: when a child returns RUNNING, "
@@ -128,10 +116,8 @@ _CONTROL: Final = (
         reactive=True,
         since=VERSION_3,
     ),
-    NodeKind(
+    control(
         "SequenceWithMemory",
-        "Control",
-        (1, None),
         "A Sequence that resumes, after a failure, with the child that failed.",
         "It does not tick children that have succeeded again before the whole has succeeded: neither a "
         "failure nor a halt takes it back to the first child. It returns RUNNING between two children that "
@@ -141,10 +127,8 @@ _CONTROL: Final = (
         flow="sequence",
         keeps_place=True,
     ),
-    NodeKind(
+    control(
         "AsyncSequence",
-        "Control",
-        (1, None),
         "A Sequence that other nodes can interrupt between two children.",
         "It returns RUNNING after each child that succeeds at once, and continues with the next child at the "
         "next tick. Otherwise it is a Sequence.",
@@ -152,10 +136,8 @@ _CONTROL: Final = (
         execution="asynchronous",
         flow="sequence",
     ),
-    NodeKind(
+    control(
         "AsyncFallback",
-        "Control",
-        (1, None),
         "A Fallback that other nodes can interrupt between two children.",
         "It returns RUNNING after each child that fails at once, and continues with the next child at the "
         "next tick. Otherwise it is a Fallback.",
@@ -163,42 +145,39 @@ _CONTROL: Final = (
         execution="asynchronous",
         flow="fallback",
     ),
-    NodeKind(
+    control(
         "IfThenElse",
-        "Control",
-        (2, 3),
         "Ticks its second child if its first child succeeds, else its third.",
         "The first child is the condition: it is ticked until it completes, and not again while the chosen "
         "branch runs. Without a third child a failing condition is a FAILURE. A skipped condition throws. The "
         "node requires two or three children, which the engine checks only at the first tick.",
+        children=(2, 3),
         flow="choice",
         late_count=True,
         since=VERSION_3,
     ),
-    NodeKind(
+    control(
         "WhileDoElse",
-        "Control",
-        (2, 3),
         "Like IfThenElse, but checks the condition at every tick.",
         "When the condition changes, the running branch is halted and the other one ticked. Without a third "
         "child a failing condition is a FAILURE, which also halts the branch. A skipped condition throws. The "
         "node requires two or three children, which the engine checks only at the first tick.",
+        children=(2, 3),
         flow="choice",
         reactive=True,
         late_count=True,
         since=VERSION_3,
     ),
     *(
-        NodeKind(
+        control(
             f"Switch{cases}",
-            "Control",
-            (cases + 1, cases + 1),
             f"Chooses a child by comparing a variable with {cases} cases; the last is the default.",
             f"One child for each of the {cases} cases and a last one, the default. The variable is compared with "
             "case_1, case_2 … as text, as numbers and as names of enums, at every tick: when another case matches, the "
             "running child is halted. If the variable does not exist or no case matches, the last child runs. The "
             "engine checks the number of children only at the first tick.",
-            (
+            children=(cases + 1, cases + 1),
+            ports=(
                 _input("variable", _STRING, "The value to compare, usually a blackboard entry"),
                 *(_input(f"case_{n}", _STRING, f"The value that chooses child {n}") for n in range(1, cases + 1)),
             ),
@@ -209,15 +188,14 @@ _CONTROL: Final = (
         )
         for cases in range(2, 7)
     ),
-    NodeKind(
+    control(
         "TryCatch",
-        "Control",
-        (2, None),
         "Ticks its children as a Sequence, and the last one only if another fails.",
         "All children but the last are the try block. If it succeeds, so does the node, and the last child is "
         "never ticked. If it fails, the last child cleans up and the node returns FAILURE, whatever the last "
         "child returns.",
-        (_input("catch_on_halt", "bool", "Also clean up when the node is halted within the try block", "false"),),
+        children=(2, None),
+        ports=(_input("catch_on_halt", "bool", "Also clean up when the node is halted within the try block", "false"),),
         flow="try",
         since="4.9",
     ),
@@ -227,16 +205,14 @@ _CONTROL: Final = (
 
 
 def _loop(suffix: str, type_: str, queue_before: str, aliases: tuple[str, ...] = ()) -> NodeKind:
-    return NodeKind(
+    return decorator(
         f"Loop{suffix}",
-        "Decorator",
-        (1, 1),
         f"Ticks its child once for each item of a queue of {type_}.",
         "Takes an item from the front of the queue, writes it to value, and ticks the child with it; it "
         "returns RUNNING between two items, so it handles one item per tick. A child that fails ends the loop "
         "with FAILURE. If the queue is empty, also at the end of a loop, it returns if_empty. A literal queue is a "
         "list with semicolons (1;2;3).",
-        (
+        ports=(
             PortKind(
                 "queue",
                 "inout",
@@ -268,37 +244,29 @@ def _queue(item: str) -> str:
 _CXX11_STRING: Final = "std::__cxx11::basic_string<char, std::char_traits<char>, std::allocator<char> >"
 
 _DECORATORS: Final = (
-    NodeKind(
+    decorator(
         "Inverter",
-        "Decorator",
-        (1, 1),
         "Turns success into failure and failure into success.",
         "It passes RUNNING and SKIPPED on.",
         flow="invert",
         since=VERSION_3,
     ),
-    NodeKind(
+    decorator(
         "ForceSuccess",
-        "Decorator",
-        (1, 1),
         "Succeeds whenever its child completes.",
         "It turns a failure of the child into SUCCESS, and passes RUNNING and SKIPPED on.",
         flow="force-success",
         since=VERSION_3,
     ),
-    NodeKind(
+    decorator(
         "ForceFailure",
-        "Decorator",
-        (1, 1),
         "Fails whenever its child completes.",
         "It turns a success of the child into FAILURE, and passes RUNNING and SKIPPED on.",
         flow="force-failure",
         since=VERSION_3,
     ),
-    NodeKind(
+    decorator(
         "KeepRunningUntilFailure",
-        "Decorator",
-        (1, 1),
         "Repeats its child until it fails.",
         "A success of the child becomes RUNNING, and the child restarts at the next tick. The node ends only "
         "with FAILURE or when it is halted: a Sequence never reaches the nodes after it.",
@@ -306,75 +274,67 @@ _DECORATORS: Final = (
         flow="until-failure",
         since=VERSION_3,
     ),
-    NodeKind(
+    decorator(
         "Repeat",
-        "Decorator",
-        (1, 1),
         "Repeats its child as long as it succeeds, at most num_cycles times.",
         "SUCCESS after num_cycles successes, FAILURE at the first failure. -1 repeats forever: it then never "
         "succeeds. 0 cycles succeed at once (4.6: are skipped). It returns RUNNING between two cycles of a "
         "child that completes at once. A skipped child skips the Repeat, which keeps its count.",
-        (_input("num_cycles", "int", "The number of cycles; -1 means forever", required=True, role="count"),),
+        ports=(_input("num_cycles", "int", "The number of cycles; -1 means forever", required=True, role="count"),),
         execution="asynchronous",
         flow="repeat",
         since=VERSION_3,
     ),
-    NodeKind(
+    decorator(
         "RetryUntilSuccessful",
-        "Decorator",
-        (1, 1),
         "Tries its child again when it fails, at most num_attempts times in all.",
         "SUCCESS at the first success, FAILURE after num_attempts failures. -1 tries forever: it then never fails. "
         "0 attempts fail at once (4.6: are skipped). It returns RUNNING between two attempts of a child that "
         "completes at once.",
-        (_input("num_attempts", "int", "The total number of attempts; -1 means endless", required=True, role="count"),),
+        ports=(
+            _input(
+                "num_attempts", "int", "The total number of attempts; -1 means endless", required=True, role="count"
+            ),
+        ),
         aliases=("Retry",),
         execution="asynchronous",
         flow="retry",
         since=VERSION_3,
     ),
-    NodeKind(
+    decorator(
         "Timeout",
-        "Decorator",
-        (1, 1),
         "Halts its child and fails after a time limit.",
         "The clock starts with the first tick of the child. The result of a child that completes in time is "
         "passed on. Only a child that returns RUNNING can be halted: around a synchronous action the Timeout "
         "has no effect. 0 means no limit.",
-        (_duration("msec", "The time limit; 0 means no limit"),),
+        ports=(_duration("msec", "The time limit; 0 means no limit"),),
         flow="timeout",
         since=VERSION_3,
     ),
-    NodeKind(
+    decorator(
         "Delay",
-        "Decorator",
-        (1, 1),
         "Waits, then ticks its child.",
         "RUNNING until the time has passed, then the result of the child.",
-        (_duration("delay_msec", "How long to wait before the child's first tick"),),
+        ports=(_duration("delay_msec", "How long to wait before the child's first tick"),),
         execution="asynchronous",
         flow="delay",
         since=VERSION_3,
     ),
-    NodeKind(
+    decorator(
         "RunOnce",
-        "Decorator",
-        (1, 1),
         "Runs its child once in the lifetime of the tree.",
         "After the child has completed for the first time it is never ticked again: the node then returns "
         "SKIPPED or, with then_skip=false, the child's result again.",
-        (_input("then_skip", "bool", "Afterwards return SKIPPED; false repeats the first result", "true"),),
+        ports=(_input("then_skip", "bool", "Afterwards return SKIPPED; false repeats the first result", "true"),),
         flow="once",
     ),
-    NodeKind(
+    decorator(
         "Precondition",
-        "Decorator",
-        (1, 1),
         "Ticks its child only if a script is true.",
         "Otherwise it returns the value of else. From 4.7 on the engine checks the script only when the child "
         "starts, so it does not guard a running action (4.6 checks it at every tick): for that, put a "
         "ScriptCondition in front of it in a ReactiveSequence.",
-        (
+        ports=(
             _script("if", _STRING, "The condition"),
             _result("else", "The result of a false condition: SUCCESS, FAILURE, RUNNING or SKIPPED", "FAILURE"),
         ),
@@ -384,23 +344,19 @@ _DECORATORS: Final = (
     _loop("Bool", "bool", _queue("bool")),
     _loop("Double", "double", _queue("double"), ("Loop",)),
     _loop("String", _STRING, _queue(_CXX11_STRING)),
-    NodeKind(
+    decorator(
         "SkipUnlessUpdated",
-        "Decorator",
-        (1, 1),
         "Ticks its child if a blackboard entry was written since the last check.",
         "Otherwise it returns SKIPPED, also if the entry does not exist. It keeps ticking a running child in any case.",
-        (_key("entry", "input", _ENTRY, "The entry to watch, with or without braces"),),
+        ports=(_key("entry", "input", _ENTRY, "The entry to watch, with or without braces"),),
         aliases=("EntryUpdatedDecorator",),
         flow="skip-unless-updated",
     ),
-    NodeKind(
+    decorator(
         "WaitValueUpdate",
-        "Decorator",
-        (1, 1),
         "Waits until a blackboard entry is written, then ticks its child.",
         "RUNNING until the entry is written after the last check. It keeps ticking a running child in any case.",
-        (_key("entry", "input", _ENTRY, "The entry to watch, with or without braces"),),
+        ports=(_key("entry", "input", _ENTRY, "The entry to watch, with or without braces"),),
         execution="asynchronous",
         flow="wait-until-updated",
     ),
@@ -409,59 +365,51 @@ _DECORATORS: Final = (
 # ---- leaves and the subtree ----
 
 _LEAVES: Final = (
-    NodeKind(
+    action(
         "AlwaysSuccess",
-        "Action",
-        (0, 0),
         "Succeeds.",
         "It does nothing else; useful as a placeholder and as a last child.",
         execution="synchronous",
         flow="succeeds",
         since=VERSION_3,
     ),
-    NodeKind(
+    action(
         "AlwaysFailure",
-        "Action",
-        (0, 0),
         "Fails.",
         "It does nothing else; useful as a placeholder and for testing failures.",
         execution="synchronous",
         flow="fails",
         since=VERSION_3,
     ),
-    NodeKind(
+    action(
         "Script",
-        "Action",
-        (0, 0),
         "Runs a script and succeeds.",
         "The script reads and writes blackboard entries: battery := 100.0; tubes -= 1. The value of the last statement "
         "does not matter. A variable that does not exist throws when the script runs. Without code the engine refuses "
         "the node; an empty code does nothing.",
-        (_script("code", _STRING, "The script"),),
+        ports=(_script("code", _STRING, "The script"),),
         aliases=("ScriptAction",),
         execution="synchronous",
         flow="succeeds",
     ),
     NodeKind(
         "ScriptCondition",
-        "Condition",
-        (0, 0),
         "Succeeds if a script is true, else fails.",
         "The value of the last statement must be 0 or 1. A variable that does not exist throws when the script runs, "
         "and || does not stop at its first true side. An empty code loads and throws at the first tick.",
-        (_script("code", _ANYTHING, "The condition"),),
+        "Condition",
+        (0, 0),
+        ports=(_script("code", _ANYTHING, "The condition"),),
         execution="synchronous",
         flow="answers",
     ),
-    NodeKind(
+    action(
         "SetBlackboard",
-        "Action",
-        (0, 0),
         "Writes a value into a blackboard entry.",
         "output_key names the entry, without braces; {k} means the entry whose name is the value of k. A "
         "value {k} copies that entry. From 4.7 on, a literal written over an entry without a type stores an "
         "empty value: use Script instead.",
-        (
+        ports=(
             _input("value", _ANYTHING, "The literal, or the entry to copy", required=True),
             _key("output_key", "inout", _ANYTHING, "The entry to write, without braces"),
         ),
@@ -469,46 +417,40 @@ _LEAVES: Final = (
         flow="succeeds",
         since=VERSION_3,
     ),
-    NodeKind(
+    action(
         "UnsetBlackboard",
-        "Action",
-        (0, 0),
         "Removes a blackboard entry.",
         "Also succeeds if the entry does not exist. Scripts that read it afterwards throw.",
-        (_key("key", "input", _STRING, "The entry to remove, without braces", removes=True),),
+        ports=(_key("key", "input", _STRING, "The entry to remove, without braces", removes=True),),
         execution="synchronous",
         flow="succeeds",
     ),
-    NodeKind(
+    action(
         "Sleep",
-        "Action",
-        (0, 0),
         "Waits, then succeeds.",
         "RUNNING until the time has passed; a halt ends the wait.",
-        (_duration("msec", "How long to wait"),),
+        ports=(_duration("msec", "How long to wait"),),
         execution="asynchronous",
         flow="sleeps",
     ),
-    NodeKind(
+    action(
         "WasEntryUpdated",
-        "Action",
-        (0, 0),
         "Succeeds if a blackboard entry was written since the last check, else fails.",
         "It also fails if the entry does not exist. The first check of an entry that has been written succeeds.",
-        (_key("entry", "input", _ENTRY, "The entry to watch, with or without braces"),),
+        ports=(_key("entry", "input", _ENTRY, "The entry to watch, with or without braces"),),
         aliases=("EntryUpdatedAction",),
         execution="synchronous",
         flow="answers",
     ),
     NodeKind(
         "SubTree",
-        "SubTree",
-        (0, 0),
         "Runs another tree.",
         "The other tree has its own blackboard: a port {key} passes it an entry of this one, a literal a "
         "constant, {=} the entry of the same name, {@key} one of the root blackboard. A tree must not contain "
         "itself.",
-        (_input("_autoremap", "bool", "Pass every entry under its own name", "false"),),
+        "SubTree",
+        (0, 0),
+        ports=(_input("_autoremap", "bool", "Pass every entry under its own name", "false"),),
         since=VERSION_3,
     ),
 )

@@ -6,6 +6,7 @@ One invariant: a record describes BehaviorTree.CPP's newest version; differences
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Final, Literal, TypeAlias
 
 from btq_lang.util.record import Record
@@ -137,10 +138,10 @@ class NodeKind(Record):
     """
 
     tag: str
-    category: Category
-    children: tuple[int, int | None]
     doc: str
     semantics: str
+    category: Category
+    children: tuple[int, int | None]
     ports: tuple[PortKind, ...] = ()
     symbols: tuple[str, ...] = ()
     aliases: tuple[str, ...] = ()
@@ -169,3 +170,9 @@ class NodeKind(Record):
     def pauses(self) -> bool:
         """Whether it runs its children one after the other and returns RUNNING between two that complete at once."""
         return self.execution == "asynchronous" and self.flow in ("sequence", "fallback")
+
+
+# The rows of a category, with the number of children that is usual in it.
+control = partial(NodeKind, category="Control", children=CHILDREN["Control"])
+decorator = partial(NodeKind, category="Decorator", children=CHILDREN["Decorator"])
+action = partial(NodeKind, category="Action", children=CHILDREN["Action"])

@@ -10,18 +10,18 @@ from pathlib import Path
 # Each runs in a process of its own, before anything has read the table.
 NODES = """
 from btq_lang.catalog import engine_nodes
-from btq_lang.catalog.kinds import NodeKind, PortKind
+from btq_lang.catalog.kinds import PortKind, control, decorator
 
 TIMES = PortKind("times", "input", "int", "How often", required=True, role="count")
 AFTER = PortKind("after", "input", "unsigned int", "The time", required=True, unit="ms", role="time")
 engine_nodes.ENGINE_NODES += (
-    NodeKind(
-        *("Routine", "Control", (1, None), "Ticks its children in order.", "As a Sequence."),
-        *((), (), ("Steps",)), flow="sequence", since="4.10",
+    control(
+        *("Routine", "Ticks its children in order.", "As a Sequence."), aliases=("Steps",), flow="sequence",
+        since="4.10",
     ),
-    NodeKind("Negate", "Decorator", (1, 1), "Turns the result around.", "As an Inverter.", flow="invert"),
-    NodeKind("Again", "Decorator", (1, 1), "Repeats its child.", "As a Repeat.", (TIMES,), flow="repeat"),
-    NodeKind("Deadline", "Decorator", (1, 1), "Limits its child.", "As a Timeout.", (AFTER,), flow="timeout"),
+    decorator("Negate", "Turns the result around.", "As an Inverter.", flow="invert"),
+    decorator("Again", "Repeats its child.", "As a Repeat.", ports=(TIMES,), flow="repeat"),
+    decorator("Deadline", "Limits its child.", "As a Timeout.", ports=(AFTER,), flow="timeout"),
 )
 """
 VERSION = """

@@ -11,31 +11,28 @@ from collections.abc import Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.catalog.kinds import NodeKind, PortKind
+from btq_lang.catalog.kinds import NodeKind, PortKind, action, control, decorator
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Category, Flow
 
 _CONTROL: Final = (
-    NodeKind(
+    control(
         "PipelineSequence",
-        "Control",
-        (1, None),
         "A sequence that ticks the earlier children again while a later one runs.",
         "It begins with its first child at every tick. A child that succeeds is ticked again at the next tick, and one "
         "that then returns RUNNING does not keep the later ones from being ticked. FAILURE of any child halts all and "
         "is its result; SUCCESS of the last one too.",
         flow="pipeline",
     ),
-    NodeKind(
+    control(
         "RecoveryNode",
-        "Control",
-        (2, 2),
         "Ticks the second child when the first one fails, then the first one again.",
         "SUCCESS as soon as the first child succeeds. When it fails, the second child is ticked, and after its success "
         "the first one again, number_of_retries times at most. If the second child fails or is skipped, so does the "
         "node at once. Another number of children throws at the first tick.",
-        (
+        children=(2, 2),
+        ports=(
             PortKind(
                 "number_of_retries",
                 "input",
@@ -49,23 +46,19 @@ _CONTROL: Final = (
         flow="recover",
         late_count=True,
     ),
-    NodeKind(
+    control(
         "NonblockingSequence",
-        "Control",
-        (1, None),
         "Ticks all children each time, until all succeed in one tick.",
         "Children that have ended are ticked again. FAILURE of any child halts all and is its result; SUCCESS if all "
         "children succeed in one tick. A skipped child throws.",
         flow="together",
     ),
-    NodeKind(
+    control(
         "PersistentSequence",
-        "Control",
-        (1, None),
         "A sequence that keeps its index in an entry.",
         "It begins with the child whose index current_child_idx has, and counts on in that entry; a halt does not "
         "change it. After a failure and at its end the entry is 0. Without the entry it throws.",
-        (
+        ports=(
             PortKind(
                 "current_child_idx",
                 "inout",
@@ -77,14 +70,13 @@ _CONTROL: Final = (
         ),
         flow="resume",
     ),
-    NodeKind(
+    control(
         "PauseResumeController",
-        "Control",
-        (1, 4),
         "Pauses and resumes its first child when services are called.",
         "The children are what runs, what runs while it is paused, and what to do on pausing and on resuming. Only "
         "SUCCESS of the first child is its success; FAILURE of any child is its failure. Another number of children "
         "throws at the first tick.",
+        children=(1, 4),
         execution="asynchronous",
         flow="pause",
         late_count=True,
@@ -95,20 +87,18 @@ _TURNS: Final = (
     "failure the next child is ticked at once. It fails when all children have failed in a row, and then begins with "
     "the first one again. "
 )
-_ROUND_ROBIN: Final = NodeKind(
+_ROUND_ROBIN: Final = control(
     "RoundRobin",
-    "Control",
-    (1, None),
     "Ticks its children in turn.",
     f"{_TURNS}In Lyrical, without wrap_around it also fails when its last child has ended, even if that has succeeded; "
     "before, the first child follows the last one.",
-    (PortKind("wrap_around", "input", "bool", "whether the first child follows the last one", "false", role="wraps"),),
+    ports=(
+        PortKind("wrap_around", "input", "bool", "whether the first child follows the last one", "false", role="wraps"),
+    ),
     flow="rotate",
 )
-_OLDER_ROUND_ROBIN: Final = NodeKind(
+_OLDER_ROUND_ROBIN: Final = control(
     "RoundRobin",
-    "Control",
-    (1, None),
     "Ticks its children in turn.",
     f"{_TURNS}After the last child follows the first one.",
     flow="rotate",
@@ -120,7 +110,7 @@ def _throttle(tag: str, doc: str, again: str, besides: str = "", flow: Flow = "t
         f"It ticks its child when it starts, as long as that runs, and {again}; otherwise it returns RUNNING. "
         f"{besides}When its parent resets it after a success it starts again, and holds nothing back."
     )
-    return NodeKind(tag, "Decorator", (1, 1), doc, semantics, flow=flow, memory="success")
+    return decorator(tag, doc, semantics, flow=flow, memory="success")
 
 
 _DECORATORS: Final = (
@@ -138,26 +128,20 @@ _DECORATORS: Final = (
         "when a period has passed that is the shorter the faster the robot is, and when the goal has changed",
     ),
     _throttle("GoalUpdatedController", "Ticks its child each time the goal changes.", "when the goal has changed"),
-    NodeKind(
+    decorator(
         "GoalUpdater",
-        "Decorator",
-        (1, 1),
         "Replaces the goal of its child by one that a topic gives.",
         "It writes the goal at every tick, ticks its child and returns what that returns.",
         flow="pass",
     ),
-    NodeKind(
+    decorator(
         "PathLongerOnApproach",
-        "Decorator",
-        (1, 1),
         "Ticks its child if the path became much longer close to the goal.",
         "Otherwise it succeeds, also while its child runs, which is then neither ticked nor halted.",
         flow="pass-or-succeed",
     ),
-    NodeKind(
+    decorator(
         "SingleTrigger",
-        "Decorator",
-        (1, 1),
         "Ticks its child until it ends, once.",
         "Afterwards it fails, until its parent resets it. Most parents do so when it has ended: then it does nothing.",
         flow="pass-once",
@@ -171,12 +155,12 @@ def _notices(tag: str, doc: str, what: str) -> NodeKind:
         f"At its first tick it fails and remembers {what}; it succeeds at a later one. A parent that resets it when "
         "it has failed makes it start again, so that it never succeeds: only WhileDoElse keeps its condition."
     )
-    return NodeKind(tag, "Condition", (0, 0), doc, semantics, execution="synchronous", flow="notices", memory="failure")
+    return NodeKind(tag, doc, semantics, "Condition", (0, 0), execution="synchronous", flow="notices", memory="failure")
 
 
 def _waits(tag: str, category: Category, doc: str) -> NodeKind:
     semantics = "It fails while the robot moves, and returns RUNNING until it has been still for duration_stopped."
-    return NodeKind(tag, category, (0, 0), doc, semantics, execution="asynchronous", flow="waits")
+    return NodeKind(tag, doc, semantics, category, (0, 0), execution="asynchronous", flow="waits")
 
 
 _LEAVES: Final = (
@@ -192,8 +176,7 @@ _WITHIN_A_TICK: Final = (
     *("ProgressCheckerSelector", "RemovePassedGoals", "SmootherSelector", "TruncatePath", "TruncatePathLocal"),
 )
 _SYNCHRONOUS: Final = tuple(
-    NodeKind(tag, "Action", (0, 0), "", "It ends within the tick.", execution="synchronous", flow="answers")
-    for tag in _WITHIN_A_TICK
+    action(tag, "", "It ends within the tick.", execution="synchronous", flow="answers") for tag in _WITHIN_A_TICK
 )
 
 NODES: Final[Mapping[str, NodeKind]] = {
