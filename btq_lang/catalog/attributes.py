@@ -33,20 +33,13 @@ class AttributeKind(Record):
 
 _KINDS: Final = (
     # In the order in which the engine evaluates them, whatever the order in the file.
-    AttributeKind(
-        "_failureIf",
-        "pre",
-        "if true when the node starts, the node returns FAILURE without a tick; not checked while it runs",
-    ),
-    AttributeKind(
-        "_successIf",
-        "pre",
-        "if true when the node starts, the node returns SUCCESS without a tick; not checked while it runs",
-    ),
-    AttributeKind(
-        "_skipIf",
-        "pre",
-        "if true when the node starts, the node returns SKIPPED without a tick; not checked while it runs",
+    *(
+        AttributeKind(
+            name,
+            "pre",
+            f"if true when the node starts, the node returns {result} without a tick; not checked while it runs",
+        )
+        for name, result in (("_failureIf", "FAILURE"), ("_successIf", "SUCCESS"), ("_skipIf", "SKIPPED"))
     ),
     AttributeKind(
         "_while", "pre", "checked at every tick; when it is false, the node is halted and returns SKIPPED, not FAILURE"

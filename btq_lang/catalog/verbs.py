@@ -27,9 +27,9 @@ class Verb(Record):
             signal, a bound of a count, a period or a rate, a deadline after an event, an event.
         measures: what is compared with the bound, or evaluated.
         judged: when it is known whether an activation, or a run, satisfies or violates it.
-        said: a measure in a sentence about one activation; `{}` is the measure.
         phrases: for each continuation: its words, an example, what it is about, and when a clause is violated.
-        forms: how a clause begins, each with what an editor inserts, if that is more.
+        said: a measure in a sentence about one activation; `{}` is the measure.
+        forms: how a clause begins, each with what an editor inserts, if that is more; empty: with the word alone.
         limits: which end of an activation a bound is on: any, or only its success.
         enforced: how the engine enforces it: a Timeout, a condition before the node that refuses its start, one that is
             evaluated while the node runs, one after it.
@@ -40,9 +40,9 @@ class Verb(Record):
     operand: Operand
     measures: str
     judged: Judged
-    said: str
     phrases: tuple[tuple[str, str, str, str], ...]
-    forms: tuple[tuple[str, str | None], ...]
+    said: str = "{}"
+    forms: tuple[tuple[str, str | None], ...] = ()
     limits: Limits = ""
     enforced: Enforced = ""
     why_monitored: str = ""
@@ -91,7 +91,6 @@ VERBS: Final = {
             operand="deadline",
             measures="its result, and the time",
             judged=_END,
-            said="{}",
             phrases=(("succeeds", "succeeds within 30 s", "result, and when", "it fails, or succeeds later"),),
             forms=(("succeeds", None), ("succeeds within", "succeeds within ${0:30 s}")),
             limits="success",
@@ -111,7 +110,6 @@ VERBS: Final = {
                     "the condition is false when the node starts",
                 ),
             ),
-            forms=(("needs", None),),
             enforced="refusal",
         ),
         Verb(
@@ -119,7 +117,6 @@ VERBS: Final = {
             operand="condition",
             measures="a condition",
             judged=_MEANWHILE,
-            said="{}",
             phrases=(
                 (
                     "keeps",
@@ -128,7 +125,6 @@ VERBS: Final = {
                     "it is false at any time while the node runs",
                 ),
             ),
-            forms=(("keeps", None),),
             enforced="guard",
         ),
         Verb(
@@ -136,7 +132,6 @@ VERBS: Final = {
             operand="condition",
             measures="a condition",
             judged=_MEANWHILE,
-            said="{}",
             phrases=(
                 (
                     "never",
@@ -145,7 +140,6 @@ VERBS: Final = {
                     "it is true at any time while the node runs",
                 ),
             ),
-            forms=(("never", None),),
             enforced="guard",
         ),
         Verb(
@@ -162,7 +156,6 @@ VERBS: Final = {
                     "it is false when the node has succeeded",
                 ),
             ),
-            forms=(("leaves", None),),
             enforced="check",
         ),
         Verb(
@@ -205,46 +198,31 @@ VERBS: Final = {
             forms=(("runs every", "runs every ${0:1 s}"), ("runs at least", "runs at least ${1:1} per ${0:1 s}")),
             why_monitored=_NOTHING_STARTS_NODES,
         ),
-        Verb(
-            word="starts",
-            operand="reaction",
-            measures="the time since an event",
-            judged=_RUN,
-            said="started after {}",
-            phrases=(
-                (
-                    "starts",
-                    "starts within 2 s after Batch succeeds",
-                    "reaction",
-                    "it starts (ends) later than that, or not at all",
+        *(
+            Verb(
+                word=word,
+                operand="reaction",
+                measures="the time since an event",
+                judged=_RUN,
+                said=f"{past} after {{}}",
+                phrases=(
+                    (
+                        word,
+                        f"{word} within 2 s after Batch succeeds",
+                        "reaction",
+                        "it starts (ends) later than that, or not at all",
+                    ),
                 ),
-            ),
-            forms=(("starts within", "starts within ${1:1 s} after $0"),),
-            why_monitored=_NOTHING_STARTS_NODES,
-        ),
-        Verb(
-            word="ends",
-            operand="reaction",
-            measures="the time since an event",
-            judged=_RUN,
-            said="ended after {}",
-            phrases=(
-                (
-                    "ends",
-                    "ends within 2 s after Batch succeeds",
-                    "reaction",
-                    "it starts (ends) later than that, or not at all",
-                ),
-            ),
-            forms=(("ends within", "ends within ${1:1 s} after $0"),),
-            why_monitored=_NOTHING_STARTS_NODES,
+                forms=((f"{word} within", f"{word} within ${{1:1 s}} after $0"),),
+                why_monitored=_NOTHING_STARTS_NODES,
+            )
+            for word, past in (("starts", "started"), ("ends", "ended"))
         ),
         Verb(
             word="follows",
             operand="event",
             measures="an event since its last start",
             judged=_START,
-            said="{}",
             phrases=(
                 (
                     "follows",
@@ -253,7 +231,6 @@ VERBS: Final = {
                     "it starts, but the event has not happened since its previous start",
                 ),
             ),
-            forms=(("follows", None),),
             enforced="refusal",
         ),
     )

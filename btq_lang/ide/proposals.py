@@ -425,7 +425,7 @@ _ITEMS = (
 )
 _ONCE = frozenset(("in", "with", "confidence", "over", "on", "goal", "because", "verified"))
 _CLAUSES = (
-    *(form for verb in VERBS.values() for form in verb.forms),
+    *(form for verb in VERBS.values() for form in verb.forms or ((verb.word, None),)),
     ("mission", None),
     ("every", None),
     ("from", "from ${1:A} starts to ${2:B} succeeds $0"),
