@@ -51,11 +51,7 @@ from btq_lang.syntax.scan import (
     unit_run,
 )
 from btq_lang.syntax.strange import StrangeCharacters, has_line_end
-from btq_lang.syntax.suggestions import (
-    close_string,
-    unknown_escapes,
-    unknown_unit,
-)
+from btq_lang.syntax.suggestions import close_string, unknown_escapes, unknown_unit
 from btq_lang.syntax.tokens import (
     BLANK,
     BRACED,

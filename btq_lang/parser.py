@@ -18,27 +18,8 @@ from btq_lang.grammar.item_words import ITEM_WORDS, item_word_meant, read_as
 from btq_lang.grammar.items import ItemParser
 from btq_lang.lexer import Lexer, State, tokens
 from btq_lang.syntax.scan import Maps, line_end, path_end
-from btq_lang.syntax.tokens import (
-    CATEGORIES,
-    DIRECTIONS,
-    NAME,
-    NEWLINE,
-    NODE_CLAUSES,
-    OPEN,
-    STRING,
-    SYMBOL,
-    Token,
-)
-from btq_lang.syntax.tree import (
-    Entry,
-    Item,
-    Root,
-    Skipped,
-    Tree,
-    moved_by,
-    quote,
-    unquote,
-)
+from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NAME, NEWLINE, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token
+from btq_lang.syntax.tree import Entry, Item, Root, Skipped, Tree, moved_by, quote, unquote
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span, changed

@@ -25,17 +25,7 @@ from btq_lang.syntax.tokens import (
     STRING,
     SYMBOL,
 )
-from btq_lang.syntax.tree import (
-    NodeClause,
-    Pair,
-    Quality,
-    ReqRef,
-    Requirement,
-    Satisfices,
-    Satisfies,
-    Tags,
-    Word,
-)
+from btq_lang.syntax.tree import NodeClause, Pair, Quality, ReqRef, Requirement, Satisfices, Satisfies, Tags, Word
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 

@@ -264,8 +264,7 @@ class ClaimParser(ConditionParser):
         if is_value and self.raws[self.index + 1] == "-":
             note = "a range is written `between 10 s and 20 s`"
         elif self.kind == QUANTITY and self.raws[self.index - 1] in _OF_DURATIONS:
-            at = self.here().start
-            fixes = (replace_fix("Put `at most` before it", Span(at, at), "at most "),)
+            fixes = (self.put_before("at most"),)
         self.expected("a bound: at most, at least, less than, more than or between", (note,), fixes)
 
     def within(self) -> Bound:
@@ -335,8 +334,7 @@ MEANT: Final = {  # by the word that is read as a node before a verb
     "not": "write `never lamp_on`, or `keeps not lamp_on`",
     "quality": QUALITY_IN_HEAD,
     **dict.fromkeys(
-        ("title", "description", "text"),
-        'a requirement has one title, after its name: `QualityReq fast "in time"`',
+        ("title", "description", "text"), 'a requirement has one title, after its name: `QualityReq fast "in time"`'
     ),
     **dict.fromkeys(
         ("must", "shall", "should", "will", "may"),

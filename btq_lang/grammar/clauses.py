@@ -93,9 +93,8 @@ class ClauseParser(ClaimParser):
         value: Word | None = None
         experiments = None
         if self.kind == QUANTITY:
-            at = self.here()
-            fix = replace_fix("Put `at least` before it", Span(at.start, at.start), "at least ")
-            self.complain(at, f"a probability is written `in at least {self.raw}`", fix)
+            message = f"a probability is written `in at least {self.raw}`"
+            self.complain(self.here(), message, self.put_before("at least"))
             value = self.take()
         elif self.expect_word("at") and self.expect_word("least"):
             value = self.percentage("98 %")
@@ -130,15 +129,13 @@ class ClauseParser(ClaimParser):
 
     def confidence(self) -> Confidence:
         """ "confidence" QUANTITY"""
-        start = self.start()
-        self.advance()
+        start = self.take().start
         value = self.percentage("95 %")
         return Confidence(start, self.last_end(), value)
 
     def window(self) -> Window:
         """ "over" "last" ( NUMBER Experiments | QUANTITY )"""
-        start = self.start()
-        self.advance()
+        start = self.take().start
         self.expect_word("last")
         size = experiments = None
         if self.kind == QUANTITY:
@@ -167,15 +164,13 @@ class ClauseParser(ClaimParser):
 
     def goal(self) -> Goal:
         """ "goal" Bounded"""
-        start = self.start()
-        self.advance()
+        start = self.take().start
         value = self.bounded()
         return Goal(start, self.last_end(), value)
 
     def because(self) -> Because:
         """ "because" STRING"""
-        start = self.start()
-        self.advance()
+        start = self.take().start
         text = self.take() if self.kind == STRING else None
         if text is None:
             begin = self.here().start
@@ -186,8 +181,7 @@ class ClauseParser(ClaimParser):
 
     def how(self) -> How:
         """ "verified" "by" ( "monitor" | "analysis" | "test" | "review" )"""
-        start = self.start()
-        self.advance()
+        start = self.take().start
         self.expect_word("by")
         method = self.one_of(METHODS)
         return How(start, self.last_end(), method)
@@ -234,9 +228,8 @@ class ClauseParser(ClaimParser):
 
     def after_missing(self, words: str) -> Word:
         """Read the current percentage; report that `words` are missing before it."""
-        at = self.here()
-        fix = replace_fix(f"Put `{words}` before it", Span(at.start, at.start), f"{words} ")
-        self.complain(at, f"a probability is written `with probability >= {self.raw}`", fix)
+        message = f"a probability is written `with probability >= {self.raw}`"
+        self.complain(self.here(), message, self.put_before(words))
         return self.take()
 
     def bare_bound(self) -> None:

@@ -12,33 +12,14 @@ from btq_lang.diagnostics.model import replace_fix, write_fix
 from btq_lang.grammar.cursor import Cursor
 from btq_lang.lexer import Lexer
 from btq_lang.syntax.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
-from btq_lang.syntax.tree import (
-    Binary,
-    Call,
-    Comparison,
-    Condition,
-    Negative,
-    NodeRuns,
-    Not,
-    Operand,
-    Path,
-)
+from btq_lang.syntax.tree import Binary, Call, Comparison, Condition, Negative, NodeRuns, Not, Operand, Path
 from btq_lang.util.text import Span
 
 # Words that begin a clause and so end the condition before them.
 SUBJECT_HEADS: Final = frozenset(("mission", "every", "from", "sum"))
-HEADS: Final = SUBJECT_HEADS | {
-    "while",
-    "when",
-    "in",
-    "with",
-    "confidence",
-    "over",
-    "on",
-    "goal",
-    "because",
-    "verified",
-}
+HEADS: Final = SUBJECT_HEADS.union(
+    ("while", "when", "in", "with", "confidence", "over", "on", "goal", "because", "verified")
+)
 FUNCTIONS: Final = frozenset(("max", "min", "mean", "p95", "stddev", "change", "count"))
 _OTHER_FUNCTIONS: Final = {
     **dict.fromkeys(("avg", "average"), "mean"),

@@ -226,7 +226,7 @@ class Cursor:
         if self.kind == NAME and self.raw in instead:
             fixes = (replace_fix(f"Replace `{self.raw}` with `{word}`", self.here(), word),)
         elif forgotten:
-            fixes = (replace_fix(f"Put `{word}` before it", Span(self.here().start, self.here().start), f"{word} "),)
+            fixes = (self.put_before(word),)
         self.expected(f"`{word}`", (), fixes)
         return False
 
@@ -366,6 +366,11 @@ class Cursor:
         """The fix if the current word is a misspelling of one of `words`; else none."""
         meant = near(self.raw, words, limit=1) if self.kind == NAME else ()
         return tuple(replace_fix(f"Replace `{self.raw}` with `{word}`", self.here(), word) for word in meant)
+
+    def put_before(self, words: str) -> Fix:
+        """The fix that puts words before the current one."""
+        at = self.here().start
+        return replace_fix(f"Put `{words}` before it", Span(at, at), f"{words} ")
 
     def misspelt(self, span: Span, word: str, likely: str) -> None:
         """Report a misspelt word."""

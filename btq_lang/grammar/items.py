@@ -197,8 +197,8 @@ class ItemParser(NodeParser):
             tag = self.name("a tag")
             return Selector(start, self.last_end(), tag=tag)
         if self.at_word("tagged") and self.kinds[self.index + 1] == NAME:
-            fix = replace_fix("Put `node` before it", Span(self.here().start, self.here().start), "node ")
-            self.complain(self.here(), "nodes with a tag are selected with `every node tagged …`", fix)
+            message = "nodes with a tag are selected with `every node tagged …`"
+            self.complain(self.here(), message, self.put_before("node"))
             self.advance()
             return Selector(start, self.last_end(), tag=self.name("a tag"))
         every = self.name("a node's ID or kind")

@@ -446,8 +446,8 @@ class NodeParser(AttributeParser):
         if self.accept(":"):
             type_ = self.type_()
         elif name is not None and self.kind == NAME:
-            fix = replace_fix("Put `:` before it", Span(self.here().start, self.here().start), ": ")
-            self.expected("`:` and the port's type", ("a port is written `input name : type`",), (fix,))
+            notes = ("a port is written `input name : type`",)
+            self.expected("`:` and the port's type", notes, (self.put_before(":"),))
         default = self.value() if self.accept("=") else None
         attributes = self.pairs()
         text = self.take() if self.kind == STRING else None
@@ -504,40 +504,18 @@ XML: Final = (
     "if this is BehaviorTree.CPP XML, rename the file to .xml, or convert it with `btq import`; "
     "a comment begins with `#`, not `<!--`"
 )
-
-
 CHILD: Final = "a child goes on a line of its own below its parent, indented"
-
-
 _TAG: Final = re.compile(r"""<([^\W\d]\w*)((?:\s+[\w:]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(/?)>""")
-
-
 _NO_KINDS: Final = NODE_CLAUSES | DIRECTIONS | {"QualityReq", "xml"}
-
-
 _NOT_NODES: Final = frozenset(("root", "BehaviorTree", "TreeNodesModel", "include"))
-
-
 _COMMENT_ENDS: Final = ("-->", '"""', "'''")
-
-
 _STATEMENTS: Final = {
     **dict.fromkeys(("if", "elif", "else"), "to choose, use a Fallback `?` with a Condition, or `_skipIf` on the node"),
     **dict.fromkeys(("while", "for"), "to repeat, use `Repeat`, `Retry` or `KeepRunningUntilFailure`"),
 }
-
-
 _ARROW: Final = re.compile(r"[-=~]+ ?>")
-
-
 _BEFORE_TYPES: Final = frozenset(("const", "unsigned", "signed", "long", "short"))
-
-
 MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine's limit (4.9 and later)
-
-
 OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"
 _TOO_DEEP: Final = f"more than {MAX_DEPTH} levels of nodes, which BehaviorTree.CPP refuses"
-
-
 _MEANINGFUL: Final = "indentation shows what a line belongs to; align it with its sibling lines"

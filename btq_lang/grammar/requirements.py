@@ -14,16 +14,7 @@ from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.scan import is_unit, path_end, unit_run
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
-from btq_lang.syntax.tree import (
-    Argument,
-    Parameter,
-    QualityPath,
-    ReqRef,
-    Requirement,
-    Word,
-    quote,
-    unquote,
-)
+from btq_lang.syntax.tree import Argument, Parameter, QualityPath, ReqRef, Requirement, Word, quote, unquote
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
@@ -138,7 +129,7 @@ class RequirementParser(ClauseParser):
             return None
         is_word = self.kinds[following] == NEWLINE
         if self.kinds[following] == STRING and not has_quality:
-            self.complain(self.here(), _A_QUALITY, self.colon_before())
+            self.complain(self.here(), _A_QUALITY, self.put_before(":"))
             self.advance()
             return self.take()
         if not (is_word or self.is_prose(following)):
@@ -153,14 +144,10 @@ class RequirementParser(ClauseParser):
         text = self.text[start : span.end]
         fixes = [replace_fix("Put quotes around it", span, quote(text))]
         if is_word and not has_quality:
-            fixes.append(self.colon_before())
+            fixes.append(self.put_before(":"))
         self.complain(span, f"{_A_TITLE}, and {_A_QUALITY}" if len(fixes) > 1 else _A_TITLE, *(tuple(fixes)))
         self.go_to(end)
         return Word(NAME, start - self.base, text)
-
-    def colon_before(self) -> Fix:
-        at = self.here().start
-        return replace_fix("Put `:` before it", Span(at, at), ": ")
 
     def is_prose(self, index: int) -> bool:
         """Whether the word at `index`, after another, does not make a claim of both, as a verb, or `must` and a verb,

@@ -63,10 +63,7 @@ class Maps:
     def edited(self, start: int, end: int, text: str) -> Maps:
         """The maps after an edit that replaces the text from `start` to `end`."""
         new = maps_of(text)
-        return Maps(
-            self.words[:start] + new.words + self.words[end:],
-            self.ink[:start] + new.ink + self.ink[end:],
-        )
+        return Maps(self.words[:start] + new.words + self.words[end:], self.ink[:start] + new.ink + self.ink[end:])
 
 
 def maps_of(text: str) -> Maps:
