@@ -15,11 +15,7 @@ from btq_lang.syntax.tree import Entry, Pair, Root, Word
 
 
 def attributes_of(
-    source: Source,
-    entry: Entry,
-    pairs: tuple[Pair, ...],
-    builtin: NodeKind | None = None,
-    label: Word | None = None,
+    source: Source, entry: Entry, pairs: tuple[Pair, ...], builtin: NodeKind | None = None, label: Word | None = None
 ) -> list[Attribute]:
     """The attributes for the pairs in brackets, after a label, which is the `name`; `builtin`: has the units
     of ports."""

@@ -15,18 +15,11 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.workspace.workspace import Workspace
 
 
-def bundle(
-    workspace: Workspace,
-    path: str,
-    *,
-    target: str | None = None,
-    verbatim: bool = False,
-) -> Export:
+def bundle(workspace: Workspace, path: str, *, verbatim: bool = False) -> Export:
     """A file and all that is registered with it, XML files too, as one document; the others come first."""
     paths = workspace.registered_with(path)
     exports = [
-        export(workspace, each, target=target, verbatim=verbatim, included_as=lambda _: _IN_BUNDLE, is_bundled=True)
-        for each in paths
+        export(workspace, each, verbatim=verbatim, included_as=lambda _: _IN_BUNDLE, is_bundled=True) for each in paths
     ]
     main = exports[-1].document
     root = Element("root", main.root.attributes)

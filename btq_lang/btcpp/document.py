@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Final, TypeAlias
 
+from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
 
@@ -99,38 +100,29 @@ class Element:
         return self._places.get(attribute.name, _NOWHERE)
 
 
-class Comment:
+class Comment(Record):
     """`<!--text-->`.
 
     Attributes:
         beside: whether it is on the line on which the previous content ends.
     """
 
-    __slots__ = ("beside", "start", "text")
-
-    def __init__(self, text: str, beside: bool = False, start: int = -1) -> None:
-        self.text: Final = text
-        self.beside: Final = beside
-        self.start: Final = start
+    text: str
+    beside: bool = False
+    start: int = -1
 
 
-class Text:
+class Text(Record):
     """Character data that is not blank: the text of a port or a description, unescaped."""
 
-    __slots__ = ("start", "text")
-
-    def __init__(self, text: str, start: int = -1) -> None:
-        self.text: Final = text
-        self.start: Final = start
+    text: str
+    start: int = -1
 
 
-class Raw:
+class Raw(Record):
     """One element as the user spelt it, from its `<` to its `>`; only made, never read."""
 
-    __slots__ = ("text",)
-
-    def __init__(self, text: str) -> None:
-        self.text: Final = text
+    text: str
 
 
 Content: TypeAlias = "Element | Comment | Text | Raw"

@@ -185,14 +185,12 @@ def _takes(draft: Guarded) -> None:
 
 def _succeeds(draft: Guarded) -> None:
     """A failure breaks the clause by itself; a Timeout makes a failure of a late success."""
-    if draft.claim.limit is not None:
-        when = draft.when()
-        _limit(draft, _upper(draft), when)
-    elif not draft.stop:
+    if draft.claim.limit is None and not draft.stop:
         draft.notes.append("the node's failure is the violation itself")
         return
-    else:
-        when = draft.when()
+    when = draft.when()
+    if draft.claim.limit is not None:
+        _limit(draft, _upper(draft), when)
     if draft.stop:
         stop = draft.stop
         failed = f"{stop} := true" if when is None else f"{stop} := ({stop} || {when})"
@@ -295,14 +293,12 @@ def _follows(draft: Guarded) -> None:
     event = draft.claim.event
     assert event is not None, "the clause names one"
     subject = event.subject
-    if isinstance(subject, Mission) and event.happening == "starts":
-        draft.cell("seen", "true")
-    elif not isinstance(subject, Target) or event.happening not in _SEEN:
+    is_start = isinstance(subject, Mission) and event.happening == "starts"
+    if not is_start and (not isinstance(subject, Target) or event.happening not in _SEEN):
         raise NotEnforced("the engine runs no script at this event")
-    elif subject.through:
+    if isinstance(subject, Target) and subject.through:
         raise NotEnforced("its event names only some instances of a node")
-    first = "true" if isinstance(subject, Mission) else "false"
-    seen = draft.cell("seen", first)
+    seen = draft.cell("seen", "true" if is_start else "false")
     draft.around(CONDITION, "Sequence", "follows", before=(draft.condition("check", f"({seen} == true)"),))
     taken = draft.leaf("Script", "taken", f"{seen} := false")
     draft.around(INSIDE, "Sequence", "started", before=(taken,))

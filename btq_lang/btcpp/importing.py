@@ -137,7 +137,7 @@ class _Writer:
         for content in contents[:at]:
             self.comment_line(content, 0)
         if at and self.symbols:  # for checks, a comment above the root silences rules on it
-            self.blank_line()
+            self.out.append("\n")
         behind = contents[at + 1 :]
         level = 1 if behind else 0
         self.root(document.root, level)
@@ -149,12 +149,10 @@ class _Writer:
         attributes = root.attributes
         head: list[Piece] = [("Root", None)]
         is_of_4 = len(attributes) == 2 and (attributes[0].name, attributes[0].raw) == ("BTCPP_format", "4")
-        if is_of_4 and _is_main_tree(attributes[1]):
-            head.append((name(attributes[1].raw), attributes[1]))
-            self.line(0, root, head)
-        elif attributes and _is_main_tree(attributes[0]):
-            head.append((name(attributes[0].raw), attributes[0]))
-            self.line(0, root, head, attributes[1:])
+        main = attributes[1 if is_of_4 else 0] if attributes else None
+        if main is not None and main.name == "main_tree_to_execute":
+            head.append((name(main.raw), main))
+            self.line(0, root, head, None if is_of_4 else attributes[1:])
         else:
             self.line(0, root, head, attributes)
         above = ""  # the kind of the previous line
@@ -163,13 +161,13 @@ class _Writer:
                 self.lost_text(child)
             elif isinstance(child, Comment):
                 if above != "comment" and (above != "" or level == 0):
-                    self.blank_line()
+                    self.out.append("\n")
                 self.comment_line(child, level)
                 above = "comment"
             elif isinstance(child, Element):
                 one_line = child.tag == "include" and not child.children
                 if above != "comment" and (above != "" or level == 0) and not (one_line and above == "line"):
-                    self.blank_line()
+                    self.out.append("\n")
                 self.item(child, level)
                 above = "line" if one_line else "block"
 
@@ -312,7 +310,7 @@ class _Writer:
         head: list[Piece] = [(element.tag, None), (name(identity.raw), identity)]
         children = element.children
         others = [each for each in element.attributes if each is not identity]
-        text = _text_of(children[0]) if children and _is_description(children[0]) else None
+        text = _described(children[0]) if children else None
         self.line(level, element, head, others, text)
         was_metadata = False
         for child in children[text is not None :]:
@@ -335,19 +333,13 @@ class _Writer:
         """( "input" | "output" | "inout" ) [ NAME ] [ ":" … ] [ "=" Value ] [ Attributes ] [ STRING ]"""
         attributes = element.attributes
         head: list[Piece] = [(_DIRECTIONS[element.tag], None)]
-        count = len(attributes)
         index = 0
-        if index < count and attributes[index].name == "name" and is_name(attributes[index].raw):
-            head.append((attributes[index].raw, attributes[index]))
-            index += 1
-        if index < count and attributes[index].name == "type":
-            head.append((":", None))
-            head.append((type_(attributes[index].raw), attributes[index]))
-            index += 1
-        if index < count and attributes[index].name == "default":
-            head.append(("=", None))
-            head.append((value(attributes[index].raw), attributes[index]))
-            index += 1
+        for key, sign, spelt in (("name", "", str), ("type", ":", type_), ("default", "=", value)):
+            each = attributes[index] if index < len(attributes) else None
+            if each is not None and each.name == key and (sign or is_name(each.raw)):
+                head += [(sign, None)] if sign else []
+                head.append((spelt(each.raw), each))
+                index += 1
         text = "".join(part.text for part in element.children if isinstance(part, Text)) or None
         self.line(level, element, head, attributes[index:], text)
 
@@ -424,9 +416,6 @@ class _Writer:
         if "*/" in content.text and not is_kept(content.text):
             message = "a `*/` in this comment is written `* /`, or the comment loses its last space"
             self.changes.append(Change(Span(content.start, end), message))
-
-    def blank_line(self) -> None:
-        self.out.append("\n")
 
     # ---- what cannot be kept ----
 
@@ -514,26 +503,18 @@ def _fits(text: str, column: int, columns: int) -> bool:
     return column + len(first) <= columns and all(len(line) <= columns for line in others)
 
 
-def _is_main_tree(attribute: Attribute) -> bool:
-    return attribute.name == "main_tree_to_execute"
-
-
 def _may_stand_behind(element: Element) -> bool:
     """Whether a comment at the end of an element's line keeps its place: after the whole element, or first in an
     otherwise empty block."""
     return not element.children or any(isinstance(child, Element) for child in element.children)
 
 
-def _is_description(content: Content) -> bool:
-    return isinstance(content, Element) and content.tag == "description" and bool(_text_of(content))
-
-
-def _text_of(content: Content) -> str:
-    """The text of an element that contains nothing else; empty for any other."""
-    if not isinstance(content, Element) or content.attributes:
-        return ""
+def _described(content: Content) -> str | None:
+    """The text of a <description> that contains nothing else; None for anything else, or without a text."""
+    if not isinstance(content, Element) or content.tag != "description" or content.attributes:
+        return None
     texts = [child.text for child in content.children if isinstance(child, Text)]
-    return "".join(texts) if len(texts) == len(content.children) else ""
+    return "".join(texts) or None if len(texts) == len(content.children) else None
 
 
 def _is_metadata(element: Element) -> bool:

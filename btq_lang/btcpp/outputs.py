@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.document import Comment, Document, write
@@ -77,18 +78,11 @@ def outputs(
         verbatim: write exactly what is in the files, without side files.
         enforce: add the nodes that enforce requirements.
     """
-
-    def made(path: str) -> Enforcement:
-        return as_xml(
-            workspace,
-            path,
-            bundled=bundled,
-            verbatim=verbatim,
-            enforce=enforce,
-            included_as=lambda to: places.seen_from(path, to, workspace),
-        )
-
-    exports = {path: made(path) for path in (missions(workspace, given) if bundled else sources(workspace, given))}
+    made = partial(as_xml, workspace, bundled=bundled, verbatim=verbatim, enforce=enforce)
+    exports = {
+        path: made(path, included_as=partial(places.seen_from, path, workspace=workspace))
+        for path in (missions(workspace, given) if bundled else sources(workspace, given))
+    }
     if any(done.export.problems for done in exports.values()):
         return tuple(Output(path, places.of(path), done, "", None) for path, done in exports.items())
     found = []

@@ -92,10 +92,7 @@ def _children(least: int, most: int | None) -> tuple[Element, ...]:
     if most == 0:
         return ()
     return (
-        _x(
-            "group",
-            {"ref": "node", "minOccurs": str(least), "maxOccurs": "unbounded" if most is None else str(most)},
-        ),
+        _x("group", {"ref": "node", "minOccurs": str(least), "maxOccurs": "unbounded" if most is None else str(most)}),
     )
 
 
