@@ -10,58 +10,17 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import Category
 
-# The engine's own; `TAGS` has those that are nodes with ports.
-ENGINE: Final[dict[str, Category]] = {
-    **dict.fromkeys(
-        (
-            "ActionNodeBase",
-            "SyncActionNode",
-            "AsyncActionNode",
-            "ThreadedAction",
-            "StatefulActionNode",
-            "CoroActionNode",
-            "SimpleActionNode",
-            "ActionNode",
-        ),
-        "Action",
-    ),
-    **dict.fromkeys(("ConditionNode", "SimpleConditionNode"), "Condition"),
-    **dict.fromkeys(
-        (
-            "ControlNode",
-            "SequenceNode",
-            "SequenceWithMemory",
-            "SequenceStarNode",
-            "ReactiveSequence",
-            "FallbackNode",
-            "ReactiveFallback",
-            "IfThenElseNode",
-            "WhileDoElseNode",
-            "ParallelNode",
-            "ParallelAllNode",
-            "SwitchNode",
-            "ManualSelectorNode",
-        ),
-        "Control",
-    ),
-    **dict.fromkeys(
-        (
-            "DecoratorNode",
-            "SimpleDecoratorNode",
-            "InverterNode",
-            "ForceSuccessNode",
-            "ForceFailureNode",
-            "KeepRunningUntilFailureNode",
-            "RepeatNode",
-            "RetryNode",
-            "TimeoutNode",
-            "DelayNode",
-            "RunOnceNode",
-            "LoopNode",
-        ),
-        "Decorator",
-    ),
+_ENGINE: Final[dict[Category, str]] = {
+    "Action": "ActionNodeBase SyncActionNode AsyncActionNode ThreadedAction StatefulActionNode CoroActionNode "
+    "SimpleActionNode ActionNode",
+    "Condition": "ConditionNode SimpleConditionNode",
+    "Control": "ControlNode SequenceNode SequenceWithMemory SequenceStarNode ReactiveSequence FallbackNode "
+    "ReactiveFallback IfThenElseNode WhileDoElseNode ParallelNode ParallelAllNode SwitchNode ManualSelectorNode",
+    "Decorator": "DecoratorNode SimpleDecoratorNode InverterNode ForceSuccessNode ForceFailureNode "
+    "KeepRunningUntilFailureNode RepeatNode RetryNode TimeoutNode DelayNode RunOnceNode LoopNode",
 }
+# The engine's own; `TAGS` has those that are nodes with ports.
+ENGINE: Final[dict[str, Category]] = {name: category for category, names in _ENGINE.items() for name in names.split()}
 TAGS: Final = {
     "ParallelNode": "Parallel",
     "ParallelAllNode": "ParallelAll",

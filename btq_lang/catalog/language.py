@@ -238,11 +238,7 @@ SIGNS: Final = (
     ("#", "Charge  # until it is full", "a comment, to the end of the line, as `//`"),
     ("//", "Charge  // until it is full", "a comment, to the end of the line, as `#`"),
     ("/* */", "/* until it is full */", "a comment, over any number of lines"),
-    (
-        ":",
-        "signal battery : %",
-        "the unit of a signal, the type of a port, the quality of a requirement",
-    ),
+    (":", "signal battery : %", "the unit of a signal, the type of a port, the quality of a requirement"),
     ("/", "Recharge/MoveBase", "a path: the node MoveBase anywhere below Recharge; in a condition a division"),
     (
         "btq: ignore",

@@ -64,10 +64,7 @@ _WORDS: Final = (
     _custom("SyncAction", "Action", "SyncAction is a C++ base class, not a node: write the name of your own action"),
     # Older engines'.
     _old(
-        "SequenceStar",
-        "Control",
-        "SequenceStar is the name of SequenceWithMemory in version 3",
-        "SequenceWithMemory",
+        "SequenceStar", "Control", "SequenceStar is the name of SequenceWithMemory in version 3", "SequenceWithMemory"
     ),
     _old("FallbackStar", "Control", "FallbackStar is the name of Fallback in version 2", "Fallback", "2.5"),
     _old(
@@ -78,9 +75,7 @@ _WORDS: Final = (
         "3.6",
     ),
     _old(
-        "SubTreePlus",
-        "SubTree",
-        "SubTreePlus is the name of SubTree in version 3; its __autoremap is now _autoremap",
+        "SubTreePlus", "SubTree", "SubTreePlus is the name of SubTree in version 3; its __autoremap is now _autoremap"
     ),
     *(
         _old(

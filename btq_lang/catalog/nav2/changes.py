@@ -20,12 +20,7 @@ INSTEAD: Final = {("kilted", "ClearCostmapAroundPose"): "ClearCostmapAroundRobot
 _ENTRY: Final = r"\{.+\}"
 _FRAME: Final = "has the frame that bt_navigator is configured with, no longer `{}`"
 _MOVES: Final = ("AssistedTeleop", "BackUp", "DriveOnHeading", "Spin", "Wait")
-_CLEARS: Final = (
-    "ClearEntireCostmap",
-    "ClearCostmapExceptRegion",
-    "ClearCostmapAroundRobot",
-    "ClearCostmapAroundPose",
-)
+_CLEARS: Final = ("ClearEntireCostmap", "ClearCostmapExceptRegion", "ClearCostmapAroundRobot", "ClearCostmapAroundPose")
 
 
 def _read_again(since: str, nodes: tuple[str, ...], *ports: str) -> tuple[Change, ...]:
@@ -35,23 +30,17 @@ def _read_again(since: str, nodes: tuple[str, ...], *ports: str) -> tuple[Change
 
 CHANGES: Final = (
     # Iron
-    Change(
-        "iron",
-        ("TransformAvailable",),
-        "without `child` is refused when the tree is created; Humble ended the process of bt_navigator",
-        "write both frames",
-        "child",
-        None,
-        breaks=True,
-    ),
-    Change(
-        "iron",
-        ("TransformAvailable",),
-        "without `parent` is refused when the tree is created; Humble ended the process of bt_navigator",
-        "write both frames",
-        "parent",
-        None,
-        breaks=True,
+    *(
+        Change(
+            "iron",
+            ("TransformAvailable",),
+            f"without `{port}` is refused when the tree is created; Humble ended the process of bt_navigator",
+            "write both frames",
+            port,
+            None,
+            breaks=True,
+        )
+        for port in ("child", "parent")
     ),
     # Jazzy: BehaviorTree.CPP 4
     Change(

@@ -98,10 +98,7 @@ _ROUND_ROBIN: Final = control(
     flow="rotate",
 )
 _OLDER_ROUND_ROBIN: Final = control(
-    "RoundRobin",
-    "Ticks its children in turn.",
-    f"{_TURNS}After the last child follows the first one.",
-    flow="rotate",
+    "RoundRobin", "Ticks its children in turn.", f"{_TURNS}After the last child follows the first one.", flow="rotate"
 )
 
 
