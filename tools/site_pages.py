@@ -130,10 +130,9 @@ def _nodes() -> str:
 def _node(kind: NodeKind) -> str:
     least, most = kind.children
     children = f"{least} or more" if most is None else str(least) if least == most else f"{least} to {most}"
-    versions = f"{kind.since} and newer" if kind.until is None else f"{kind.since} to {kind.until}"
     lines = [f"# {kind.tag}", "", _sentence(kind.doc), "", kind.semantics, "", "| | |", "|---|---|"]
     lines += [f"| category | {kind.category} |", f"| written | {_codes(spellings(kind))} |"]
-    lines += [f"| children | {children} |", f"| BehaviorTree.CPP | {versions} |"]
+    lines += [f"| children | {children} |", f"| BehaviorTree.CPP | {kind.since} and newer |"]
     if kind.ports:
         lines += ["", "## Ports", "", "| port | direction | type | without it | |", "|---|---|---|---|---|"]
         lines += map(_port, kind.ports)

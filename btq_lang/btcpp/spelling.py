@@ -13,7 +13,7 @@ from btq_lang.btcpp.document import escape, escape_text
 from btq_lang.catalog.units import convert, parse_unit
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import QUANTITY, STRING
-from btq_lang.syntax.tree import Word
+from btq_lang.syntax.tree import Word, unquote
 
 
 def spelt(word: Word) -> str:
@@ -58,15 +58,7 @@ _TINY: Final = 1e-9  # the rounding error of a conversion; the checks call such 
 _SPECIAL: Final = re.compile(r'[&<>"\\\r]').search
 _IN_STRING: Final = re.compile(r'\\["\'\\nt]|[&<>"]|\r\n?')
 _SPELT: Final = {
-    '\\"': "&quot;",
-    "\\'": "'",
-    "\\\\": "\\",
-    "\\n": "&#10;",
-    "\\t": "&#9;",
-    "&": "&amp;",
-    "<": "&lt;",
-    ">": "&gt;",
-    '"': "&quot;",
-    "\r\n": "\n",
-    "\r": "\n",
+    **{each: escape(unquote(f'"{each}"')) for each in ('\\"', "\\'", "\\\\", "\\n", "\\t")},
+    **{each: escape(each) for each in '&<>"'},
+    **dict.fromkeys(("\r\n", "\r"), "\n"),
 }

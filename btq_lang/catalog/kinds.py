@@ -134,7 +134,7 @@ class NodeKind(Record):
         late_count: whether a wrong number of children throws only when the node is ticked, not at load.
         memory: the result after which its parent must not reset it, or it forgets what it waits for; empty: any parent
             may reset it.
-        since, until: the first and the last version that has it; until=None: the newest does.
+        since: the first version that has it.
     """
 
     tag: str
@@ -153,7 +153,6 @@ class NodeKind(Record):
     late_count: bool = False
     memory: Literal["", "success", "failure"] = ""
     since: str = "4.6"
-    until: str | None = None
 
     def port(self, name: str) -> PortKind | None:
         """Its port of that name."""

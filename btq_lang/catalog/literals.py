@@ -145,16 +145,16 @@ def _check_list(port_type: str, item: str, text: str, version: str) -> LiteralPr
     items = text.split(";")
     if items[-1] == "":
         items.pop()
-    found = [_check_one(item, one, version) for one in items]
-    for one, problem in zip(items, found, strict=True):
+    reads = []
+    for one in items:
+        problem = _check_one(item, one, version)
         if problem is not None and problem.kind == "refused":
             return LiteralProblem("refused", f"{problem.expected} as each item", found=_item(one))
-    reads = [one if problem is None else problem.reads or "" for one, problem in zip(items, found, strict=True)]
+        reads.append(one if problem is None else problem.reads or "")
     if reads == items:
         return None
-    return LiteralProblem(
-        "trailing-text", "an integer as each item" if item == "int" else "a number as each item", ";".join(reads)
-    )
+    expected = "an integer as each item" if item == "int" else "a number as each item"
+    return LiteralProblem("trailing-text", expected, ";".join(reads))
 
 
 def _check_json(item: str, text: str) -> LiteralProblem | None:
@@ -167,11 +167,10 @@ def _check_json(item: str, text: str) -> LiteralProblem | None:
         return LiteralProblem("refused", "well-formed JSON after `json:`")
     if not isinstance(values, list):
         return LiteralProblem("refused", "a JSON list after `json:`")
-    wanted: dict[str, tuple[type, ...]] = {"double": (int, float), "bool": (bool,), "std::string": (str,)}
-    types = wanted.get(item, (int, float, bool))
+    types, expected = _JSON_ITEMS[item]
     for value in values:
-        if not isinstance(value, types) or (item == "double" and isinstance(value, bool)):
-            return LiteralProblem("refused", f"{_JSON_ITEMS[item]} as each item", found=_item(json.dumps(value)))
+        if type(value) not in types:
+            return LiteralProblem("refused", f"{expected} as each item", found=_item(json.dumps(value)))
     return None
 
 
@@ -258,11 +257,11 @@ _SYNONYMS: Final = {
     "int8_t": "signed char",
     "uint8_t": "unsigned char",
 }
-_JSON_ITEMS: Final = {
-    "int": "a number, true or false",
-    "double": "a number",
-    "bool": "true or false",
-    "std::string": "a string",
+_JSON_ITEMS: Final[dict[str, tuple[tuple[type, ...], str]]] = {
+    "int": ((int, float, bool), "a number, true or false"),
+    "double": ((int, float), "a number"),
+    "bool": ((bool,), "true or false"),
+    "std::string": ((str,), "a string"),
 }
 _SHOWN_OF_BOOL: Final = ("true", "false", "1", "0")
 _RESULTS: Final = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")

@@ -58,7 +58,7 @@ def spellings(kind: NodeKind) -> tuple[str, ...]:
 
 def available(kind: NodeKind, version: str) -> bool:
     """Whether that version of the engine has the node."""
-    return at_least(version, kind.since) and (kind.until is None or at_least(kind.until, version))
+    return at_least(version, kind.since)
 
 
 def inspects_children(tag: str) -> bool:

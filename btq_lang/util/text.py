@@ -79,9 +79,9 @@ def apply_edits(text: str, edits: Iterable[Edit]) -> str:
     return "".join([*pieces, text[at:]])
 
 
-def alike(first: Sequence[T], second: Sequence[T], differ: Callable[[T, T], bool] = ne) -> int:
+def alike(first: Sequence[T], second: Sequence[T]) -> int:
     """The length of the common prefix."""
-    return next(compress(count(), map(differ, first, second)), min(len(first), len(second)))
+    return next(compress(count(), map(ne, first, second)), min(len(first), len(second)))
 
 
 def changed(before: str, after: str) -> Span | None:
