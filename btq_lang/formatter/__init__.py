@@ -41,7 +41,7 @@ from btq_lang.formatter.layout import FormatOptions, Row, laid_out
 from btq_lang.formatter.lines import Line, Remark, logical_lines
 from btq_lang.formatter.marks import Marks
 from btq_lang.parser import Parsed, parse
-from btq_lang.util.record import Record
+from btq_lang.util.record import Part, Record
 from btq_lang.util.text import LINE_END, Edit, Span, alike
 
 __all__ = ["DEFAULTS", "FormatOptions", "Formatted", "format_range", "format_text"]
@@ -111,11 +111,9 @@ def refused(parsed: Parsed) -> Diagnostic | None:
 # ---- the whole file -------------------------------------------------------------------------------------------------
 
 
-class _Stretch(Record):
+class _Stretch(Part):
     """The new text between two offsets; `is_moved`: one of its lines gets another indentation."""
 
-    start: int
-    end: int
     level: int
     is_moved: bool
     text: str

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TypeAlias
 
 from btq_lang.syntax.words import Word
-from btq_lang.util.record import Record
+from btq_lang.util.record import Part, Record
 from btq_lang.util.text import Span
 
 # ---- Arguments and parameters ---------------------------------------------------------------------------------------
@@ -66,62 +66,49 @@ class Table(Record):
 Bounded: TypeAlias = Amount | Table
 
 
-class Bound(Record):
+class Bound(Part):
     """`at most 30 s`.  relation: `<=`, `>=`, `<`, `>`, or `between` with both values."""
 
-    start: int
-    end: int
     relation: str
     value: Bounded | None
     upper: Amount | None = None
 
 
-class Event(Record):
+class Event(Part):
     """`Pick starts`, `mission finishes` or `when battery < 3 %`; no path: the mission, or a condition."""
 
-    start: int
-    end: int
     path: Path | None
     happening: str
     condition: Condition | None = None
 
 
-class Mission(Record):
+class Mission(Part):
     """The subject `mission`: the whole run."""
 
-    start: int
-    end: int
 
-
-class Every(Record):
+class Every(Part):
     """The subject `every MoveBase`: each source node of that ID or kind."""
 
-    start: int
-    end: int
     name: Word
 
 
-class Between(Record):
+class Between(Part):
     """The subject `from Pick starts to Place succeeds`."""
 
-    start: int
-    end: int
     first: Event | None
     last: Event | None
 
 
-class Sum(Record):
+class Sum(Part):
     """The subject `sum of X, Y`."""
 
-    start: int
-    end: int
     paths: tuple[Path, ...]
 
 
 Subject: TypeAlias = Path | Mission | Every | Between | Sum
 
 
-class Claim(Record):
+class Claim(Part):
     """What a requirement demands: a subject (None: the node it is attached to), a verb and its operands.
 
     Attributes:
@@ -134,8 +121,6 @@ class Claim(Record):
         every: `runs every d`.
     """
 
-    start: int
-    end: int
     subject: Subject | None
     verb: Word
     bound: Bound | None = None
@@ -146,71 +131,55 @@ class Claim(Record):
     every: bool = False
 
 
-class Scope(Record):
+class Scope(Part):
     """`while φ` or `when φ`."""
 
-    start: int
-    end: int
     word: Word
     condition: Condition | None
 
 
-class Odds(Record):
+class Odds(Part):
     """`in at least 98 % of runs`, `with probability >= 98 %`. experiments: None if omitted."""
 
-    start: int
-    end: int
     relation: str
     value: Word | None
     experiments: Word | None
 
 
-class Confidence(Record):
+class Confidence(Part):
     """`confidence 95 %`."""
 
-    start: int
-    end: int
     value: Word | None
 
 
-class Window(Record):
+class Window(Part):
     """`over last 200 activations`, `over last 7 d`."""
 
-    start: int
-    end: int
     size: Word | None
     experiments: Word | None
 
 
-class OnViolation(Record):
+class OnViolation(Part):
     """`on violation fail`.  action: fail, halt, warn or log."""
 
-    start: int
-    end: int
     action: Word | None
 
 
-class Goal(Record):
+class Goal(Part):
     """`goal 15 Wh`: a value better than the bound."""
 
-    start: int
-    end: int
     value: Bounded | None
 
 
-class Because(Record):
+class Because(Part):
     """`because "movement next to people"`."""
 
-    start: int
-    end: int
     text: Word | None
 
 
-class How(Record):
+class How(Part):
     """`verified by review`.  method: monitor, analysis, test or review."""
 
-    start: int
-    end: int
     method: Word | None
 
 
@@ -234,54 +203,42 @@ class Operand(Record):
         return self.word.end
 
 
-class Call(Record):
+class Call(Part):
     """`max(speed)`: an aggregate of a signal."""
 
-    start: int
-    end: int
     function: Word
     signal: Word | None
 
 
-class NodeRuns(Record):
+class NodeRuns(Part):
     """`node BatteryCheck/MoveBase`: true while that node runs."""
 
-    start: int
-    end: int
     path: Path
 
 
-class Negative(Record):
+class Negative(Part):
     """`-x`."""
 
-    start: int
-    end: int
     operand: Condition
 
 
-class Not(Record):
+class Not(Part):
     """`not φ`."""
 
-    start: int
-    end: int
     operand: Condition
 
 
-class Binary(Record):
+class Binary(Part):
     """`a + b`, `φ and ψ`.  operator: + - * / and or."""
 
-    start: int
-    end: int
     operator: str
     left: Condition
     right: Condition
 
 
-class Comparison(Record):
+class Comparison(Part):
     """`a < b`, `a < b < c`: one more operand than operators."""
 
-    start: int
-    end: int
     operators: tuple[str, ...]
     operands: tuple[Condition, ...]
 

@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from btq_lang.syntax.clauses import Argument, Clause, Parameter
 from btq_lang.syntax.words import Word
-from btq_lang.util.record import Record
+from btq_lang.util.record import Part, Record
 from btq_lang.util.text import Span
 
 
@@ -33,11 +33,9 @@ class Quality(Record):
     requirements: tuple[Requirement, ...] = ()
 
 
-class Satisfices(Record):
+class Satisfices(Part):
     """`satisfices Quality, …`: a concern, not yet measured."""
 
-    start: int
-    end: int
     qualities: tuple[Quality, ...]
 
 
@@ -48,23 +46,19 @@ class ReqRef(Record):
     arguments: tuple[Argument, ...] = ()
 
 
-class Satisfies(Record):
+class Satisfies(Part):
     """`satisfies rq1, QualityReq rq2 …`: requirements attached to the node."""
 
-    start: int
-    end: int
     uses: tuple[Requirement | ReqRef, ...]
 
 
-class Tags(Record):
+class Tags(Part):
     """`tags heavy, indoor`."""
 
-    start: int
-    end: int
     names: tuple[Word, ...]
 
 
-class Requirement(Record):
+class Requirement(Part):
     """A requirement, defined in place or, as an item, at file level.
 
     Attributes:
@@ -73,8 +67,6 @@ class Requirement(Record):
         text: its title, or the classic description.
     """
 
-    start: int
-    end: int
     name: Word | None
     classic: bool
     parameters: tuple[Parameter, ...]

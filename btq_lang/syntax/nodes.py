@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 from btq_lang.syntax.node_clauses import NodeClause
 from btq_lang.syntax.words import Pair, Word
-from btq_lang.util.record import Record
+from btq_lang.util.record import Part
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
@@ -142,9 +142,7 @@ class Node:
         return f"Node({self.head!r}, {len(self.children)} children)"
 
 
-class Verbatim(Record):
+class Verbatim(Part):
     """`xml "<element/>"`: one verbatim XML element."""
 
-    start: int
-    end: int
     text: Word | None

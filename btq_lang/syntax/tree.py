@@ -60,44 +60,36 @@ from btq_lang.syntax.words import Pair as Pair
 from btq_lang.syntax.words import TypeWord as TypeWord
 from btq_lang.syntax.words import Word as Word
 from btq_lang.syntax.words import unquote as unquote
-from btq_lang.util.record import Record, fields_of
+from btq_lang.util.record import Part, Record, fields_of
 from btq_lang.util.text import Span
 
 # ---- Items ----------------------------------------------------------------------------------------------------------
 
 
-class Include(Record):
+class Include(Part):
     """`include "stations.btq"`."""
 
-    start: int
-    end: int
     path: Word | None
     attributes: tuple[Pair, ...] = ()
 
 
-class Qualities(Record):
+class Qualities(Part):
     """`qualities iso25010-2023`: the edition in which names are looked up."""
 
-    start: int
-    end: int
     edition: Word | None
 
 
-class QualityDecl(Record):
+class QualityDecl(Part):
     """`quality gentleness : safety "…"`: a user-defined quality."""
 
-    start: int
-    end: int
     name: Word | None
     parent: QualityPath | None
     text: Word | None
 
 
-class Port(Record):
+class Port(Part):
     """`input station : string = "charger" "where to go"`; type: as one word."""
 
-    start: int
-    end: int
     direction: Word
     name: Word | None
     type: Word | None
@@ -111,19 +103,15 @@ class Port(Record):
         return self.name or next((pair.value for pair in self.attributes if pair.key.text == "name"), None)
 
 
-class Meta(Record):
+class Meta(Part):
     """`metadata (color = "red")` of a model."""
 
-    start: int
-    end: int
     attributes: tuple[Pair, ...]
 
 
-class Model(Record):
+class Model(Part):
     """`Action MoveBase "…"` at file level: a node's interface."""
 
-    start: int
-    end: int
     category: Word
     name: Word | None
     attributes: tuple[Pair, ...]
@@ -135,19 +123,15 @@ class Model(Record):
         return tuple([part for part in self.body if isinstance(part, Port)]) if self.body else ()
 
 
-class Models(Record):
+class Models(Part):
     """`TreeNodesModel`: models, as in the XML element."""
 
-    start: int
-    end: int
     models: tuple[Model | Verbatim, ...]
 
 
-class Signal(Record):
+class Signal(Part):
     """`signal battery : % from {battery_level} level fresh within 5 s initially 100 %`."""
 
-    start: int
-    end: int
     name: Word | None
     unit: Word | None
     source: Word | None = None
@@ -156,56 +140,46 @@ class Signal(Record):
     initially: Amount | None = None
 
 
-class Context(Record):
+class Context(Part):
     """`context humans_near : humans > 0`."""
 
-    start: int
-    end: int
     name: Word | None
     condition: Condition | None
 
 
-class Selector(Record):
+class Selector(Part):
     """`every MoveBase under PickPlace`, `every node tagged heavy`, or a path.
 
     Attributes:
         every: the ID or kind after `every`; None with a path or a tag.
     """
 
-    start: int
-    end: int
     every: Word | None = None
     tag: Word | None = None
     path: Path | None = None
 
 
-class Apply(Record):
+class Apply(Part):
     """`apply slow(limit = 0.1 m/s) to every MoveBase except BatteryCheck/MoveBase`."""
 
-    start: int
-    end: int
     uses: tuple[ReqRef, ...]
     targets: tuple[Selector, ...]
     exceptions: tuple[Selector, ...] = ()
 
 
-class Root(Record):
+class Root(Part):
     """`Root mainTree`: the main tree's name; `bracketed`: its attributes are written to XML exactly as given, even if
     there are none.
     """
 
-    start: int
-    end: int
     name: Word | None
     attributes: tuple[Pair, ...]
     bracketed: bool
 
 
-class Tree(Record):
+class Tree(Part):
     """`BehaviorTree PickPlace`: body as for a node; more or fewer than one node is a diagnostic."""
 
-    start: int
-    end: int
     name: Word | None
     attributes: tuple[Pair, ...]
     ports: tuple[Port, ...]
@@ -226,11 +200,8 @@ class Tree(Record):
         return chain.from_iterable([child.walk() for child in self.children if isinstance(child, Node)])
 
 
-class Skipped(Record):
+class Skipped(Part):
     """Lines that do not form an item; a diagnostic says what is wrong with them."""
-
-    start: int
-    end: int
 
 
 Item: TypeAlias = (

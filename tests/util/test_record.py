@@ -2,7 +2,7 @@ import pickle
 
 import pytest
 
-from btq_lang.util.record import Record, replace
+from btq_lang.util.record import Part, Record, fields_of, replace
 
 
 class Point(Record):
@@ -57,3 +57,17 @@ def test_a_default_before_a_field_without_is_refused() -> None:
         class Wrong(Record):
             a: int = 1
             b: int  # type: ignore[misc]
+
+
+def test_a_part_begins_with_its_place() -> None:
+    class Word(Part):
+        """A word."""
+
+        text: str = ""
+
+    class Gap(Part):
+        """Blanks."""
+
+    assert Word(1, 3, "ab") == Word(start=1, end=3, text="ab") != Word(1, 3)
+    assert (fields_of(Word(1, 3)), fields_of(Gap(3, 4))) == (("start", "end", "text"), ("start", "end"))
+    assert repr(replace(Gap(3, 4), end=5)) == "Gap(start=3, end=5)"
