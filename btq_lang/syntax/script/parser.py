@@ -129,7 +129,7 @@ class _Parser:
             elif rank > TERNARY:
                 self.at += 1
                 right = self.expression(rank + 1)
-                left = Binary(kind, left, right, left.start, right.end)
+                left = Binary(left.start, right.end, kind, left, right)
                 height = max(height, self.height)
             elif rank == TERNARY:
                 left, height = self.ternary(left, height)
@@ -152,7 +152,7 @@ class _Parser:
             self.at += 1
             operands.append(self.expression(COMPARISON + 1))
             height = max(height, self.height)
-        return Comparison(tuple(operators), tuple(operands), left.start, operands[-1].end), height
+        return Comparison(left.start, operands[-1].end, tuple(operators), tuple(operands)), height
 
     def ternary(self, condition: Expression, height: int) -> tuple[Expression, int]:
         """`a ? b : c`"""
@@ -164,7 +164,7 @@ class _Parser:
             self.unclosed(error(self.span(question), "a `?` needs both values: `condition ? this : that`"))
         self.at += 1
         otherwise = self.expression(TERNARY)
-        return Ternary(condition, then, otherwise, condition.start, otherwise.end), max(height, self.height)
+        return Ternary(condition.start, otherwise.end, condition, then, otherwise), max(height, self.height)
 
     def assignment(self, target: Expression, height: int) -> tuple[Expression, int]:
         """`x := a`, and `=`, `+=`, `-=`, `*=`, `/=`"""
@@ -174,7 +174,7 @@ class _Parser:
             self.problems.append(mistakes.not_assignable(self.span(operator), kind == "="))
         self.at += 1
         value = self.expression(0)
-        return Assign(kind, target, value, target.start, value.end), max(height, self.height)
+        return Assign(target.start, value.end, kind, target, value), max(height, self.height)
 
     def operand(self) -> Expression:
         """`x`, `30`, `'text'`, `true`, `(a + b)`, `-x`, `~x`, `!x`"""
@@ -186,12 +186,12 @@ class _Parser:
             self.height = 0
             meant = self.meant.get(at)
             if kind == NAME:
-                return Name(self.text[start:end] if meant is None else meant, start, end)
+                return Name(start, end, self.text[start:end] if meant is None else meant)
             if kind == NUMBER:
-                return Number(self.text[start:end] if meant is None else meant, start, end)
+                return Number(start, end, self.text[start:end] if meant is None else meant)
             if kind == TEXT:
-                return Text(self.text[start + 1 : end - 1] if meant is None else meant, start, end)
-            return Bool(self.text[start:end] == "true", start, end)
+                return Text(start, end, self.text[start + 1 : end - 1] if meant is None else meant)
+            return Bool(start, end, self.text[start:end] == "true")
         if kind == "(":
             self.at += 1
             inner = self.expression(0)
@@ -202,7 +202,7 @@ class _Parser:
             self.height += not isinstance(inner, Unary | Binary | Comparison | Ternary | Assign)
             if self.height > MAX_DEPTH:
                 self.stop(mistakes.too_deep(Span(start, end), MAX_DEPTH))
-            return Group(inner, start, self.ends[self.at - 1])
+            return Group(start, self.ends[self.at - 1], inner)
         if kind == "-" or kind == "!" or kind == "~":
             return self.prefixed()
         if kind == "+" and (self.kinds[at + 1] in BEGINS or self.kinds[at + 1] in ("+", "-")):
@@ -224,7 +224,7 @@ class _Parser:
         self.height += 1
         if self.height > MAX_DEPTH:
             self.stop(mistakes.too_deep(self.span(at), MAX_DEPTH))
-        return Unary(self.kinds[at], operand, self.starts[at], operand.end)
+        return Unary(self.starts[at], operand.end, self.kinds[at], operand)
 
     # ---- errors ----
 

@@ -1,7 +1,7 @@
 """The tree of a script: statements of nested expressions.
 
 One invariant: `start` and `end` of a record are its place in the script's text, without the brackets around it (a
-`Group` has them); a tree that was not parsed from a text has zeros there.  Versions of the engine are unknown here.
+`Group` has them).  Versions of the engine are unknown here.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.util.record import Record, fields_of
+from btq_lang.util.record import Part, Record, fields_of
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
@@ -32,12 +32,10 @@ class Script(Record):
     complete: bool = True
 
 
-class Number(Record):
+class Number(Part):
     """`30`, `0x1F`, `2.5e-3`; `raw` is its source.  A sign is a `Unary` around it."""
 
     raw: str
-    start: int = 0
-    end: int = 0
 
     @property
     def value(self) -> float:
@@ -48,84 +46,66 @@ class Number(Record):
         return int(self.raw) if self.raw.isdecimal() and len(self.raw) < 400 else float(self.raw)
 
 
-class Text(Record):
+class Text(Part):
     """`'charger'`; `value` is the text between the quotes: there are no escapes."""
 
     value: str
-    start: int = 0
-    end: int = 0
 
 
-class Bool(Record):
+class Bool(Part):
     """`true` or `false`."""
 
     value: bool
-    start: int = 0
-    end: int = 0
 
 
-class Name(Record):
+class Name(Part):
     """`battery`, or `@battery` for an entry of the root blackboard; an enumeration's names look alike."""
 
     name: str
-    start: int = 0
-    end: int = 0
 
 
-class Group(Record):
+class Group(Part):
     """`( inner )`: kept because older engines need more brackets than the newest one."""
 
     inner: Expression
-    start: int = 0
-    end: int = 0
 
 
-class Unary(Record):
+class Unary(Part):
     """`-x`, `~x`, `!x`."""
 
     operator: str
     operand: Expression
-    start: int = 0
-    end: int = 0
 
 
-class Binary(Record):
+class Binary(Part):
     """`a + b`, and `-`, `*`, `/`, `..`, `&`, `|`, `^`, `&&`, `||`."""
 
     operator: str
     left: Expression
     right: Expression
-    start: int = 0
-    end: int = 0
 
 
-class Comparison(Record):
+class Comparison(Part):
     """`a < b <= c`: one more operand than operators, and true where every neighbouring pair is."""
 
     operators: tuple[str, ...]
     operands: tuple[Expression, ...]
-    start: int = 0
-    end: int = 0
 
 
-class Ternary(Record):
+class Ternary(Part):
     """`condition ? then : otherwise`."""
 
     condition: Expression
     then: Expression
     otherwise: Expression
-    start: int = 0
-    end: int = 0
 
 
-class Assign(Record):
+class Assign(Part):
     """`target := value`, and `=`, `+=`, `-=`, `*=`, `/=`.  A target other than a `Name` is a problem of the script."""
 
     operator: str
     target: Expression
     value: Expression
-    start: int = 0
-    end: int = 0
 
 
 Expression: TypeAlias = Number | Text | Bool | Name | Group | Unary | Binary | Comparison | Ternary | Assign
