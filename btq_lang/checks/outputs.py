@@ -10,7 +10,7 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.versions import OUTPUT_IN_BRACES
 from btq_lang.checks import lookups
 from btq_lang.checks.engines import is_for_version_3
-from btq_lang.checks.view import View, subtree_ports
+from btq_lang.checks.view import View, ports_beside
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Pair, Port, Word, is_name
@@ -103,9 +103,9 @@ def _types(view: View, seen: ResolvedNode) -> dict[str, str]:
     """The outputs of a node, and their types."""
     if seen.kind is not None:
         return _outputs_of(seen.kind.tag)
+    types = _declared(ports_beside(view, seen))
     if seen.is_subtree:
-        return dict.fromkeys(_declared(subtree_ports(view, seen)), "")
-    types = _declared(view.model_ports(seen))
+        return dict.fromkeys(types, "")
     index = seen.behavior.port_for("index") if seen.behavior is not None else None
     return types if index is None else {**types, index.name: index.type}
 

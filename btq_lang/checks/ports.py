@@ -15,7 +15,7 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS, PortKind
 from btq_lang.catalog.versions import ID_IN_COMPACT_FORM, PORTS_OF_SUBTREE, UNDERSCORES, is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import model_related, way_in
-from btq_lang.checks.view import View, subtree_ports
+from btq_lang.checks.view import View, ports_beside
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, written
@@ -208,7 +208,7 @@ def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
         return None
     if seen.is_subtree:
         # The engine reads `default = ""` as none, and requires outputs too.
-        declared = [(port, port.default.text if port.default else "") for port in subtree_ports(view, seen)]
+        declared = [(port, port.default.text if port.default else "") for port in ports_beside(view, seen)]
         ports = [replace(as_kind(port), required=port.id is not None and not default) for port, default in declared]
         return KnownPorts(tuple(ports)) if ports else None
     if seen.kind is not None:

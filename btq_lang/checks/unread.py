@@ -15,7 +15,7 @@ from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.entries import blackboards, mentions
 from btq_lang.checks.pointers import passed_on, pointed_at
-from btq_lang.checks.view import View, declared_ports
+from btq_lang.checks.view import View, declared_ports, ports_beside
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Pair, Word, port_named
 from btq_lang.util.record import replace
@@ -34,7 +34,7 @@ def default_instead(view: View) -> Iterator[Diagnostic]:
     from btq_lang.catalog.nav2.read_once import is_read_once  # only for Nav2
 
     for seen, name, tree in _of_nav2(view, distribution):
-        ports = {port.id.text for port in view.model_ports(seen) if port.id is not None}
+        ports = {port.id.text for port in ports_beside(view, seen) if port.id is not None}
         for pair in seen.node.attributes:
             port, value = pair.key.text, pair.value
             key = pointed_at(port, value.text) if value is not None else None
@@ -137,7 +137,7 @@ def _of_distribution(view: View, seen: ResolvedNode, distribution: str) -> str |
 
 
 def _default(view: View, seen: ResolvedNode, pair: Pair, value: Word, what: str) -> Diagnostic:
-    declared = port_named(view.model_ports(seen), pair.key.text)
+    declared = port_named(ports_beside(view, seen), pair.key.text)
     default = declared.default.text if declared is not None and declared.default is not None else ""
     goes_on = f"the node goes on with its default, {default}" if default else "the node goes on without a value"
     return Diagnostic("default-instead", value.span, f"`{pair.key.text}` of {seen.shown_kind} {what}", notes=(goes_on,))

@@ -236,11 +236,6 @@ class View:
         """The nodes of a tree of any file in scope, sorted; empty for any other item."""
         return self.ask(sorted_nodes, path, tree) if isinstance(tree.item, Tree) else NO_NODES
 
-    def model_ports(self, seen: ResolvedNode) -> tuple[Port, ...]:
-        """The ports that the model of a node declares."""
-        model = self.find(Kind.MODEL, seen.id.text) if seen.is_defined and seen.id is not None else None
-        return model.ports if model is not None else ()
-
     # ---- the file and the project ----
 
     workspace = _OfFile(inputs.everything)
@@ -331,9 +326,12 @@ class View:
         return tuple([(each, can_be_checked(each.text, is_name)) for each in constraints(requirement.text)])
 
 
-def subtree_ports(view: View, seen: ResolvedNode) -> tuple[Port, ...]:
-    """The ports that the tree of a SubTree declares, in its block or in a model of its own."""
-    return declared_ports(view, seen.node.id.text) if seen.node.id is not None else ()
+def ports_beside(view: View, seen: ResolvedNode) -> tuple[Port, ...]:
+    """The ports that the model of a node declares, or the tree of a SubTree; not those of a built-in."""
+    if seen.is_subtree:
+        return declared_ports(view, seen.node.id.text) if seen.node.id is not None else ()
+    model = view.find(Kind.MODEL, seen.id.text) if seen.is_defined and seen.id is not None else None
+    return model.ports if model is not None else ()
 
 
 def declared_ports(view: View, name: str) -> tuple[Port, ...]:
@@ -350,7 +348,7 @@ def port_of(view: View, seen: ResolvedNode, name: str) -> PortKind | None:
     if seen.kind is not None:
         builtin = seen.kind.port(name)
         return of_version(builtin, view.target) if builtin is not None else None
-    port = port_named(subtree_ports(view, seen) if seen.is_subtree else view.model_ports(seen), name)
+    port = port_named(ports_beside(view, seen), name)
     return as_kind(port) if port is not None else None
 
 
