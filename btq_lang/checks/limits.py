@@ -27,12 +27,11 @@ def limit_too_small(demanded: Demanded) -> Iterator[Found]:
         most = claim.highest if VERBS[claim.verb].limits and applied.requirement.is_enforceable else None
         if most is None or most[0] >= 0.001:
             continue
-        yield found_at(
-            place,
-            "limit-too-small",
+        message = (
             f"the engine cannot enforce `{most[1]}`: it counts whole milliseconds, and 0 disables the limit; "
-            "write at least 1 ms",
+            "write at least 1 ms"
         )
+        yield found_at(place, "limit-too-small", message)
 
 
 def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:

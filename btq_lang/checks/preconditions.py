@@ -53,17 +53,16 @@ def while_skip_is_success(view: View) -> Iterator[Diagnostic]:
         step, parent = _skipped(seen)
         if parent is None or not _takes_for_success(parent, step) or _is_choice(parent, step):
             continue
-        yield Diagnostic(
-            "while-skip-is-success",
-            pair.key.span,
+        message = (
             f"when `_while` becomes false, {seen.shown_kind} is halted and {parent.shown_kind} continues "
-            "as if it had succeeded",
-            notes=(
-                "the halted node returns SKIPPED, which a Sequence treats as done",
-                f"to fail instead, use {view.spelt('R->')} with a ScriptCondition in front of the node"
-                + ("" if view.is_xml else ", or a requirement with `keeps`"),
-            ),
+            "as if it had succeeded"
         )
+        notes = (
+            "the halted node returns SKIPPED, which a Sequence treats as done",
+            f"to fail instead, use {view.spelt('R->')} with a ScriptCondition in front of the node"
+            + ("" if view.is_xml else ", or a requirement with `keeps`"),
+        )
+        yield Diagnostic("while-skip-is-success", pair.key.span, message, notes=notes)
 
 
 def skipped_condition(view: View) -> Iterator[Diagnostic]:

@@ -119,9 +119,8 @@ def _resource(reader: Reader, word: syntax.Word | None) -> tuple[model.Signal | 
         reader.unknown(word, ("signals",))
         return None, None
     if signal.sort != "number":
-        reader.complain(
-            "unit-mismatch", word.span, f"`uses` requires a number, but `{signal.name}` is {SORTS[signal.sort]}"
-        )
+        message = f"`uses` requires a number, but `{signal.name}` is {SORTS[signal.sort]}"
+        reader.complain("unit-mismatch", word.span, message)
         return None, None
     if signal.unit is None:
         return None, None
@@ -181,11 +180,8 @@ def _odds(reader: Reader, written: syntax.Odds) -> model.Odds | None:
     if share is None or written.value is None:
         return None
     if not 0.0 < share.si <= 1.0:
-        reader.complain(
-            "impossible-odds",
-            written.value.span,
-            f"expected a probability above 0 and up to 100 %, found `{written.value.raw}`",
-        )
+        message = f"expected a probability above 0 and up to 100 %, found `{written.value.raw}`"
+        reader.complain("impossible-odds", written.value.span, message)
         return None
     of_runs = written.experiments is not None and written.experiments.raw == "runs"
     text = reader.text(written.start, written.end)
@@ -212,9 +208,8 @@ def _window(reader: Reader, written: syntax.Window) -> model.Window | None:
     if written.experiments is not None:
         count = float(written.size.raw)
         if not 1 <= count < inf or count != int(count):
-            reader.complain(
-                "impossible-odds", written.size.span, f"expected a positive whole number, found `{written.size.raw}`"
-            )
+            message = f"expected a positive whole number, found `{written.size.raw}`"
+            reader.complain("impossible-odds", written.size.span, message)
             return None
         of_runs = written.experiments.raw == "runs"
         return model.Window(int(count), "runs" if of_runs else "activations", None, text, place)
