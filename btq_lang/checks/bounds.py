@@ -12,7 +12,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, parse_unit
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, write_fix
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import NUMBER, QUANTITY
@@ -103,7 +103,7 @@ def _count(
     fixes: tuple[Fix, ...] = ()
     whole = max(1, ceil(number) if is_lower else floor(number))
     if amount.word.kind == NUMBER and not amount.negative and not isinstance(claim.per, syntax.Word):
-        fixes = (replace_fix(f"Write `{whole}`", amount.word.span, str(whole)),)
+        fixes = (write_fix(str(whole), amount.word.span),)
     yield Diagnostic("impossible-bound", amount.word.span, message, notes=notes, fixes=fixes)
 
 

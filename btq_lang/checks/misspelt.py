@@ -16,7 +16,7 @@ from btq_lang.checks.calls import callers
 from btq_lang.checks.entries import Mention, blackboards
 from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix, write_fix
 from btq_lang.syntax.tree import Tree, Verbatim
 from btq_lang.util.spelling import distance, without_digits
 from btq_lang.workspace.queries import Store
@@ -63,7 +63,7 @@ def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> It
             continue
         if not view.ask(_is_created, tree, mention.name) and view.is_complete:
             message = f"a script reads `{mention.name}` as the name of an entry; did you mean `{meant}`?"
-            fix = replace_fix(f"Write `{meant}`", mention.span, meant)
+            fix = write_fix(meant, mention.span)
             yield Diagnostic("misspelt-entry", mention.span, message, fixes=(fix,))
 
 

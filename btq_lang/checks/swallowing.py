@@ -102,13 +102,8 @@ def _swallows(parent: ResolvedNode, child: ResolvedNode) -> str | None:
 def _failures_needed(parallel: ResolvedNode) -> int:
     """The number of children that must fail for it to fail; 1 if unknown."""
     n = len(parallel.node.children)
-    wanted, failures = port_count(parallel, "successes"), port_count(parallel, "failures")
-    if failures is None:
-        return 1
-    failures = failures if failures >= 0 else n + failures + 1
-    if parallel.flow == "parallel-all":
-        return failures
-    if wanted is None:
-        return 1
-    wanted = wanted if wanted >= 0 else n + wanted + 1
-    return min(failures, n - wanted + 1)
+    counts = [port_count(parallel, role) for role in ("successes", "failures")]
+    wanted, failures = [n + count + 1 if count is not None and count < 0 else count for count in counts]
+    if failures is None or parallel.flow == "parallel-all":
+        return failures if failures is not None else 1
+    return min(failures, n - wanted + 1) if wanted is not None else 1

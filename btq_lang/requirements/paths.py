@@ -10,7 +10,7 @@ from collections.abc import Collection
 from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix, write_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements import nodes
 from btq_lang.requirements.model import Parameter, Target
@@ -171,7 +171,7 @@ class PathReader:
         paths = dict.fromkeys(path for target in some if (path := self._path_to(target)) is not None)
         message = f"ambiguous path `{shown}`: {len(found)} nodes match"
         notes = ("a path must match one node; write `every` for all of them, in a clause or in `apply … to every …`",)
-        fixes = tuple(replace_fix(f"Write `{path}`", span, path) for path in list(paths)[:_SHOWN])
+        fixes = tuple(write_fix(path, span) for path in list(paths)[:_SHOWN])
         self.complain("ambiguous-path", span, message, related=related, notes=notes, fixes=fixes)
 
     def _missing(self, names: tuple[str, ...], shown: str) -> str:

@@ -12,7 +12,7 @@ from typing import Final, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import a_dimension, to_si
-from btq_lang.diagnostics.model import Fix, replace_fix
+from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.requirements import model
 from btq_lang.requirements.paths import PathReader, Problem
 from btq_lang.requirements.terms import (
@@ -251,11 +251,9 @@ class Reader(PathReader):
         fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, name) for name in meant)
         if word.text[-1] in "²³":
             power = "^2" if word.text[-1] == "²" else "^3"
-            last = Span(word.end - 1, word.end)
-            fix = replace_fix(f"Write `{power}`", last, power)
-            self.complain(
-                "unknown-unit", word.span, f"unknown unit `{word.text}`; write the power as `{power}`", fixes=(fix,)
-            )
+            message = f"unknown unit `{word.text}`; write the power as `{power}`"
+            fix = write_fix(power, Span(word.end - 1, word.end))
+            self.complain("unknown-unit", word.span, message, fixes=(fix,))
             return
         note = f"{'or ' if meant else ''}declare it: `signal {word.text} : {unit} from {{{word.text}}}`"
         message = f"unknown signal `{word.text}`{did_you_mean(meant)}"
@@ -267,7 +265,7 @@ class Reader(PathReader):
             left, right = word.text[:at], word.text[at + 1 :]
             if character == "-" and self._is_declared(left) and self._is_declared(right):
                 message = f"undefined name `{word.text}`; write spaces around `-` to subtract"
-                fixes = (replace_fix(f"Write `{left} - {right}`", word.span, f"{left} - {right}", safe=True),)
+                fixes = (write_fix(f"{left} - {right}", word.span, safe=True),)
                 notes = ("without spaces `-` is part of the name",)
                 self.complain("subtraction-without-blanks", word.span, message, notes=notes, fixes=fixes)
                 return True
@@ -302,7 +300,7 @@ class Reader(PathReader):
         fixes: tuple[Fix, ...] = ()
         if term.word is not None:
             kelvin = f"{term.word.raw.removesuffix(term.unit or '').rstrip()} K"
-            fixes = (replace_fix(f"Write `{kelvin}`", term.span, kelvin),)
+            fixes = (write_fix(kelvin, term.span),)
         message = f"expected a temperature difference, found `{self._at(term.span)}` (a temperature)"
         self.complain("unit-mismatch", term.span, message, notes=("write the difference in K",), fixes=fixes)
 
@@ -311,7 +309,7 @@ class Reader(PathReader):
         if self._has_unknown_unit(term):
             return
         number = term.word.raw
-        fix = replace_fix(f"Write `{number} {unit}`", term.span, f"{number} {unit}")
+        fix = write_fix(f"{number} {unit}", term.span)
         self.complain("number-without-unit", term.span, f"missing unit after `{number}`; {message}", fixes=(fix,))
 
     def _has_unknown_unit(self, term: Term) -> bool:
