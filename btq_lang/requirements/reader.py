@@ -248,7 +248,8 @@ class Reader(PathReader):
         if not inputs.is_complete(self.store, self.viewpoint):
             return
         meant = self.near(word.text, *kinds) if word.text not in OF_PYTHON else (word.text.lower(),)
-        fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, name) for name in meant)
+        title = f"Replace `{word.text}` with"
+        fixes = tuple(replace_fix(f"{title} `{name}`", word.span, syntax.written(name)) for name in meant)
         if word.text[-1] in "²³":
             power = "^2" if word.text[-1] == "²" else "^3"
             message = f"unknown unit `{word.text}`; write the power as `{power}`"

@@ -35,6 +35,12 @@ def test_what_was_probably_meant(clause: str, title: str, mended: str | None) ->
         assert_fix(wrong, title, right)
 
 
+def test_a_name_that_needs_quotes_is_offered_with_them() -> None:
+    text = 'QualityReq rq1 "t"\n    keeps true\n    while {}\nBehaviorTree A\n    ->\n        Pick "dock it"\n'
+    text += "        Action X satisfies rq1\n"
+    assert_fix(text.format("dock_it"), "Replace `dock_it` with `dock it`", text.format('"dock it"'))
+
+
 def test_the_names_of_several_nodes_are_offered() -> None:
     text = 'QualityReq rq1 "t"\n    {} takes at most 3 s\nBehaviorTree A\n    ->\n        Action X\n'
     text += "        Action X Last\n        SubTree B\nBehaviorTree B\n    Action X\n"
