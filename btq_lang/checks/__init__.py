@@ -332,13 +332,9 @@ def _errors_in(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Place, st
     view = View(store, viewpoint)
     if not view.is_xml:
         return view.look_up(lookups.syntax_errors)
-    return tuple(
-        [
-            (Place(each.span, viewpoint), each.message)
-            for each in findings_of(view.workspace, viewpoint, view.ask(reported_in_file, True)).diagnostics
-            if each.effective_severity is Severity.ERROR
-        ]
-    )
+    found = findings_of(view.workspace, viewpoint, view.ask(reported_in_file, True)).diagnostics
+    errors = [each for each in found if each.effective_severity is Severity.ERROR]
+    return tuple([(Place(each.span, viewpoint), each.message) for each in errors])
 
 
 def checks_of(entry: syntax.Entry) -> tuple[Check, ...]:

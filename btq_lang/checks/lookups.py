@@ -236,15 +236,10 @@ def uses_of_tree(workspace: Workspace, viewpoint: str, name: str) -> tuple[Place
     meant = workspace.scope(viewpoint).find(Kind.TREE, name)
     if meant is None:
         return ()
-    return tuple(
-        [
-            Place(use.span, path, entry.item)
-            for path in workspace.linked(meant.path)
-            if workspace.scope(path).find(Kind.TREE, name) == meant
-            for entry, use in workspace.files[path].uses
-            if (use.kind, use.name) == (Kind.TREE, name)
-        ]
-    )
+    paths = [path for path in workspace.linked(meant.path) if workspace.scope(path).find(Kind.TREE, name) == meant]
+    uses = [(path, *each) for path in paths for each in workspace.files[path].uses]
+    of_name = [each for each in uses if (each[2].kind, each[2].name) == (Kind.TREE, name)]
+    return tuple([Place(use.span, path, entry.item) for path, entry, use in of_name])
 
 
 # ---- the file ----
@@ -306,14 +301,8 @@ def is_asked_for(workspace: Workspace, viewpoint: str, name: str) -> bool:
 @of_viewpoint
 def asked_for_in_vain(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in the file's conditions, bounds and arguments that are neither signals nor contexts."""
-    find = workspace.scope(viewpoint).find
-    return frozenset(
-        [
-            name
-            for name in workspace.files[viewpoint].said("asked_for")
-            if not (find(Kind.SIGNAL, name) or find(Kind.CONTEXT, name))
-        ]
-    )
+    find, asked = workspace.scope(viewpoint).find, workspace.files[viewpoint].said("asked_for")
+    return frozenset([name for name in asked if not (find(Kind.SIGNAL, name) or find(Kind.CONTEXT, name))])
 
 
 @of_viewpoint
@@ -452,14 +441,10 @@ def is_xml(workspace: Workspace, viewpoint: str) -> bool:
 @of_viewpoint
 def syntax_errors(workspace: Workspace, viewpoint: str) -> tuple[tuple[Place, str], ...]:
     """The errors that keep the file from being read."""
-    return tuple(
-        [
-            (Place(problem.span, viewpoint, entry.item), problem.message)
-            for entry in workspace.files[viewpoint].parsed.entries
-            for problem in entry.diagnostics
-            if problem.effective_severity is Severity.ERROR
-        ]
-    )
+    entries = workspace.files[viewpoint].parsed.entries
+    found = [(entry.item, problem) for entry in entries for problem in entry.diagnostics]
+    errors = [each for each in found if each[1].effective_severity is Severity.ERROR]
+    return tuple([(Place(problem.span, viewpoint, item), problem.message) for item, problem in errors])
 
 
 @of_viewpoint

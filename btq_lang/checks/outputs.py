@@ -38,22 +38,19 @@ def literal_for_output(view: View) -> Iterator[Diagnostic]:
         if is_custom and not _is_first_value(view, pair):
             continue
         name = value.text if is_name(value.text) else pair.key.text
-        fixes = (replace_fix(f"Write the entry `{{{name}}}`", value.span, f"{{{name}}}"),) if is_name(name) else ()
-        notes = ("many outputs of this file have a literal; ignore this if your program reads it as an entry's name",)
+        entry = replace_fix(f"Write the entry `{{{name}}}`", value.span, f"{{{name}}}")
+        fixes = (entry,) if is_name(name) and not is_custom else ()
+        notes: tuple[str, ...] = ()
+        if is_custom:
+            notes = (
+                "many outputs of this file have a literal; ignore this if your program reads it as an entry's name",
+            )
+        elif is_refused and problem is not None:
+            notes = (f"the engine refuses this value: the port expects {problem.expected}",)
         output = f"the output `{pair.key.text}` of {seen.shown_kind}"
         message = f"expected a blackboard entry for {output}, found `{value.raw}`"
-        yield Diagnostic(
-            "literal-for-output",
-            value.span,
-            message,
-            notes=notes
-            if is_custom
-            else (f"the engine refuses this value: the port expects {problem.expected}",)
-            if is_refused and problem
-            else (),
-            fixes=() if is_custom else fixes,
-            severity=Severity.HINT if is_custom else Severity.ERROR if is_refused else None,
-        )
+        severity = Severity.HINT if is_custom else Severity.ERROR if is_refused else None
+        yield Diagnostic("literal-for-output", value.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
 def _outputs(view: View, given: Iterable[ResolvedNode]) -> Iterator[tuple[ResolvedNode, Pair, Word, str]]:

@@ -282,14 +282,9 @@ def _needed(view: View, seen: ResolvedNode, missing: list[PortKind]) -> list[Por
 
 @cache
 def _builtin_ports(tag: str, has_old_names: bool) -> KnownPorts:
-    ports = BUILTINS[tag].ports
     old = {today: name for (owner, name), today in OLD_PORTS.items() if owner == tag and has_old_names}
-    return KnownPorts(
-        tuple(
-            replace(port, name=old.get(port.name, port.name), doc=f"{port.doc[0].lower()}{port.doc[1:]}")
-            for port in ports
-        )
-    )
+    named = [replace(port, name=old.get(port.name, port.name)) for port in BUILTINS[tag].ports]
+    return KnownPorts(tuple([replace(port, doc=f"{port.doc[0].lower()}{port.doc[1:]}") for port in named]))
 
 
 def _meant(seen: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:

@@ -74,11 +74,8 @@ def _signals(view: View) -> dict[str, Dimension]:
     for name in view.names(Kind.SIGNAL):
         meaning = view.find(Kind.SIGNAL, name)
         signal = meaning.target if meaning is not None else None
-        if (
-            isinstance(signal, Signal)
-            and signal.unit is not None
-            and (unit := parse_unit(signal.unit.text)) is not None
-        ):
+        unit = parse_unit(signal.unit.text) if isinstance(signal, Signal) and signal.unit is not None else None
+        if unit is not None:
             found[name] = unit.dimension
     return found
 

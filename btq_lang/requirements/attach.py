@@ -98,12 +98,8 @@ def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequen
     counting, problems = _most_specific(of_name, uses)
     if of_name.claims and not which:
         return Attached(traces=tuple([model.Trace(name, use.target.node) for use in counting]), problems=problems)
-    applied = [
-        model.Applied(
-            _with(store, viewpoint, of_name, which, use.arguments), use.target, use.arguments, use.place, use.how
-        )
-        for use in counting
-    ]
+    filled = [(use, _with(store, viewpoint, of_name, which, use.arguments)) for use in counting]
+    applied = [model.Applied(made, use.target, use.arguments, use.place, use.how) for use, made in filled]
     return Attached(tuple(applied), problems=problems)
 
 
@@ -254,9 +250,8 @@ def _at_nodes(reader: Reader, tree: syntax.Tree) -> Iterator[model.Use]:
                 continue
             arguments = _arguments(reader, of_name, written, word.span)
             if arguments is not None and node is not None:
-                yield model.Use(
-                    of_name.name, model.Target(node), arguments, _AT_NODE, "satisfies", reader.place(word.span)
-                )
+                place = reader.place(word.span)
+                yield model.Use(of_name.name, model.Target(node), arguments, _AT_NODE, "satisfies", place)
 
 
 def _applied_by(reader: Reader, apply: syntax.Apply) -> Iterator[model.Use]:

@@ -328,14 +328,13 @@ def _narrowed(budget: Budget, claim: Claim) -> Budget:
     if claim.limit is None or not limits:
         return budget
     allowed = _range(claim)
+    success = _within(budget.success, allowed)
     if limits == "success":
-        return replace(budget, success=_within(budget.success, allowed))
+        return replace(budget, success=success)
     skip = budget.skip
     if skip is not None and skip.high > allowed.high:
         skip = Range(min(skip.low, allowed.high), allowed.high)
-    return replace(
-        budget, success=_within(budget.success, allowed), failure=_within(budget.failure, allowed), skip=skip
-    )
+    return replace(budget, success=success, failure=_within(budget.failure, allowed), skip=skip)
 
 
 def _within(each: Range | None, allowed: Range) -> Range | None:

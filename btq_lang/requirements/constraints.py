@@ -42,12 +42,8 @@ def constraints(word: Word) -> list[Constraint]:
         return []
     found = list(_keyword_pattern().finditer(text))
     ends = [*(match.start() for match in found), len(text)][1:]
-    return [
-        Constraint(
-            Span(*match.span()), not match[0].lower().startswith("s"), text[match.end() : end].lstrip(":").strip()
-        )
-        for match, end in zip(found, ends, strict=True)
-    ]
+    parts = [(match, text[match.end() : end].lstrip(":").strip()) for match, end in zip(found, ends, strict=True)]
+    return [Constraint(Span(*match.span()), match[0][0] not in "sS", part) for match, part in parts]
 
 
 def can_be_checked(text: str, is_node_name: Callable[[str], bool]) -> bool:

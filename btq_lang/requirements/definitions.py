@@ -29,15 +29,9 @@ def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Req
         parameter = parameter_of(reader, each)
         parameters.setdefault(parameter.name, parameter)
     reader.parameters = parameters
-    read = Requirement(
-        name,
-        reader.place(symbol.span),
-        _quality(store, viewpoint, *found, written),
-        written.text.text if written.text is not None else None,
-        False,
-        tuple(parameters.values()),
-        (),
-    )
+    quality = _quality(store, viewpoint, *found, written)
+    title = written.text.text if written.text is not None else None
+    read = Requirement(name, reader.place(symbol.span), quality, title, False, tuple(parameters.values()), ())
     read = with_clauses(reader, read, written.clauses)
     if not written.clauses and written.text is not None:
         from btq_lang.requirements.classic import with_constraints  # only requirements without clauses need it

@@ -538,13 +538,8 @@ class Reader(PathReader):
         sign = 1 if value.operator == "*" else -1
         pairs = zip(left.dimension, right.dimension, strict=True)
         dimension = tuple([a + sign * b for a, b in pairs])
-        unit = (
-            left.unit
-            if right.dimension == model.NO_DIMENSION
-            else right.unit
-            if sign == 1 and not any(left.dimension)
-            else None
-        )
+        of_right = right.unit if sign == 1 and not any(left.dimension) else None
+        unit = left.unit if right.dimension == model.NO_DIMENSION else of_right
         return Term(value, "number", dimension, unit, span)
 
 
