@@ -239,23 +239,11 @@ _INTEGERS: Final = {
     "unsigned char": _range(8, False),
 }
 _SYNONYMS: Final = {
-    "int32_t": "int",
-    "int32": "int",
-    "unsigned": "unsigned int",
-    "uint": "unsigned int",
-    "uint32_t": "unsigned int",
-    "uint32": "unsigned int",
-    "long int": "long",
-    "int64_t": "long",
-    "long long": "long",
-    "unsigned long int": "unsigned long",
-    "uint64_t": "unsigned long",
-    "unsigned long long": "unsigned long",
-    "size_t": "unsigned long",
-    "int16_t": "short",
-    "uint16_t": "unsigned short",
-    "int8_t": "signed char",
-    "uint8_t": "unsigned char",
+    **dict.fromkeys(("int32_t", "int32"), "int"),
+    **dict.fromkeys(("unsigned", "uint", "uint32_t", "uint32"), "unsigned int"),
+    **dict.fromkeys(("long int", "int64_t", "long long"), "long"),
+    **dict.fromkeys(("unsigned long int", "uint64_t", "unsigned long long", "size_t"), "unsigned long"),
+    **{"int16_t": "short", "uint16_t": "unsigned short", "int8_t": "signed char", "uint8_t": "unsigned char"},
 }
 _JSON_ITEMS: Final[dict[str, tuple[tuple[type, ...], str]]] = {
     "int": ((int, float, bool), "a number, true or false"),

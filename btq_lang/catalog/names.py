@@ -30,7 +30,7 @@ def model_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
         return "it is empty"
     if name in ("Root", "root"):
         return "`Root` is a reserved name"
-    return _forbidden_character(name)
+    return _contained(name, _REFUSED)
 
 
 def port_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
@@ -41,16 +41,13 @@ def port_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
         return "it is empty"
     if name[0] in "0123456789":
         return "it begins with a digit"
-    return _forbidden_character(name) or _reserved(name)
+    return _contained(name, _REFUSED) or _reserved(name)
 
 
 @lru_cache(_KEPT)
 def instance_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
     """Why the engine refuses the `name` of a node; None if it does not.  Only control characters are refused."""
-    if _UNPRINTABLE.isdisjoint(name) or not NAME_RULES.holds(version):
-        return None
-    control = next(character for character in name if character in _UNPRINTABLE)
-    return f"it contains the control character {_code(control)}"
+    return _contained(name, _UNPRINTABLE) if NAME_RULES.holds(version) else None
 
 
 @lru_cache(_KEPT)
@@ -58,7 +55,7 @@ def is_port_name(name: str, version: str = DEFAULT_VERSION) -> bool:
     """Whether the engine takes an attribute of that name for a port.  If not, it keeps it and never reads it."""
     if name[:1] not in _LETTERS or name in ("name", "ID"):
         return False
-    return not NAME_RULES.holds(version) or _forbidden_character(name) is None
+    return not NAME_RULES.holds(version) or _contained(name, _REFUSED) is None
 
 
 def is_xml_name(name: str) -> bool:
@@ -84,22 +81,19 @@ def legal_name(name: str) -> str:
     return f"_{legal}" if legal[0] in "0123456789" else legal
 
 
-def _forbidden_character(name: str) -> str | None:
-    if _REFUSED.isdisjoint(name):
+def _contained(name: str, refused: frozenset[str]) -> str | None:
+    """The first character of a name that is refused, as a reason; None if none is."""
+    if refused.isdisjoint(name):
         return None
-    found = next(character for character in name if character in _REFUSED)
+    found = next(character for character in name if character in refused)
     if found in _CONTROLS:
-        return f"it contains the control character {_code(found)}"
+        return f"it contains the control character U+{ord(found):04X}"
     return "it contains a space" if found == " " else f"it contains `{found}`"
 
 
 def _reserved(name: str) -> str | None:
     reserved = name in ("name", "ID") or (name in RESERVED_ATTRIBUTES and RESERVED_ATTRIBUTES[name].group != "tool")
     return "it is the name of a reserved attribute" if reserved else None
-
-
-def _code(character: str) -> str:
-    return f"U+{ord(character):04X}"
 
 
 _FORBIDDEN: Final = " <>&\"'/\\:*?|."

@@ -7,10 +7,10 @@ belongs.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
+from btq_lang.syntax.scan import number_end
 from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE, QUANTITY, Token
 from btq_lang.util.text import LINE_END
 from btq_lang.workspace.comments import block_of
@@ -166,8 +166,9 @@ def _gathered(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) -> I
 
 
 def _written(kind: int, raw: str) -> str:
-    if kind == QUANTITY and (parts := _QUANTITY.fullmatch(raw)):
-        return f"{parts[1]} {parts[2]}"
+    if kind == QUANTITY:
+        end = number_end(raw, 0)
+        return f"{raw[:end]} {raw[end:].strip()}"
     if kind == COMMENT and not raw.startswith("/*"):
         return raw.rstrip(" \t")
     return LINE_END.sub("\n", raw) if "\r" in raw else raw
@@ -176,6 +177,3 @@ def _written(kind: int, raw: str) -> str:
 def _line_end(text: str, at: int) -> int:
     found = LINE_END.search(text, at)
     return found.end() if found else len(text)
-
-
-_QUANTITY: Final = re.compile(r"(-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)[ \t]*(.+)")

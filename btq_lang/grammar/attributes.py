@@ -296,9 +296,7 @@ class AttributeParser(RequirementParser):
                 return False
             if self.is_operator(following + 1, "=") and not (qualities and self.is_word(following, "Quality")):
                 return False
-            if self.kinds[following] == NAME and (
-                self.raws[following] in NODE_CLAUSES or self.raws[following] == "parameters"
-            ):
+            if self.kinds[following] == NAME and self.raws[following] in _ATTRIBUTE_WORDS:
                 return False
         self.advance()
         return True

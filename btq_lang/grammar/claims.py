@@ -10,7 +10,7 @@ from typing import Final
 from btq_lang.catalog.units import dimension_name, parse_unit
 from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
-from btq_lang.grammar.conditions import HEADS, ConditionParser
+from btq_lang.grammar.conditions import COMPARISONS, HEADS, ConditionParser
 from btq_lang.grammar.cursor import shown
 from btq_lang.syntax.scan import number_end
 from btq_lang.syntax.tokens import NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
@@ -131,7 +131,7 @@ class ClaimParser(ConditionParser):
             self.expected(f"a verb before `at {self.raw}`", (MEANT["at"],), fixes)
         elif first is not None and first.kind == NAME and first.raw in MEANT:
             self.expected(f"a verb after `{first.raw}` (takes, succeeds, needs, keeps, …)", (MEANT[first.raw],))
-        elif first is not None and self.kind == OPERATOR and self.raw in _COMPARISONS:
+        elif first is not None and self.kind == OPERATOR and self.raw in COMPARISONS:
             at = first.start + self.base
             fix = replace_fix("Put `keeps` before it", Span(at, at), "keeps ")
             if first.raw in ("time", "duration") and (bound := _BOUNDS.get((self.raw,))):
@@ -319,6 +319,7 @@ def is_time(raw: str) -> bool:
 
 
 QUALITY_IN_HEAD: Final = "a requirement's quality goes after its name: `QualityReq fast : reliability`"
+MODALS: Final = frozenset(("must", "shall", "should", "will", "may"))
 MEANT: Final = {  # by the word that is read as a node before a verb
     "at": "a bound goes after its verb, `takes at most 3 s`; a probability is written `in at least 95 % of runs`",
     "violation": "write `on violation fail`",
@@ -336,14 +337,9 @@ MEANT: Final = {  # by the word that is read as a node before a verb
     **dict.fromkeys(
         ("title", "description", "text"), 'a requirement has one title, after its name: `QualityReq fast "in time"`'
     ),
-    **dict.fromkeys(
-        ("must", "shall", "should", "will", "may"),
-        "a clause begins with its verb, without such a word: `takes at most 30 s`",
-    ),
+    **dict.fromkeys(MODALS, "a clause begins with its verb, without such a word: `takes at most 30 s`"),
 }
-MODALS: Final = frozenset(("must", "shall", "should", "will", "may"))
 _NO_NAMES: Final = HEADS | {"and", "or", "not", "if", "else", "is", "to", "of", "by", "per", "at", "within", "after"}
-_COMPARISONS: Final = frozenset(("<=", "<", ">=", ">", "==", "!="))
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
 _NEVER_FAILS: Final = (
     "write `succeeds` for a node that must not fail, or `never node Dock` for a node that must not run"

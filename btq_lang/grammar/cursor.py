@@ -100,7 +100,7 @@ class Cursor:
 
     def no_end(self, notes: tuple[str, ...], fixes: tuple[Fix, ...]) -> None:
         """Report what is left of the line."""
-        if not notes and self.at_name() and self.is_after_name():
+        if not notes and self.at_name() and self.index > 0 and self.kinds[self.index - 1] == NAME:
             notes = (_QUOTES,)
         if not notes and self.at(".") and self.kinds[self.index + 1] == NAME and self.adjacent(self.index + 1):
             notes = ("a name that contains a point goes in quotes",)
@@ -165,10 +165,6 @@ class Cursor:
     def at_key(self) -> bool:
         """Whether the next tokens are `key =`."""
         return (self.kind == NAME or self.kind == STRING) and self.raws[self.index + 1] == "="
-
-    def is_after_name(self) -> bool:
-        """Whether the previous token is a NAME."""
-        return self.index > 0 and self.kinds[self.index - 1] == NAME
 
     def at(self, operator: str) -> bool:
         return self.kind == OPERATOR and self.raw == operator
