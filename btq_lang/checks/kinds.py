@@ -176,13 +176,10 @@ def clause_as_node(view: View) -> Iterator[Diagnostic]:
             fix = replace_fix(f"Replace `{name.text}` with `{meant}`", name.span, meant)
             yield Diagnostic("clause-as-node", name.span, message, fixes=(fix,))
             continue
-        yield Diagnostic(
-            "clause-as-node",
-            name.span,
-            f"btq reads `{name.text}` as a node here, although it starts a requirement clause",
-            notes=("indent the clause below its requirement, `satisfies QualityReq …` on a line of its own",),
-            fixes=(replace_fix(f'Write "{name.text}" for a node of that name', name.span, quote(name.text)),),
-        )
+        message = f"btq reads `{name.text}` as a node here, although it starts a requirement clause"
+        notes = ("indent the clause below its requirement, `satisfies QualityReq …` on a line of its own",)
+        fix = replace_fix(f'Write "{name.text}" for a node of that name', name.span, quote(name.text))
+        yield Diagnostic("clause-as-node", name.span, message, notes=notes, fixes=(fix,))
 
 
 def duplicate_definition(view: View) -> Iterator[Diagnostic]:

@@ -301,7 +301,8 @@ def is_asked_for(workspace: Workspace, viewpoint: str, name: str) -> bool:
 @of_viewpoint
 def asked_for_in_vain(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in the file's conditions, bounds and arguments that are neither signals nor contexts."""
-    find, asked = workspace.scope(viewpoint).find, workspace.files[viewpoint].said("asked_for")
+    find = workspace.scope(viewpoint).find
+    asked = workspace.files[viewpoint].said("asked_for")
     return frozenset([name for name in asked if not (find(Kind.SIGNAL, name) or find(Kind.CONTEXT, name))])
 
 

@@ -64,13 +64,10 @@ def changed(view: View, seen: ResolvedNode, name: Word, change: Change) -> Itera
     fixes: tuple[Fix, ...] = ()
     if change.keeps is not None:
         fixes = adding_fix(view, seen.node, "Keep its meaning", f"{written(change.port)} = {written(change.keeps)}")
-    yield Diagnostic(
-        "target-breaks" if change.breaks else "target-differs",
-        (value or name).span,
-        f"from {change.since.title()} on `{name.text}` {change.what}",
-        notes=(change.instead,) if change.instead else (),
-        fixes=fixes,
-    )
+    rule = "target-breaks" if change.breaks else "target-differs"
+    message = f"from {change.since.title()} on `{name.text}` {change.what}"
+    notes = (change.instead,) if change.instead else ()
+    yield Diagnostic(rule, (value or name).span, message, notes=notes, fixes=fixes)
 
 
 def _without_node(

@@ -52,15 +52,11 @@ def unknown_port(view: View) -> Iterator[Diagnostic]:
             fixes = tuple(
                 replace_fix(f"Replace `{key.text}` with `{port}`", key.span, written(port)) for port in likely
             )
-            yield Diagnostic(
-                "unknown-port",
-                key.span,
-                f"{seen.shown_kind} has no port `{key.text}`{did_you_mean(likely) or stale}",
-                related=_declared(view, seen),
-                notes=(f"it has {names}" if known else "it has no ports", *_of_version_3(view, seen, key.text)),
-                fixes=fixes,
-                severity=Severity.WARNING if harmless else None,
-            )
+            message = f"{seen.shown_kind} has no port `{key.text}`{did_you_mean(likely) or stale}"
+            related = _declared(view, seen)
+            notes = (f"it has {names}" if known else "it has no ports", *_of_version_3(view, seen, key.text))
+            severity = Severity.WARNING if harmless else None
+            yield Diagnostic("unknown-port", key.span, message, related, notes, fixes, severity=severity)
             if not known and seen.kind is None:
                 break  # all of the model's ports are missing
 
@@ -129,13 +125,9 @@ def unknown_attribute(view: View) -> Iterator[Diagnostic]:
                 kept = "from 4.7 on the engine keeps it for the node's own code"
                 refused = f"{view.target} reads it as a port, and refuses a node without a port of that name"
                 is_port = is_port_name(key, view.target)
-                yield Diagnostic(
-                    "unknown-attribute",
-                    pair.key.span,
-                    f"the engine does not read `{key}`",
-                    notes=(refused if is_port else kept,),
-                    severity=Severity.WARNING if is_port else Severity.HINT,
-                )
+                note, severity = (refused, Severity.WARNING) if is_port else (kept, Severity.HINT)
+                message = f"the engine does not read `{key}`"
+                yield Diagnostic("unknown-attribute", pair.key.span, message, notes=(note,), severity=severity)
             elif not (key in _OF_TODAY and _is_off(pair.value)):
                 fixes = tuple(replace_fix(f"Replace `{key}` with `{name}`", pair.key.span, name) for name in likely)
                 message = f"the engine silently ignores `{key}`{did_you_mean(likely)}"

@@ -58,18 +58,12 @@ def _old(view: View, use: Use, match: QualityMatch) -> Diagnostic:
         message = f"`{use.name}` is an alias of `{match.candidates[0].id}`"
     else:
         message = f"`{use.name}` is called `{match.candidates[0].id}` in {view.edition}"
-    return Diagnostic(
-        "old-quality-name",
-        use.span,
-        message,
-        # "`x` is another word for y" adds nothing to such a message.
-        notes=(match.explanation,) if match.explanation and not (is_alias and match.safe) else (),
-        fixes=tuple(
-            replace_fix(f"Replace it with `{candidate.id}`", _whole(view, use), candidate.id, safe=match.safe)
-            for candidate in match.candidates[:3]
-        ),
-        tags=() if is_alias else (Tag.DEPRECATED,),
-    )
+    # "`x` is another word for y" adds nothing to such a message.
+    notes = (match.explanation,) if match.explanation and not (is_alias and match.safe) else ()
+    meant = [each.id for each in match.candidates[:3]]
+    fixes = tuple(replace_fix(f"Replace it with `{id_}`", _whole(view, use), id_, safe=match.safe) for id_ in meant)
+    tags = () if is_alias else (Tag.DEPRECATED,)
+    return Diagnostic("old-quality-name", use.span, message, notes=notes, fixes=fixes, tags=tags)
 
 
 def _ambiguous(view: View, use: Use, match: QualityMatch) -> Diagnostic:

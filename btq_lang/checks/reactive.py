@@ -116,18 +116,14 @@ def _never_gets_further(view: View, seen: ResolvedNode, first: Node, child: Node
     message = f"{this} never gets beyond its first tick: {other} restarts and halts it"
     if not surely:
         message = f"if {other} takes longer than one tick, it restarts whenever {this} is RUNNING, and halts it"
-    return Diagnostic(
-        "reactive-multiple-async",
-        child.head.span,
-        message,
-        related=(Related(Place(first.head.span), "restarts"),),
-        notes=(
-            f"{shown} starts with its first child at every tick, and halts all others when one returns RUNNING",
-            f"only the last child of {shown} should run over several ticks; put the steps of a plan into a "
-            + view.spelt("->"),
-        ),
-        severity=None if surely else Severity.HINT,
+    apart = f"put the steps of a plan into a {view.spelt('->')}"
+    notes = (
+        f"{shown} starts with its first child at every tick, and halts all others when one returns RUNNING",
+        f"only the last child of {shown} should run over several ticks; {apart}",
     )
+    related = (Related(Place(first.head.span), "restarts"),)
+    severity = None if surely else Severity.HINT
+    return Diagnostic("reactive-multiple-async", child.head.span, message, related, notes, severity=severity)
 
 
 def _is_at_the_top(seen: ResolvedNode) -> bool:

@@ -77,13 +77,10 @@ def _never_written(view: View, here: list[Signal], guards: Sequence[Guard]) -> I
         likely = view.ask(_near_keys, key)
         if not (likely or signal.name in guarding):
             continue
-        yield found_at(
-            signal.place,
-            "signal-never-written",
-            f"no port and no script writes `{key}`, the entry of `{signal.name}`",
-            notes=(f"did you mean `{likely[0]}`?",) if likely else ("ignore this if the robot's program writes it",),
-            severity=None if likely else Severity.HINT,
-        )
+        message = f"no port and no script writes `{key}`, the entry of `{signal.name}`"
+        notes = (f"did you mean `{likely[0]}`?" if likely else "ignore this if the robot's program writes it",)
+        severity = None if likely else Severity.HINT
+        yield found_at(signal.place, "signal-never-written", message, notes=notes, severity=severity)
 
 
 def _near_keys(store: Store[Workspace], viewpoint: str, key: str) -> tuple[str, ...]:

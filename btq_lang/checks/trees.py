@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
@@ -84,13 +85,9 @@ def nested_too_deep(view: View) -> Iterator[Diagnostic]:
 def duplicate_tree(view: View) -> Iterator[Diagnostic]:
     """A tree whose ID another tree has already: the engine silently takes the last one."""
     for first, second in view.clashes(Kind.TREE):
-        yield Diagnostic(
-            "duplicate-tree",
-            view.head,
-            f"this file includes a second tree `{second.symbol.name}`",
-            related=(Related(first.place, "first one"), Related(second.place, "second one")),
-            notes=(_LAST_WINS,),
-        )
+        both = (Related(first.place, "first one"), Related(second.place, "second one"))
+        message = f"this file includes a second tree `{second.symbol.name}`"
+        yield Diagnostic("duplicate-tree", view.head, message, both, (_LAST_WINS,))
     for symbol, other, counts in view.repeated(Kind.TREE):
         related = (Related(other.place, "first one" if counts else "second one"),)
         message = f"duplicate tree `{symbol.name}`"
@@ -153,18 +150,11 @@ def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
     shown = [f"`{name}`" for name in tops[:_MOST_NAMES]]
     names = f"{', '.join(shown[:-1])} or {shown[-1]}" if len(tops) <= _MOST_NAMES else f"{', '.join(shown)}, …"
     way = '`main_tree_to_execute="…"` of <root>' if view.is_xml else "a line `Root <tree>`"
-    yield Diagnostic(
-        "unknown-main-tree",
-        view.head,
-        f"ambiguous main tree: no other tree refers to {names}",
-        related=tuple(
-            related
-            for name in tops[1:_MOST_NAMES]
-            for related in view.declared_at(Kind.TREE, name, "another tree without a reference")
-        ),
-        notes=(f"name the main tree with {way}",),
-        fixes=tuple(_main_tree_fix(view, name) for name in tops[:3]),
-    )
+    message = f"ambiguous main tree: no other tree refers to {names}"
+    notes = (f"name the main tree with {way}",)
+    others = [view.declared_at(Kind.TREE, name, "another tree without a reference") for name in tops[1:_MOST_NAMES]]
+    fixes = tuple(_main_tree_fix(view, name) for name in tops[:3])
+    yield Diagnostic("unknown-main-tree", view.head, message, tuple(chain(*others)), notes, fixes)
 
 
 def _missing_main_trees(view: View, factory: Factory) -> Iterator[Diagnostic]:
@@ -210,13 +200,9 @@ def tree_root_count(view: View) -> Iterator[Diagnostic]:
         message = "write every BehaviorTree in the same column: this one is indented"
         yield Diagnostic("tree-root-count", extra, message)
         return
-    yield Diagnostic(
-        "tree-root-count",
-        extra,
-        f"a tree must have one node at its top, found {len(tree.children)}",
-        related=(Related(Place(first), "first one"),),
-        notes=(f"put them below one node, such as a Sequence{'' if view.is_xml else ' `->`'}",),
-    )
+    message = f"a tree must have one node at its top, found {len(tree.children)}"
+    notes = (f"put them below one node, such as a Sequence{'' if view.is_xml else ' `->`'}",)
+    yield Diagnostic("tree-root-count", extra, message, (Related(Place(first), "first one"),), notes)
 
 
 def tree_named_like_node(view: View) -> Iterator[Diagnostic]:
@@ -225,19 +211,17 @@ def tree_named_like_node(view: View) -> Iterator[Diagnostic]:
     if name is None:
         return
     model = view.find(Kind.MODEL, name.text) if view.defines(Kind.MODEL, name.text) else None
+    related: tuple[Related, ...] = ()
     if name.text in BUILTINS:
-        message = f"a tree cannot have the name `{name.text}`: a built-in node has it"
-        yield Diagnostic("tree-named-like-node", name.span, message)
+        owner = "a built-in node"
     elif model is not None and not _is_subtree_model(model):
-        yield Diagnostic(
-            "tree-named-like-node",
-            name.span,
-            f"a tree cannot have the name `{name.text}`: a node has it",
-            related=view.declared_at(Kind.MODEL, name.text, "node declared here"),
-        )
+        owner, related = "a node", view.declared_at(Kind.MODEL, name.text, "node declared here")
     elif inside := [seen.id for seen in view.seen.strangers if seen.id is not None and seen.id.text == name.text]:
-        message = f"a tree cannot have the name `{name.text}`: a node in it has it"
-        yield Diagnostic("tree-named-like-node", name.span, message, (Related(Place(inside[0].span), "the node"),))
+        owner, related = "a node in it", (Related(Place(inside[0].span), "the node"),)
+    else:
+        return
+    message = f"a tree cannot have the name `{name.text}`: {owner} has it"
+    yield Diagnostic("tree-named-like-node", name.span, message, related)
 
 
 def as_uncreated(view: View, found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:

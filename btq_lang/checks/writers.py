@@ -70,7 +70,8 @@ def _entries_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts
         for pair in node.node.attributes:
             if pair.value is None:
                 continue
-            text, port = pair.value.text, pair.key.text
+            text = pair.value.text
+            port = pair.key.text
             built_in = node.kind.port(port) if node.kind is not None else None
             content = built_in.content if built_in is not None else ""
             is_entry = is_pointer(text)

@@ -369,15 +369,10 @@ def _most_specific(of_name: model.Requirement, uses: Sequence[model.Use]) -> tup
             found.append(best[0])
             continue
         node = best[0].target.node
-        diagnostic = Diagnostic(
-            "ambiguous-application",
-            other.place.span,
-            f"`{of_name.name}` has two values for {node.shown}: {_said(best[0])} and {_said(other)}",
-            related=(Related(best[0].place, "other value"), Related(node.place, "node")),
-            notes=(
-                "a clause at the node takes precedence over a path, a path over `every … under`, that over `every`",
-            ),
-        )
+        message = f"`{of_name.name}` has two values for {node.shown}: {_said(best[0])} and {_said(other)}"
+        related = (Related(best[0].place, "other value"), Related(node.place, "node"))
+        notes = ("a clause at the node takes precedence over a path, a path over `every … under`, that over `every`",)
+        diagnostic = Diagnostic("ambiguous-application", other.place.span, message, related, notes)
         problems.append(Problem(other.place, diagnostic))
     return found, tuple(problems)
 

@@ -32,7 +32,7 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
         raise KeyError(path)
     store = workspace.store
     signals = {name: store.ask(signal, path, name) for name in inputs.names(store, path, Kind.SIGNAL)}
-    contexts = {name: store.ask(context, path, name) for name in inputs.names(store, path, Kind.CONTEXT)}
+    contexts = {name: store.ask(context, path, name)[0] for name in inputs.names(store, path, Kind.CONTEXT)}
     defined = {name: store.ask(requirement, path, name) for name in inputs.names(store, path, Kind.REQUIREMENT)}
     uses: dict[str, list[Use]] = {}
     for item in inputs.attaching(store, path):
@@ -48,7 +48,7 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
         store,
         path,
         {name: found for name, (found, _) in signals.items() if found is not None},
-        {name: condition for name, (condition, _) in contexts.items()},
+        contexts,
         {name: found for name, (found, _) in defined.items() if found is not None},
         tuple(applied),
         tuple(traces),
