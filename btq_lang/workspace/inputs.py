@@ -59,8 +59,10 @@ def _input(
 of_viewpoint = _input(lambda viewpoint, *_: viewpoint)
 # Depends only on the items that define a name, in whatever file.
 of_name = _input(lambda viewpoint, kind, name: (kind, name))
+of_model = _input(lambda viewpoint, name: (Kind.MODEL, name))
 # Never changes, for an edited item is a new one.
 of_item = _input(lambda path, facts: facts)
+of_project = _input(lambda: "project")
 
 
 def advance(before: Workspace, after: Workspace) -> None:
@@ -86,21 +88,15 @@ def _touched(after: Workspace, old: File, new: File) -> Iterator[Hashable]:
         yield from ((Kind.MODEL, name) for name in before.keys() | now.keys() if before.get(name) != now.get(name))
 
 
-def project(store: Store[Workspace]) -> Project:
+@of_project
+def project(workspace: Workspace) -> Project:
     """What holds for all files."""
-    return store.read("project", _project)
-
-
-def _project(workspace: Workspace) -> Project:
     return workspace.project
 
 
-def factory(store: Store[Workspace]) -> Factory | None:
+@of_project
+def factory(workspace: Workspace) -> Factory | None:
     """Whose files these are; None: each file is a factory of its own."""
-    return store.read("project", _factory)
-
-
-def _factory(workspace: Workspace) -> Factory | None:
     return workspace.factory
 
 
@@ -178,28 +174,24 @@ def definition(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> P
     return None
 
 
-def declared(store: Store[Workspace], viewpoint: str, name: str) -> Declared:
+@of_model
+def declared(workspace: Workspace, viewpoint: str, name: str) -> Declared:
     """What the model of a custom node declares; nothing if it has none."""
-    return _declared(store, viewpoint, Kind.MODEL, name)
-
-
-@of_name
-def _declared(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Declared:
     scope = workspace.scope(viewpoint)
-    for file in scope.files(kind):
-        if found := file.names.found.get((kind, name)):
+    for file in scope.files(Kind.MODEL):
+        if found := file.names.found.get((Kind.MODEL, name)):
             model = found[0][1].target
             category = model.category.raw if isinstance(model, Model) else None
-            return category, _of_library(scope, kind, name) if scope.node_paths else None
-    pooled = workspace.find(viewpoint, kind, name)
+            return category, _of_library(scope, name) if scope.node_paths else None
+    pooled = workspace.find(viewpoint, Kind.MODEL, name)
     target = pooled.symbol.target if pooled is not None else None
     is_of_node = isinstance(target, Model) and target.category.raw != "SubTree"  # else of a tree of that name
     return target.category.raw if isinstance(target, Model) and is_of_node else None, None
 
 
-def _of_library(scope: Scope, kind: Kind, name: str) -> NodeKind | None:
+def _of_library(scope: Scope, name: str) -> NodeKind | None:
     """What a node does, if the model that counts is of a library that btq knows."""
-    found, distribution = scope.find(kind, name), distribution_among(scope.node_paths)
+    found, distribution = scope.find(Kind.MODEL, name), distribution_among(scope.node_paths)
     if found is None or distribution is None or found.path != FILES[distribution]:
         return None
     from btq_lang.catalog.nav2.nodes import nodes_of  # few projects have these models
