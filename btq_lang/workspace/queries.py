@@ -38,7 +38,6 @@ Query = TypeVar("Query", bound=Callable[..., object])
 _CLEAN, _SUSPECT, _STALE = range(3)
 _FEW: Final = 2_000  # answers: sweeping fewer is not worth the time
 _DEEPEST: Final = 40  # nested queries; Python allows some twenty calls for each
-_NEAR: Final = 3  # levels of dependencies
 _ON_CIRCLE: dict[Callable[..., Any], object] = {}
 _HUBS: set[Callable[..., Any]] = set()
 
@@ -224,8 +223,6 @@ class Store(Generic[State]):
 
     def _settle(self, answer: _Answer) -> bool:
         """Bring an answer up to date unless it is part of an open circle; return whether it is up to date."""
-        if _is_as_before(answer, _NEAR):
-            return False
         if answer.low is None:
             if self._path:
                 self._open(answer)
@@ -336,18 +333,6 @@ class Store(Generic[State]):
                 if dependent.state == _CLEAN:
                     dependent.state = _SUSPECT
                     (self._hubs if dependent.key[0] in _HUBS else waiting).append(dependent)
-
-
-def _is_as_before(answer: _Answer, levels: int) -> bool:
-    """Whether a suspect answer is still valid, judged by a few levels of dependencies: most are, and opening each takes
-    longer."""
-    if answer.state != _SUSPECT or answer.is_circular or answer.low is not None:
-        return False
-    for each in answer.dependencies:
-        if each.state != _CLEAN and not (levels and _is_as_before(each, levels - 1)):
-            return False
-    answer.state = _CLEAN
-    return True
 
 
 def _declared(answer: _Answer) -> Any:
