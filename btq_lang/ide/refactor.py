@@ -143,7 +143,7 @@ def names_of_nodes(file: File) -> set[str]:
     """The IDs of a file's nodes, of the trees that it runs, and of its placeholders."""
     found = {name for kind, name in file.used_names if kind in (Kind.MODEL, Kind.TREE)}
     if not found.isdisjoint(PLACEHOLDERS):  # else the tree is not requested: it may have been released
-        nodes = (node for tree in _trees(file) for node in tree.walk() if is_placeholder(node))
+        nodes = (node for tree in file.of_type(Tree) for node in tree.walk() if is_placeholder(node))
         found |= {legal_name(node.name.text) for node in nodes if node.name is not None}
     return found
 
@@ -166,10 +166,6 @@ def _has_span(file: File) -> bool:
     targets = (same[0][1].target for (kind, _), same in file.names.found.items() if kind is Kind.REQUIREMENT)
     clauses = [target.clauses for target in targets if isinstance(target, Requirement)]
     return any(isinstance(one, Claim) and isinstance(one.subject, Between) for each in clauses for one in each)
-
-
-def _trees(file: File) -> Iterator[Tree]:
-    return (entry.item for entry in file.parsed.entries if isinstance(entry.item, Tree))
 
 
 def _item_end(file: File, entry: Entry) -> int:

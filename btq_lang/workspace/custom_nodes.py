@@ -102,9 +102,8 @@ def likely_category(children: int) -> str:
 
 
 def _nodes(file: File) -> Iterator[Node]:
-    for entry in file.parsed.entries:
-        if isinstance(entry.item, Tree):
-            yield from entry.item.walk()
+    for tree in file.of_type(Tree):
+        yield from tree.walk()
 
 
 def _named(node: Node) -> tuple[str, str | None]:

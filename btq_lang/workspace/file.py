@@ -51,6 +51,9 @@ class File:
         self.path = path
         self.text = text
         self.origin = origin
+        self._of_type: dict[type, tuple[Any, ...]] = {}
+        self._first_users: dict[Kind, dict[str, Facts]] = {}
+        self._tallies: dict[Said, Tally] = {}
 
     def edited(self, text: str, origin: Origin | None = None) -> File:
         """The file after an edit, which shares what the edit does not touch.
@@ -105,8 +108,7 @@ class File:
         """Release all but the text and its names; the rest is recomputed on demand."""
         kept = {known: getattr(self, known) for known in _KEPT}
         kept.update({known: self.__dict__[known] for known in _KEPT_IF_ASKED if known in self.__dict__})
-        self.__dict__.clear()
-        self.__dict__.update(kept)
+        self.__dict__ = {**File(self.path, self.text, self.origin).__dict__, **kept}
 
     @cached_property
     def parsed(self) -> Parsed:
@@ -189,10 +191,6 @@ class File:
             self._of_type[kind] = tuple([entry.item for entry in self.parsed.entries if type(entry.item) is kind])
         return self._of_type[kind]
 
-    @cached_property
-    def _of_type(self) -> dict[type, tuple[Any, ...]]:
-        return {}
-
     def first_users(self, kind: Kind) -> Mapping[str, Facts]:
         """The names of a kind that the file refers to, each with the first item that does."""
         if kind not in self._first_users:
@@ -202,19 +200,11 @@ class File:
                     found.update(dict.fromkeys(names, each))
         return self._first_users[kind]
 
-    @cached_property
-    def _first_users(self) -> dict[Kind, dict[str, Facts]]:
-        return {}
-
     def said(self, of: Said) -> frozenset[str]:
         """The names of a kind that the file's items refer to, or those that their facts have of another sort."""
         if of not in self._tallies:
             self._tallies[of] = Tally.of(self.facts.values(), of)
         return self._tallies[of].names
-
-    @cached_property
-    def _tallies(self) -> dict[Said, Tally]:
-        return {}
 
     @cached_property
     def names(self) -> Names:
@@ -344,11 +334,7 @@ class File:
         return File, (self.path, self.text, self.origin)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, File) and (self.path, self.text, self.source) == (
-            other.path,
-            other.text,
-            other.source,
-        )
+        return isinstance(other, File) and (self.path, self.text, self.source) == (other.path, other.text, other.source)
 
     def __hash__(self) -> int:
         return hash((self.path, self.text))
@@ -376,7 +362,7 @@ def _start_of(entry: Entry) -> int:
 _ESCAPED = frozenset("\"'\\\r\n\t")  # a name with one of these may be written with escapes
 _NOT_AS_IT_IS = _ESCAPED | {"."}  # between the names of a quality there may be blanks
 # Kept when the tree is released: what refers to no part of it.
-_KEPT = ("path", "text", "origin", "included_paths", "defined_names", "used_names")
+_KEPT = ("included_paths", "defined_names", "used_names")
 _KEPT_IF_ASKED = ("kinds",)  # seldom
 _DIRECTIVE = "btq:"
 _LINE_ENDS = frozenset("\r\n")
