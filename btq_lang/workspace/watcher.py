@@ -33,31 +33,26 @@ def watch(
     def stamps() -> dict[str, Hashable]:
         return {path: found for path in files() if (found := stamp(path)) is not None}
 
-    # Takes the first stamps now, not at the first iteration, so that changes from now on are reported.
-    return _changes(stamps(), stamps, wait, now)
-
-
-def _changes(
-    before: dict[str, Hashable],
-    stamps: Callable[[], dict[str, Hashable]],
-    wait: Callable[[float], object],
-    now: Callable[[], float],
-) -> Iterator[tuple[str, ...]]:
-    pause = INTERVAL
-    while True:
-        wait(pause)
-        begun = now()
-        after = stamps()
-        pause = max(INTERVAL, (now() - begun) * _SHARE)
-        if after == before:
-            continue
-        for _ in range(_LOOKS):
-            seen = after
-            wait(_REST)
+    def changes(before: dict[str, Hashable]) -> Iterator[tuple[str, ...]]:
+        pause = INTERVAL
+        while True:
+            wait(pause)
+            begun = now()
             after = stamps()
-            if after == seen:
-                break
-        changed = tuple(sorted(path for path in before.keys() | after.keys() if before.get(path) != after.get(path)))
-        before = after
-        if changed:  # else the files are as they were
-            yield changed
+            pause = max(INTERVAL, (now() - begun) * _SHARE)
+            if after == before:
+                continue
+            for _ in range(_LOOKS):
+                seen = after
+                wait(_REST)
+                after = stamps()
+                if after == seen:
+                    break
+            changed = tuple(
+                sorted(path for path in before.keys() | after.keys() if before.get(path) != after.get(path))
+            )
+            before = after
+            if changed:  # else the files are as they were
+                yield changed
+
+    return changes(stamps())  # the first ones now, not at the first iteration: changes from now on are reported
