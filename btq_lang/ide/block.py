@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from btq_lang.syntax.scan import line_end, line_start
 from btq_lang.syntax.tokens import COMMENT, STRING
 from btq_lang.syntax.tree import Entry, Node, Tree
 from btq_lang.util.record import Record
@@ -49,8 +50,8 @@ def node_at(file: File, entry: Entry, offset: int) -> Standing | None:
     waiting: list[tuple[Node, Node | None]] = [(child, None) for child in tree.children if isinstance(child, Node)]
     while waiting:
         node, parent = waiting.pop()
-        start = line_start(file.text, entry.start + node.start) - entry.start
-        if start <= inside <= max(node.end, _line_end(file.text, entry.start + node.end) - entry.start):
+        start = line_start(file.text, 0, entry.start + node.start) - entry.start
+        if start <= inside <= max(node.end, line_end(file.text, entry.start + node.end) - entry.start):
             return Standing(node, parent, tree, entry)
         waiting += [(child, node) for child in node.nodes]
     return None
@@ -60,8 +61,8 @@ def block_of(file: File, entry: Entry, node: Node) -> Block:
     """The lines of a node and all below it."""
     start = entry.start + node.start
     blanks = blanks_before(file.text, start)
-    span = Span(start, _line_end(file.text, entry.start + node.block_end))
-    return Block(span, blanks, start == line_start(file.text, start) + len(blanks))
+    span = Span(start, line_end(file.text, entry.start + node.block_end))
+    return Block(span, blanks, start == line_start(file.text, 0, start) + len(blanks))
 
 
 def moved(file: File, block: Block, blanks: str) -> str:
@@ -82,7 +83,7 @@ def shifts(file: File, block: Block, blanks: str) -> Iterator[Edit]:
 
 def blanks_before(text: str, start: int) -> str:
     """The indentation of the line with an offset."""
-    line = text[line_start(text, start) : start]
+    line = text[line_start(text, 0, start) : start]
     return line[: len(line) - len(line.lstrip(" \t"))]
 
 
@@ -101,16 +102,6 @@ def _line_starts(file: File, span: Span) -> list[int]:
     ]
     starts = (end.end() for end in LINE_END.finditer(file.text, span.start, span.end))
     return [start for start in starts if not any(token.start < start < token.end for token in texts)]
-
-
-def line_start(text: str, offset: int) -> int:
-    """Where the line of an offset begins."""
-    return max(text.rfind("\n", 0, offset), text.rfind("\r", 0, offset)) + 1
-
-
-def _line_end(text: str, offset: int) -> int:
-    found = LINE_END.search(text, offset)
-    return found.start() if found else len(text)
 
 
 _INDENTED = re.compile(r"[\r\n]([ \t])[ \t]*[^\s]")

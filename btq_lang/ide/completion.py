@@ -17,7 +17,6 @@ from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.ide import node_proposals as of_nodes
 from btq_lang.ide import proposals as offer
-from btq_lang.ide.block import line_start
 from btq_lang.ide.clause_words import Expected, expected, is_count, is_window
 from btq_lang.ide.completion_list import listed
 from btq_lang.ide.meaning import entry_at
@@ -26,6 +25,7 @@ from btq_lang.ide.place import Place, item_tokens, open_brace, place_at, word_te
 from btq_lang.ide.proposals import Proposal
 from btq_lang.ide.snippets import snippets_for
 from btq_lang.ide.xml_completion import complete_in_xml
+from btq_lang.syntax.scan import line_start
 from btq_lang.syntax.tokens import (
     CATEGORIES,
     CLOSE,
@@ -178,7 +178,7 @@ def _in_string(workspace: Workspace, path: str, place: Place, text: str, offset:
 def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
     """Units after a number; those that fit the port, signal or verb come first.  After a count none; after the number
     of a window, what it may count comes first."""
-    line = text[line_start(text, offset) : offset]
+    line = text[line_start(text, 0, offset) : offset]
     begun = re.search(rf"(?:^|[^\w.])\d+(?:\.\d+)?(?:[eE][+-]?\d+)?([ \t]*)({_BEGUN_UNIT}|)$", line)
     if begun is not None:
         place = _before_unit(place_at(workspace, path, offset - len(begun[2])))  # `/` in a unit is not a division

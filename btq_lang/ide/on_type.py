@@ -6,9 +6,10 @@ from bisect import bisect_left
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
-from btq_lang.ide.block import blanks_before, deeper, line_start
+from btq_lang.ide.block import blanks_before, deeper
 from btq_lang.ide.meaning import at, everywhere, subject
 from btq_lang.ide.place import item_tokens, place_at, word_text, words_before
+from btq_lang.syntax.scan import line_start
 from btq_lang.syntax.tokens import CATEGORIES, CLOSE, NAME, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token
 from btq_lang.syntax.tree import Model
 from btq_lang.util.text import Edit, Span
@@ -27,7 +28,7 @@ def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[E
     as the line that opened the brackets.
     """
     text = workspace.files[path].text
-    start = line_start(text, offset)
+    start = line_start(text, 0, offset)
     place = place_at(workspace, path, offset)
     if place.inside != "code":
         return ()
@@ -101,8 +102,7 @@ def _opens(workspace: Workspace, path: str, words: tuple[Token, ...]) -> bool:
     kind = lookup(word_text(first), first.kind == STRING)
     if kind is not None:
         return kind.category in ("Control", "Decorator")
-    found = workspace.scope(path).find(Kind.MODEL, word_text(first))
-    target = found.symbol.target if found is not None else None
+    target = workspace.scope(path).target(Kind.MODEL, word_text(first))
     return isinstance(target, Model) and target.category.raw in ("Control", "Decorator")
 
 
