@@ -42,8 +42,8 @@ def node_kind(workspace: Workspace, path: str, name: str, quoted: bool = False, 
     if kind is not None:
         ports = ports_of_kind(workspace, path, name, quoted, children)
         return "\n\n".join(filter(None, (_head(kind), kind.doc, kind.semantics, _ports(ports))))
-    found = workspace.scope(path).find(Kind.MODEL, name)
-    if found is not None and isinstance(target := found.symbol.target, Model):
+    target = workspace.scope(path).target(Kind.MODEL, name)
+    if isinstance(target, Model):
         text = target.text.text if target.text else ""
         shown = f"```btq\n{target.category.raw} {name}\n```"
         _, known = inputs.declared(workspace.store, path, name)

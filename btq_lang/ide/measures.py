@@ -76,8 +76,7 @@ def _of_argument(workspace: Workspace, path: str, place: Place) -> str | None:
         return None  # operands of a condition are not arguments
     if place.is_of_parameters:
         return parameters_at(place).get(words[last_index(words[:at], ":") - 1])
-    found = workspace.scope(path).find(Kind.REQUIREMENT, place.callee)
-    item = found.symbol.target if found is not None else None
+    item = workspace.scope(path).target(Kind.REQUIREMENT, place.callee)
     parameters = item.parameters if isinstance(item, Requirement) else ()
     return next((one.unit.text for one in parameters if one.unit and one.name.text == words[at - 1]), None)
 
@@ -100,6 +99,5 @@ def _of_goal(workspace: Workspace, path: str, place: Place) -> Measured:
 
 
 def _signal_unit(workspace: Workspace, path: str, name: str) -> str | None:
-    found = workspace.scope(path).find(Kind.SIGNAL, name)
-    item = found.symbol.target if found is not None else None
+    item = workspace.scope(path).target(Kind.SIGNAL, name)
     return item.unit.text if isinstance(item, Signal) and item.unit is not None else None

@@ -40,19 +40,14 @@ def _ports(workspace: Workspace, path: str, kind: NodeKind | None, name: str) ->
     if kind is not None:
         version = workspace.project.target
         return tuple(of_version(port, version) for port in kind.ports)
-    found = workspace.scope(path).find(Kind.MODEL, name)
-    target = found.symbol.target if found is not None else None
-    return declared_ports(target) if isinstance(target, Model) else ()
+    model = workspace.scope(path).target(Kind.MODEL, name)
+    return declared_ports(model) if isinstance(model, Model) else ()
 
 
 def ports_of_tree(workspace: Workspace, path: str, name: str) -> tuple[PortKind, ...]:
     """The ports that a tree declares, in its block or in a model of its own."""
-    scope = workspace.scope(path)
-    for kind in (Kind.TREE, Kind.MODEL):
-        found = scope.find(kind, name)
-        if found is not None and (ports := declared_ports(found.symbol.target)):
-            return ports
-    return ()
+    of_tree, of_model = (declared_ports(workspace.scope(path).target(kind, name)) for kind in (Kind.TREE, Kind.MODEL))
+    return of_tree or of_model
 
 
 def declared_ports(target: object) -> tuple[PortKind, ...]:

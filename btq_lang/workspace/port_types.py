@@ -98,10 +98,8 @@ def _port_type(scope: Scope, version: str, node: Node, key: str) -> str:
     if builtin is not None:
         port = builtin.port(key)
         return _plain(of_version(port, version).type) if port is not None else ""
-    model = scope.find(Kind.MODEL, node.id.text)
-    if model is None or not isinstance(model.symbol.target, Model):
-        return ""
-    return declared_type(model.symbol.target.ports, key)
+    model = scope.target(Kind.MODEL, node.id.text)
+    return declared_type(model.ports, key) if isinstance(model, Model) else ""
 
 
 def _plain(type_: str) -> str:

@@ -25,7 +25,7 @@ from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import Definition, File, Origin, is_of_package
 from btq_lang.workspace.item_index import Name, Names
 from btq_lang.workspace.queries import Store
-from btq_lang.workspace.symbols import has_ports_of, interface
+from btq_lang.workspace.symbols import Target, has_ports_of, interface
 
 if TYPE_CHECKING:
     from btq_lang.workspace.factories import Factory
@@ -163,33 +163,25 @@ class Workspace:
 
     def closure(self, path: str) -> tuple[str, ...]:
         """A file and all that it includes, included ones first; each once, even if they include each other."""
-        known = self._closures.get(path)
-        if known is None:
-            known = self._closures[path] = self._closure(path)
-        return known
+        if path not in self._closures:
+            self._closures[path] = self._closure(path)
+        return self._closures[path]
 
     def registered_with(self, path: str) -> tuple[str, ...]:
         """All files that are registered when a file runs, it last: what it includes, and those of its factory."""
         return (*[each for each in self.scope(path).paths if each != path], path)
 
     def _closure(self, path: str) -> tuple[str, ...]:
-        seen: set[str] = set()
         order: list[str] = []
-        stack: list[tuple[str, Iterator[str]]] = []
-
-        def enter(file: str) -> None:
-            seen.add(file)
-            stack.append((file, self._targets(file)))
-
-        enter(path)
-        while stack:
-            file, targets = stack[-1]
-            target = next((target for target in targets if target not in seen), None)
-            if target is not None:
-                enter(target)
-            else:
+        seen: set[str] = set()
+        waiting = [(path, False)]
+        while waiting:
+            file, is_left = waiting.pop()
+            if is_left:
                 order.append(file)
-                stack.pop()
+            elif file not in seen:
+                seen.add(file)
+                waiting += ((file, True), *((target, False) for target in reversed([*self._targets(file)])))
         return tuple(order)
 
     def _targets(self, path: str) -> Iterator[str]:
@@ -381,10 +373,13 @@ class Scope:
 
     def find(self, kind: Kind, name: str) -> Definition | None:
         """The definition of a name that counts: the first one."""
-        found = self._found.get((kind, name))
-        if found is None:
-            found = self._look_up(kind, name)
+        found = self.all(kind, name)
         return found[0] if found else None
+
+    def target(self, kind: Kind, name: str) -> Target | None:
+        """What that definition defines."""
+        found = self.find(kind, name)
+        return found.symbol.target if found is not None else None
 
     def all(self, kind: Kind, name: str) -> tuple[Definition, ...]:
         """Every definition of a name, the one that counts first."""
