@@ -70,7 +70,7 @@ def _diagnostics(server: Server) -> None:
             server.pulls_all = True
             server.publish_projects()
         await server.scanned.wait()
-        paths = server.session.paths() if server.session.setting("checkClosedFiles", True) else ()
+        paths = server.session.paths() if server.session.is_on("checkClosedFiles") else ()
         # Diagnostics of files that are deleted, or no longer wanted, disappear only after an empty report, also for
         # files whose result id the editor has forgotten, as VS Code does when a document is closed.
         gone = (known.keys() | server.shown) - set(paths) - server.session.open.keys()

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Set
 from time import perf_counter
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 from weakref import ReferenceType, ref
 
 from btq_lang.btcpp.opening import file_of
@@ -19,25 +19,24 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check, findings, forget, keep, let_go
 from btq_lang.commands.files import Files, lacking_names
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.diagnostics.rules import RULES, Severity
+from btq_lang.diagnostics.rules import RULES
 from btq_lang.util.globs import path_matcher
 from btq_lang.util.record import replace
 from btq_lang.util.text import LineIndex
-from btq_lang.workspace.config import Project
+from btq_lang.workspace.config import SEVERITIES, Project
 from btq_lang.workspace.factories import merged
 from btq_lang.workspace.file import CPP_SUFFIXES, SIDE_SUFFIX, SUFFIXES, YAML_SUFFIXES, File
 from btq_lang.workspace.findings import Findings, Reported
 from btq_lang.workspace.inputs import advance
 from btq_lang.workspace.item_index import Name
 from btq_lang.workspace.loader import LoadProblem, find_project, is_project_file, read, stamp, work_in
-from btq_lang.workspace.overrides import Override
+from btq_lang.workspace.overrides import Override, Severities
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.ide.verdicts import Evidence
 
 _ENDINGS: Final = (*SUFFIXES, ".xml", "/btq.toml", "/pyproject.toml")  # of missions and project files
-Severities: TypeAlias = tuple[tuple[str, Severity | None], ...]
 
 
 class Session:
@@ -204,11 +203,8 @@ class Session:
     def _severities(self) -> Severities:
         """The severities set by the user, which override those of the project."""
         rules = self.settings.get("rules")
-        found: list[tuple[str, Severity | None]] = []
-        for name, word in rules.items() if isinstance(rules, dict) else ():
-            if name in RULES and word in _SEVERITIES:
-                found.append((name, _SEVERITIES[word]))
-        return tuple(found)
+        words = {name: str(word) for name, word in rules.items() if name in RULES} if isinstance(rules, dict) else {}
+        return tuple((name, SEVERITIES[word]) for name, word in words.items() if word in SEVERITIES)
 
     def let_go(self) -> None:
         """Release what edits have replaced and, if they take much memory, the trees of files that are not worked in:
@@ -265,13 +261,9 @@ class Session:
         workspace = self.workspace_of(path)
         if workspace is None or path in self._pooled:
             return path in self.projects or path in self.parameters
-        origin = workspace.files[path].origin
-        return (
-            origin is None
-            or workspace.files[path].is_cpp
-            or path in workspace.included_files
-            or (path in workspace.registered or is_mission(origin.text))
-        )
+        file = workspace.files[path]
+        is_used = path in workspace.included_files or path in workspace.registered
+        return file.origin is None or file.is_cpp or is_used or is_mission(file.origin.text)
 
     def workspaces(self) -> tuple[Workspace, ...]:
         return tuple(self._workspaces)
@@ -283,11 +275,8 @@ class Session:
 
     def unsent(self) -> tuple[str, ...]:
         """The files that are reported on and that an editor does not send: of projects, parameters, and C++ sources."""
-        return (
-            *self.projects,
-            *self.parameters,
-            *(path for path, home in self._home.items() if self._workspaces[home].files[path].is_cpp),
-        )
+        cpp = (path for path, home in self._home.items() if self._workspaces[home].files[path].is_cpp)
+        return (*self.projects, *self.parameters, *cpp)
 
     def reads_cpp(self, path: str) -> bool:
         """Whether a project may name a C++ source, which may be new."""
@@ -350,9 +339,9 @@ class Session:
             for workspace in workspaces:
                 keep(workspace, path)
             of_each = [findings(each.store, path, self._seen(each, path)) for each in workspaces]
-            found = (
-                of_each[0] if len(of_each) == 1 else self._merged(workspaces, [each.diagnostics for each in of_each])
-            )
+            found = of_each[0]
+            if len(of_each) > 1:
+                found = self._merged(workspaces, [each.diagnostics for each in of_each])
             self.check_seconds[path] = perf_counter() - begin
         else:  # placed: offsets that count from items would keep these alive
             of_closed = [
@@ -402,10 +391,9 @@ class Session:
         side = side_path(path)
         return None if stamp(side) is None else read(side)[0] or ""
 
-    def setting(self, name: str, default: bool) -> bool:
-        """A setting of the user, if it is a bool."""
-        value = self.settings.get(name)
-        return value if isinstance(value, bool) else default
+    def is_on(self, name: str) -> bool:
+        """Whether the user wants something, as long as nothing else is set."""
+        return self.settings.get(name) is not False
 
 
 def _with_severities(project: Project, severities: Severities) -> Project:
@@ -436,4 +424,3 @@ def _lacks_definition(workspace: Workspace, path: str, names: Set[Name]) -> bool
 
 _MOST_IDLE = 30_000  # characters; each takes about 40 bytes when parsed
 _AT_ONCE = 5  # files
-_SEVERITIES: dict[object, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}

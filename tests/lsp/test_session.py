@@ -419,6 +419,13 @@ def test_the_folders_are_read_once_for_their_settings(folder: Path) -> None:
     assert session.has_read
 
 
+def test_severities_that_are_no_words_are_ignored(folder: Path) -> None:
+    session = Session()
+    session.folders = (str(folder),)
+    session.settle({"rules": {"unused-tree": ["off"], "unknown-node": {}, "missing-port": None, "x": "off"}})
+    assert str(folder / "main.btq") in session.reload()
+
+
 def test_a_check_after_all_was_read_again_asks_nothing_again(folder: Path) -> None:
     session = Session()
     session.folders = (str(folder),)
