@@ -258,10 +258,9 @@ class _Places:
         if place.path is None:
             return {}
         file = self._workspace.files[place.path]
-        start = place.span.start + (file.start_of(place.anchor) if place.anchor is not None else 0)
         if file.origin is not None:  # it was imported from XML, so its lines differ
             return {"file": self.name(place.path)}
-        return {"file": self.name(place.path), "line": file.lines.position(start).line + 1}
+        return {"file": self.name(place.path), "line": file.lines.position(file.span_of(place).start).line + 1}
 
 
 def _plain(value: object, place: _Places) -> Json:

@@ -225,7 +225,7 @@ def _absolute(place: Place, groups: tuple[Group, ...]) -> tuple[str, Span]:
     """The file of a place, and its span in that file."""
     assert place.path is not None, "a clause is part of a file"
     file = next(group.workspace.files[place.path] for group in groups if place.path in group.workspace.files)
-    return place.path, place.span.shifted(file.start_of(place.anchor)) if place.anchor is not None else place.span
+    return place.path, file.span_of(place)
 
 
 def _same_place(made: list[Output]) -> Iterator[str]:

@@ -13,7 +13,7 @@ from btq_lang.workspace.inputs import everything
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
-_MOST_MISSIONS = 4  # planning one takes as long as checking it
+MOST_MISSIONS = 4  # that are looked at: resolving one takes long, and a library may be in hundreds
 _MOST_NODES = 4
 
 
@@ -44,7 +44,7 @@ def enforcement_lines(workspace: Workspace, path: str, found: Definition, *, is_
 def _missions(workspace: Workspace, path: str, found: Definition) -> tuple[str, ...]:
     """The missions for which the requirement is planned: the file itself, or some that it is a part of."""
     missions = (one for one in missions_of(workspace, path) if found.path in workspace.scope(one).paths)
-    return tuple(missions)[:_MOST_MISSIONS]
+    return tuple(missions)[:MOST_MISSIONS]
 
 
 def missions_of(workspace: Workspace, path: str) -> tuple[str, ...]:

@@ -8,27 +8,25 @@ from typing import TYPE_CHECKING
 from btq_lang.btcpp.side_elements import said_in_xml
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.diagnostics.model import Place
 from btq_lang.ide import describe
-from btq_lang.ide.clause_enforcement import missions_of
+from btq_lang.ide.clause_enforcement import MOST_MISSIONS, missions_of
 from btq_lang.ide.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
 from btq_lang.ide.outline import requirement_detail
 from btq_lang.ide.ports import port_of
 from btq_lang.requirements.resolve import requirements
-from btq_lang.syntax.tree import Claim, Entry, Requirement, Root
+from btq_lang.syntax.tree import Entry, Requirement, Root
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span, counted
-from btq_lang.workspace.file import Definition
 from btq_lang.workspace.inputs import everything
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.references import What
+from btq_lang.workspace.symbols import names_subject
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.ide.verdicts import Evidence
 
 _COUNTED = {Kind.REQUIREMENT: What.REQUIREMENT, Kind.TREE: What.TREE}
-_MOST_MISSIONS = 4  # resolving one takes long, and a library may be in hundreds
 
 
 class Hint(Record):
@@ -105,12 +103,12 @@ def code_lenses(
         uses = (own, *others) if is_in_place and others else others
         titles = [counted(len(uses), "use")]
         nodes: tuple[tuple[str, Span], ...] = ()
-        if _names_its_subject(place):
+        if names_subject(place.symbol.target):
             missions = missions_of(workspace, path)
-            of_missions = [workspace.store.ask(_by_subject, each) for each in missions[:_MOST_MISSIONS]]
+            of_missions = [workspace.store.ask(_by_subject, each) for each in missions[:MOST_MISSIONS]]
             defined = place.symbol.name, place.path
             nodes = tuple(dict.fromkeys(at for each in of_missions for at in each.get(defined, ())))
-            more = " or more" if len(missions) > _MOST_MISSIONS else ""
+            more = " or more" if len(missions) > MOST_MISSIONS else ""
             holds = [f"holds for {counted(len(nodes), 'node')}{more}"] if nodes else []
             titles = [*(titles if uses or not nodes else ()), *holds]
         if uses or nodes or not is_in_place:
@@ -124,13 +122,7 @@ def _seen(workspace: Workspace, path: str, evidence: Evidence | None) -> Iterato
         return
     from btq_lang.ide.verdicts import verdict_titles  # few projects have logs
 
-    for span, title, nodes in verdict_titles(workspace, path, evidence):
-        starts = [(each.path or path, each.span.shifted(_start(workspace, each, path))) for each in nodes]
-        yield Lens(span, title, tuple(starts))
-
-
-def _start(workspace: Workspace, place: Place, path: str) -> int:
-    return workspace.files[place.path or path].start_of(place.anchor) if place.anchor is not None else 0
+    yield from (Lens(*title) for title in verdict_titles(workspace, path, evidence))
 
 
 def _built(workspace: Workspace, path: str, side: str | None) -> Iterator[Lens]:
@@ -152,13 +144,6 @@ def _is_root(entry: Entry | None) -> bool:
     return entry is not None and isinstance(entry.item, Root)
 
 
-def _names_its_subject(found: Definition) -> bool:
-    item = found.symbol.target
-    return isinstance(item, Requirement) and any(
-        isinstance(clause, Claim) and clause.subject is not None for clause in item.clauses
-    )
-
-
 def _by_subject(store: Store[Workspace], mission: str) -> dict[tuple[str, str], tuple[tuple[str, Span], ...]]:
     """The nodes that the claims of requirements name, by name and file, for all of a mission: they are resolved
     together."""
@@ -170,6 +155,5 @@ def _by_subject(store: Store[Workspace], mission: str) -> dict[tuple[str, str], 
             assert defined_in is not None, "a definition is in a file"
             nodes = found.setdefault((applied.requirement.name, defined_in), {})
             for source in applied.nodes:
-                word = source.node.head
-                nodes[source.path, word.span.shifted(workspace.files[source.path].start_of(source.item))] = None
+                nodes[source.path, workspace.files[source.path].span_of(source.place)] = None
     return {key: tuple(nodes) for key, nodes in found.items()}

@@ -26,7 +26,7 @@ from btq_lang.evidence.verdicts import (
     RequirementVerdict,
 )
 from btq_lang.evidence.written_verdicts import WrittenMission
-from btq_lang.ide.clause_enforcement import missions_of
+from btq_lang.ide.clause_enforcement import MOST_MISSIONS, missions_of
 from btq_lang.ide.meaning import Subject, definition
 from btq_lang.render.gfm import code, escaped, table
 from btq_lang.requirements.resolve import requirements
@@ -92,7 +92,7 @@ class Evidence:
 
 def verdict_titles(
     workspace: Workspace, path: str, evidence: Evidence
-) -> Iterator[tuple[Span, str, tuple[Place, ...]]]:
+) -> Iterator[tuple[Span, str, tuple[tuple[str, Span], ...]]]:
     """For each requirement in a file that logs show something of: the place of its name, its worst verdict in a few
     words, and its nodes.
     """
@@ -103,9 +103,9 @@ def verdict_titles(
                 found.setdefault(shown.demand.requirement.place, []).append((shown, judged))
     for place, clauses in found.items():
         shown, judged = min(clauses, key=lambda each: _rank(each[0]))
-        nodes = [node.place for each, _ in clauses for node in _nodes(each.demand)]
-        span = place.span.shifted(workspace.files[path].start_of(place.anchor)) if place.anchor else place.span
-        yield span, _title(shown, judged), tuple(dict.fromkeys(nodes))
+        nodes = [node for each, _ in clauses for node in _nodes(each.demand)]
+        places = [(node.path, workspace.files[node.path].span_of(node.place)) for node in nodes]
+        yield workspace.files[path].span_of(place), _title(shown, judged), tuple(dict.fromkeys(places))
 
 
 def verdict_table(workspace: Workspace, path: str, wanted: Subject, evidence: Evidence) -> str:
@@ -157,7 +157,7 @@ def is_outdated(workspace: Workspace, mission: str, evidence: Evidence) -> bool:
 
 
 def _on_missions(workspace: Workspace, path: str, evidence: Evidence) -> Iterator[Judged]:
-    for mission in missions_of(workspace, path)[:_MOST_MISSIONS]:
+    for mission in missions_of(workspace, path)[:MOST_MISSIONS]:
         if (judged := evidence.on(workspace, mission)) is not None:
             yield judged
 
@@ -229,4 +229,3 @@ def _title(shown: Shown, judged: Judged) -> str:
 _RULES: Final = {VIOLATED: "requirement-violated", NEVER: "never-exercised"}
 _EARLIER: Final = "measured on an earlier text"
 _ROWS: Final = 8
-_MOST_MISSIONS: Final = 4  # as for other features: resolving one takes long, and a library may be in hundreds

@@ -326,8 +326,7 @@ def _places(workspace: Workspace, shown: Callable[[str], str]) -> Callable[[Plac
     def at(place: Place) -> At:
         assert place.path is not None, "places of nodes and requirements have a path"
         file = workspace.files[place.path]
-        span = place.span.shifted(file.start_of(place.anchor) if place.anchor is not None else 0)
-        position = file.source_lines.position(file.on_disk(span).start)
+        position = file.source_lines.position(file.on_disk(file.span_of(place)).start)
         return At(shown_once(place.path), position.line + 1, position.column + 1)
 
     return at

@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.grammar.item_words import may_include
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.syntax.tree import Entry, Include, Item
@@ -286,6 +286,10 @@ class File:
             KeyError: the item does not belong to this file.
         """
         return self._entries[id(item)].start
+
+    def span_of(self, place: Place) -> Span:
+        """The span of a place in this file, counted from its start."""
+        return place.span if place.anchor is None else place.span.shifted(self.start_of(place.anchor))
 
     def entry_of(self, item: Item) -> Entry:
         """The entry of one of the file's items."""
