@@ -17,7 +17,6 @@ from btq_lang.lexer import tokens
 from btq_lang.syntax.tokens import COMMENT
 from btq_lang.syntax.tree import (
     Apply,
-    Claim,
     Entry,
     NodeClause,
     QualityPath,
@@ -27,6 +26,7 @@ from btq_lang.syntax.tree import (
     Satisfies,
 )
 from btq_lang.workspace.file import File
+from btq_lang.workspace.symbols import names_subject
 
 
 def description(
@@ -59,9 +59,7 @@ def said_elsewhere(source: Source) -> Mapping[int, tuple[str, ...]]:
 
 
 def _speaks_of_nodes(item: object) -> bool:
-    if isinstance(item, Requirement):
-        return any(isinstance(clause, Claim) and clause.subject is not None for clause in item.clauses)
-    return isinstance(item, Apply)
+    return isinstance(item, Apply) or names_subject(item)
 
 
 def requirement_line(

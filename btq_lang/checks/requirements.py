@@ -14,7 +14,7 @@ from btq_lang.syntax.tree import Claim, Context, OnViolation, Requirement, Signa
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
-from btq_lang.workspace.symbols import Symbol, same_requirement
+from btq_lang.workspace.symbols import Symbol, names_subject, same_requirement
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -58,7 +58,7 @@ def unused_requirement(view: View) -> Iterator[Diagnostic]:
     requirement = view.item
     if not isinstance(requirement, Requirement) or requirement.name is None:
         return
-    if any(isinstance(clause, Claim) and clause.subject is not None for clause in requirement.clauses):
+    if names_subject(requirement):
         return
     if not view.has_trees or view.is_used_elsewhere:
         return  # a file of requirements, or a library: its users may be anywhere

@@ -95,7 +95,13 @@ def claiming(summary: Summary) -> frozenset[str]:
 def _may_claim(requirement: syntax.Requirement) -> bool:
     if not requirement.clauses:
         return requirement.text is not None and "if" in requirement.text.text.lower()
-    return any(isinstance(clause, syntax.Claim) and clause.subject is not None for clause in requirement.clauses)
+    return names_subject(requirement)
+
+
+def names_subject(item: object) -> bool:
+    """Whether it is a requirement with a claim that names its own subject."""
+    clauses = item.clauses if isinstance(item, syntax.Requirement) else ()
+    return any(isinstance(clause, syntax.Claim) and clause.subject is not None for clause in clauses)
 
 
 def same_requirement(first: syntax.Requirement, second: syntax.Requirement) -> bool:
@@ -170,12 +176,7 @@ def _words_in(part: object) -> frozenset[str]:
 
 def _saying(requirement: syntax.Requirement) -> object:
     text = " ".join(requirement.text.text.split()) if requirement.text else None
-    return (
-        text,
-        syntax.shape(requirement.quality),
-        syntax.shape(requirement.parameters),
-        syntax.shape(requirement.clauses),
-    )
+    return text, syntax.shape((requirement.quality, requirement.parameters, requirement.clauses))
 
 
 _WORDS: Final = re.compile(r"\w+")
