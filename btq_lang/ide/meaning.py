@@ -321,8 +321,7 @@ def is_main(workspace: Workspace, path: str, entry: Entry) -> bool:
     main = workspace.main_tree(path)
     if main is None or main.path != path or main.entry is not entry:
         return False
-    named = any(isinstance(other.item, Root) for other in workspace.files[path].parsed.entries)
-    return named or path not in workspace.included_files
+    return bool(workspace.files[path].of_type(Root)) or path not in workspace.included_files
 
 
 def _rule_at(workspace: Workspace, path: str, offset: int) -> Found | None:

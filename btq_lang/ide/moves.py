@@ -5,7 +5,7 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Mapping
 
-from btq_lang.syntax.tree import Include, quote
+from btq_lang.syntax.tree import quote
 from btq_lang.util.text import Edit
 from btq_lang.workspace.config import include_candidates
 from btq_lang.workspace.workspace import Workspace
@@ -19,18 +19,15 @@ def moved_files(workspace: Workspace, moves: Mapping[str, str]) -> dict[str, tup
     for path, file in workspace.files.items():
         if file.origin is not None:
             continue
-        for entry in file.parsed.entries:
-            include = entry.item
-            target = workspace.included_by(path, include) if isinstance(include, Include) else None
-            if target is None or not isinstance(include, Include) or include.path is None:
-                continue
-            if (new[path], new[target]) == (path, target):
+        for include in file.includes:
+            target = workspace.included_by(path, include)
+            if include.path is None or target is None or (new[path], new[target]) == (path, target):
                 continue
             if new[target] in include_candidates(workspace.project, new[path], include.path.text)[:1]:
                 continue
             shown = include_name(workspace, new[path], new[target])
             if shown != include.path.text:
-                edit = Edit(include.path.span.shifted(entry.start), quote(shown))
+                edit = Edit(include.path.span.shifted(file.start_of(include)), quote(shown))
                 edits[path] = (*edits.get(path, ()), edit)
     return edits
 

@@ -69,31 +69,28 @@ def workspace_symbols(workspace: Workspace, query: str, limit: int = 500) -> tup
     """The names in all files whose letters contain those of the query in order, whatever their case; the shortest and
     those that begin with it first."""
     wanted = query.casefold()
-    found: list[tuple[tuple[bool, int, str, str, int], Match]] = []
-    for path in workspace.files:
-        for definition in workspace.files[path].defined:
-            symbol = definition.symbol
-            folded = symbol.name.casefold()
-            if not _contains(folded, wanted):
-                continue
-            rank = (not folded.startswith(wanted), len(folded), folded, path, definition.span.start)
-            kind = symbol.kind.value.removeprefix("node ")
-            found.append((rank, Match(symbol.name, kind, path, definition.span, path)))
-        for entry in workspace.files[path].parsed.entries:
-            if isinstance(entry.item, syntax.Tree):
-                tree = entry.item.name.text if entry.item.name else ""
-                for node in entry.item.walk():
-                    name = node.name
-                    if name is None or not wanted or not _contains(folded := name.text.casefold(), wanted):
-                        continue
-                    span = name.span.shifted(entry.start)
-                    rank = (not folded.startswith(wanted), len(folded), folded, path, span.start)
-                    found.append((rank, Match(name.text, _category(workspace, path, node), path, span, tree)))
-    return tuple(match for _, match in sorted(found, key=lambda one: one[0])[:limit])
+    found: list[Match] = []
+    for path, file in workspace.files.items():
+        for each in file.defined:
+            if _contains(each.symbol.name, wanted):
+                kind = each.symbol.kind.value.removeprefix("node ")
+                found.append(Match(each.symbol.name, kind, path, each.span, path))
+        for tree in file.of_type(syntax.Tree) if wanted else ():
+            for node in tree.walk():
+                name = node.name
+                if name is not None and _contains(name.text, wanted):
+                    span, within = name.span.shifted(file.start_of(tree)), tree.name.text if tree.name else ""
+                    found.append(Match(name.text, _category(workspace, path, node), path, span, within))
+
+    def rank(match: Match) -> tuple[bool, int, str, str, int]:
+        folded = match.name.casefold()
+        return not folded.startswith(wanted), len(folded), folded, match.path, match.span.start
+
+    return tuple(sorted(found, key=rank)[:limit])
 
 
 def _contains(name: str, wanted: str) -> bool:
-    letters = iter(name)
+    letters = iter(name.casefold())
     return all(letter in letters for letter in wanted)
 
 

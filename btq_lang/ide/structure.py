@@ -124,9 +124,9 @@ def document_links(workspace: Workspace, path: str) -> tuple[Link, ...]:
     """The paths of includes."""
     file = workspace.files[path]
     found = []
-    for entry in file.parsed.entries:
-        if isinstance(entry.item, Include) and entry.item.path is not None:
-            span = entry.item.path.span.shifted(entry.start)
-            inside = Span(span.start + 1, max(span.end - 1, span.start + 1)) if entry.item.path.quoted else span
-            found.append(Link(inside, workspace.included_by(path, entry.item)))
+    for include in file.includes:
+        if include.path is not None:
+            span = include.path.span.shifted(file.start_of(include))
+            inside = Span(span.start + 1, max(span.end - 1, span.start + 1)) if include.path.quoted else span
+            found.append(Link(inside, workspace.included_by(path, include)))
     return tuple(found)
