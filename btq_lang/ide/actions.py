@@ -46,7 +46,7 @@ def code_actions(
         for include in () if is_foreign else needless_includes(workspace, path):
             if include.span.touches(span):
                 title = f"Remove the {include.why} include `{include.name}`"
-                actions.append(Action(title, QUICK_FIX, {path: without(workspace.files[path], [include])}))
+                actions.append(Action(title, QUICK_FIX, {path: without(workspace.files[path], [include.span])}))
         actions += _silencing(workspace, path, here)
     if not is_foreign and (not only or any(one == "" or one.split(".")[0] == REFACTOR for one in only)):
         for made in (*refactorings(workspace, path, span.start), *short_form(workspace, path, span.start, diagnostics)):
@@ -55,7 +55,8 @@ def code_actions(
         actions += _fix_all(workspace, path, diagnostics)
     if not is_foreign and wanted(ORGANIZE) and (needless := needless_includes(workspace, path)):
         title = f"Remove {len(needless)} duplicate or unused include{'s' if len(needless) > 1 else ''}"
-        actions.append(Action(title, ORGANIZE, {path: without(workspace.files[path], needless)}))
+        edits = without(workspace.files[path], [include.span for include in needless])
+        actions.append(Action(title, ORGANIZE, {path: edits}))
     return tuple(actions)
 
 

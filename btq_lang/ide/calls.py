@@ -73,10 +73,8 @@ def called(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
 
 def _tree_of(workspace: Workspace, found: Found) -> Definition | None:
     """The tree in which a reference is."""
-    for place in workspace.files[found.path].defined:
-        if place.symbol.kind is Kind.TREE and place.entry is found.entry:
-            return place
-    return None
+    defined = workspace.files[found.path].defined
+    return next((each for each in defined if each.symbol.kind is Kind.TREE and each.entry is found.entry), None)
 
 
 def _item(place: Definition) -> TreeItem:

@@ -49,7 +49,7 @@ def expected(words: Sequence[Token]) -> Expected:
     if text == "of" and _begins_last(earlier, (*_USES, "sum", "in", "with")) in _USES:
         return Expected(signal=True)
     if text == "of":
-        return Expected(node=True) if before == "sum" else Expected(sorted_words(EXPERIMENTS))
+        return Expected(node=True) if before == "sum" else Expected(_EXPERIMENTS)
     if text == "and" and _begins_last(earlier, ("between", *_CONDITIONS)) == "between":
         return Expected(value=True)
     if text in _AFTER:
@@ -58,11 +58,11 @@ def expected(words: Sequence[Token]) -> Expected:
         return Expected(operand=True)
     if last.kind in (NUMBER, QUANTITY):
         if is_window(earlier):
-            return Expected(sorted_words(EXPERIMENTS)) if last.kind == NUMBER else Expected(clause=True)
+            return Expected(_EXPERIMENTS) if last.kind == NUMBER else Expected(clause=True)
         return Expected(_behind_value(earlier), clause=True)
     if last.kind in (NAME, STRING, CLOSE) or text in HAPPENINGS:
         if _begins_last(earlier, (*_EVENTS, *_CLAUSES)) in _EVENTS and text not in HAPPENINGS:
-            return Expected(sorted_words(HAPPENINGS))
+            return Expected(_HAPPENINGS)
         if text in HAPPENINGS and _begins_last(earlier, ("from", "to", *_CLAUSES)) == "from":
             return Expected(("to",))
         return Expected(_behind_value(earlier), clause=True)
@@ -118,10 +118,6 @@ def _is_function(word: Token) -> bool:
     return word.kind == NAME and word.text in FUNCTIONS
 
 
-def sorted_words(words: Sequence[str] | frozenset[str]) -> tuple[str, ...]:
-    return tuple(sorted(words))
-
-
 def _begins_last(words: Sequence[str], heads: Sequence[str]) -> str:
     """The one of some words that occurs last."""
     return next((word for word in reversed(words) if word in heads), "")
@@ -138,7 +134,7 @@ def _behind_value(words: Sequence[str]) -> tuple[str, ...]:
     if head in ("in", "with"):
         return ("of runs", "of activations")
     if head == "over":
-        return sorted_words(EXPERIMENTS)
+        return _EXPERIMENTS
     if head in _CONDITIONS:
         return _BEHIND_OPERAND
     if "if" in words:
@@ -151,6 +147,8 @@ def last_index(words: Sequence[str], word: str) -> int:
     return next((index for index in reversed(range(len(words))) if words[index] == word), -1)
 
 
+_EXPERIMENTS = tuple(sorted(EXPERIMENTS))
+_HAPPENINGS = tuple(sorted(HAPPENINGS))
 _BOUNDS = ("at most", "at least", "less than", "more than", "between")
 _COUNTED = words_of(operands=("count", "rate"))
 _REACTIONS = words_of(operands=("reaction",))
@@ -202,7 +200,7 @@ _AFTER = {
     "after": _EVENT,
     "from": _EVENT,
     "to": _EVENT,
-    "mission": Expected((*_OF_MISSIONS, *sorted_words(HAPPENINGS))),
+    "mission": Expected((*_OF_MISSIONS, *_HAPPENINGS)),
     "per": Expected(node=True),
     "every": Expected(value=True, node=True),
     "node": Expected(node=True),

@@ -86,10 +86,8 @@ def _explained(workspace: Workspace, found: Found, wanted: Subject) -> str | Non
     if wanted.what in (What.SIGNAL, What.CONTEXT):
         place = definition(workspace, path, wanted)
         return describe.declared(workspace, place) if place else None
-    if wanted.what is What.KEY and mention.what is What.PORT and node is not None:
-        return _port(workspace, found) or _key(workspace, wanted)
     if wanted.what is What.KEY:
-        return _key(workspace, wanted)
+        return (_port(workspace, found) if mention.what is What.PORT else None) or _key(workspace, wanted)
     if wanted.what is What.PORT:
         return _port(workspace, found)
     if wanted.what is What.ATTRIBUTE:

@@ -22,18 +22,7 @@ from btq_lang.ide.outline import requirement_detail
 from btq_lang.ide.place import Place, word_text
 from btq_lang.requirements.nodes import nodes as nodes_in_scope
 from btq_lang.syntax.tokens import CATEGORIES
-from btq_lang.syntax.tree import (
-    Context,
-    Entry,
-    QualityDecl,
-    Requirement,
-    Signal,
-    Tree,
-    is_name,
-    quote,
-    shape,
-    written,
-)
+from btq_lang.syntax.tree import Context, Entry, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape, written
 from btq_lang.util.record import Record
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.references import Mention, What
@@ -51,7 +40,6 @@ class Proposal(Record):
         filter: the text that the typed letters are compared with, if not the label.
         name: the key for `documentation`; empty if there is none.
         include: the file to include for it, if it is out of scope.
-        old: whether there is a newer way.
     """
 
     label: str
@@ -62,7 +50,6 @@ class Proposal(Record):
     filter: str = ""
     name: str = ""
     include: str = ""
-    old: bool = False
 
 
 def words(found: Iterable[str], kind: str) -> Iterator[Proposal]:
@@ -197,8 +184,7 @@ def operands(
 
 def parameters(workspace: Workspace, path: str, requirement: str) -> Iterator[Proposal]:
     """The parameters of a requirement, as arguments."""
-    found = workspace.scope(path).find(Kind.REQUIREMENT, requirement)
-    item = found.symbol.target if found is not None else None
+    item = workspace.scope(path).target(Kind.REQUIREMENT, requirement)
     for one in item.parameters if isinstance(item, Requirement) else ():
         unit = one.unit.text if one.unit is not None else ""
         yield Proposal(one.name.text, "parameter", unit, f"{one.name.text} = ", f"{one.name.text} = ${{0:1 {unit}}}")
@@ -380,20 +366,17 @@ def _clashes(workspace: Workspace, path: str, other: str) -> bool:
 
 def _is_same_model(workspace: Workspace, path: str, other: str, kind: Kind, name: str) -> bool:
     """Whether two files declare a node with the same ports."""
-    first = workspace.scope(path).find(kind, name)
-    return kind is Kind.MODEL and all(
-        first is not None and shape(first.symbol.target) == shape(one.symbol.target)
-        for one in workspace.files[other].definitions(kind, name)
-    )
+    first = shape(workspace.scope(path).target(kind, name))
+    others = workspace.files[other].definitions(kind, name)
+    return kind is Kind.MODEL and all(first == shape(one.symbol.target) for one in others)
 
 
 def _mentioned(workspace: Workspace, paths: Iterable[str], *kinds: What) -> Iterator[Mention]:
-    """The references of one or two kinds, in the order of the text."""
-    first, last = kinds[0], kinds[-1]
+    """The references of some kinds, in the order of the text."""
     for path in paths:
         file = workspace.files[path]
         for entry in file.parsed.entries:
-            yield from [one for one in file.mentions_of(entry) if one.what is first or one.what is last]
+            yield from [one for one in file.mentions_of(entry) if one.what in kinds]
 
 
 def unknown(workspace: Workspace, paths: Iterable[str]) -> list[str]:

@@ -22,7 +22,7 @@ from btq_lang.syntax.tree import is_name, quote
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, Span, apply_edits
 from btq_lang.workspace.file import File
-from btq_lang.workspace.references import Mention, What
+from btq_lang.workspace.references import KIND_OF, Mention, What
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -120,8 +120,7 @@ def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
         return (
             f"cannot rename `{wanted.name}`: its definition is in {shown(place.path)}, which this file does not include"
         )
-    unresolved = (What.TREE, What.REQUIREMENT, What.SIGNAL, What.CONTEXT, What.QUALITY, What.PARAMETER)
-    if wanted.what in unresolved and place is None and wanted.what is not What.PARAMETER:
+    if place is None and wanted.what in KIND_OF and wanted.what is not What.NODE:
         return f"cannot rename `{wanted.name}`: it is not defined"
     if wanted.what is What.KEY and mention.node is not None and mention.node.attribute("_autoremap") is not None:
         return "cannot rename: `_autoremap` passes every entry under its own name"

@@ -41,11 +41,6 @@ class NeedlessInclude(Record):
     span: Span
 
 
-def without(file: File, includes: Iterable[NeedlessInclude]) -> tuple[Edit, ...]:
-    """The edits that remove includes; comments after them stay."""
-    return _without(file, [include.span for include in includes])
-
-
 def removal(file: File, entry: Entry) -> tuple[Edit, ...]:
     """The edits that remove an item with its block, the comments in it and those at the end of its lines."""
     following = next((other.start for other in file.parsed.entries if other.start > entry.start), len(file.text))
@@ -56,7 +51,7 @@ def removal(file: File, entry: Entry) -> tuple[Edit, ...]:
             continue
         if token.kind != COMMENT or file.lines.position(token.start).column > column:
             end = token.end
-    return _without(file, [Span(start, end)])
+    return without(file, [Span(start, end)])
 
 
 def needless_includes(workspace: Workspace, path: str) -> tuple[NeedlessInclude, ...]:
@@ -142,7 +137,7 @@ def _changes_nothing(workspace: Workspace, path: str, removed: Sequence[Include]
     requirements as often."""
     file = workspace.files[path]
     spans = [_span(file, include) for include in removed]
-    after = workspace.with_file(path, apply_edits(file.text, _without(file, spans)))
+    after = workspace.with_file(path, apply_edits(file.text, without(file, spans)))
     if len(requirements(workspace, path).applied) != len(requirements(after, path).applied):
         return False
     before = [each for each in check(workspace, path) if not any(span.contains(each.span) for span in spans)]
@@ -150,7 +145,7 @@ def _changes_nothing(workspace: Workspace, path: str, removed: Sequence[Include]
     return then == now
 
 
-def _without(file: File, spans: Iterable[Span]) -> tuple[Edit, ...]:
+def without(file: File, spans: Iterable[Span]) -> tuple[Edit, ...]:
     """The edits that remove some spans: with their lines if nothing else is on them, and with the blank lines that
     would remain; a comment after one stays."""
     text, lines = file.text, file.lines

@@ -14,16 +14,7 @@ offsets and paths, call `ide`, and convert the result back.  Features are implem
 
 from __future__ import annotations
 
-from btq_lang.lsp import (
-    acting,
-    colours,
-    commands,
-    documents,
-    hints,
-    lifecycle,
-    logs,
-    navigation,
-)
+from btq_lang.lsp import acting, colours, commands, documents, hints, lifecycle, logs, navigation
 from btq_lang.lsp.editor import Server
 
 

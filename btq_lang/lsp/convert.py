@@ -86,10 +86,6 @@ class Converter:
     def _offset_in(self, lines: LineIndex, position: types.Position) -> int:
         return lines.offset(Position(position.line, position.character), self.encoding)
 
-    def offset_made(self, workspace: Workspace, path: str, position: types.Position) -> int | None:
-        """As `offset`; for a file in XML, the offset in the imported text; None: it has none."""
-        return workspace.files[path].from_disk(self.offset(workspace, path, position))
-
     def span(self, workspace: Workspace, path: str, range_: types.Range) -> Span:
         start, end = (self.offset(workspace, path, position) for position in (range_.start, range_.end))
         return Span(start, max(start, end))
@@ -254,8 +250,6 @@ class Converter:
                 more += f', "filterText": {as_json(one.filter)}'
             if one.snippet is not None:
                 more += f', "insertTextFormat": {_SNIPPET}'
-            if one.old:
-                more += f', "tags": [{_DEPRECATED}]'
             items.append(
                 f'{{"label": {label}, "kind": {_COMPLETION_KINDS[one.kind]}, '
                 f'"sortText": "{number:05}", "textEdit": {{"range": {range_}, "newText": {written}}}, '
@@ -363,10 +357,7 @@ _SEVERITIES = {
     Severity.INFO: types.DiagnosticSeverity.Information,
     Severity.HINT: types.DiagnosticSeverity.Hint,
 }
-_TAGS = {
-    Tag.UNNECESSARY: types.DiagnosticTag.Unnecessary,
-    Tag.DEPRECATED: types.DiagnosticTag.Deprecated,
-}
+_TAGS = {Tag.UNNECESSARY: types.DiagnosticTag.Unnecessary, Tag.DEPRECATED: types.DiagnosticTag.Deprecated}
 _ENCODINGS: dict[types.PositionEncodingKind, Encoding] = {
     types.PositionEncodingKind.Utf8: "utf-8",
     types.PositionEncodingKind.Utf16: "utf-16",
@@ -392,7 +383,6 @@ SYMBOL_KINDS = {
 }
 _RANGE = '{"start": {"line": %d, "character": %d}, "end": {"line": %d, "character": %d}}'
 _SNIPPET = types.InsertTextFormat.Snippet.value
-_DEPRECATED = types.CompletionItemTag.Deprecated.value
 _COMPLETION_KINDS = {
     "keyword": types.CompletionItemKind.Keyword.value,
     "node": types.CompletionItemKind.Function.value,

@@ -290,7 +290,7 @@ class Server(LanguageServer):
             Unknown: the document is, or no text is translated from this place of it.
         """
         workspace, path = self.at(place.text_document, reads=reads)
-        offset = self.convert.offset_made(workspace, path, place.position)
+        offset = workspace.files[path].from_disk(self.convert.offset(workspace, path, place.position))
         if offset is None:
             raise Unknown
         return workspace, path, feature(workspace, path, offset)
@@ -397,9 +397,7 @@ class Server(LanguageServer):
         """Publish the diagnostics of a file, unless they are already published."""
         version = self.versions.get(path)
         found = (
-            self.diagnostics_of(path)
-            if path in self.session.open or self.session.setting("checkClosedFiles", True)
-            else None
+            self.diagnostics_of(path) if path in self.session.open or self.session.is_on("checkClosedFiles") else None
         )
         if found is None:
             self.withdraw(path)

@@ -62,7 +62,7 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_INLAY_HINT, otherwise=[])
     def hints(params: types.InlayHintParams) -> list[types.InlayHint]:
         workspace, path = server.at(params.text_document)
-        if not server.session.setting("inlayHints", True):
+        if not server.session.is_on("inlayHints"):
             return []
         return [
             types.InlayHint(
@@ -78,7 +78,7 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS, otherwise=[])
     def lenses(params: types.CodeLensParams) -> list[types.CodeLens]:
         workspace, path = server.at(params.text_document, reads=True)
-        if not server.session.setting("codeLens", True):
+        if not server.session.is_on("codeLens"):
             return []
         found = []
         for lens in features.hints.code_lenses(

@@ -121,16 +121,8 @@ class Logs:
 
     async def read_run(self, root: str, run: LoggedRun) -> dict[str, Any] | str:
         """A run as `btq verify --run` prints it, or why there is none."""
-        words = (
-            "verify",
-            "--no-store",
-            os.path.join(root, run.log),
-            "--mission",
-            run.mission,
-            "--run",
-            str(run.number_in_log),
-        )
-        process = await _started(root, words)
+        log, number = os.path.join(root, run.log), str(run.number_in_log)
+        process = await _started(root, ("verify", "--no-store", log, "--mission", run.mission, "--run", number))
         printed, said = await process.communicate()
         return json.loads(printed) if process.returncode == 0 else said.decode(errors="replace").strip()
 

@@ -36,14 +36,12 @@ class Preview:
     """
 
     def __init__(
-        self,
-        port: int,
-        draw: Callable[[Sequence[str]], dict[str, object]],
-        go: Callable[[str], dict[str, object]],
+        self, port: int, draw: Callable[[Sequence[str]], dict[str, object]], go: Callable[[str], dict[str, object]]
     ) -> None:
+        self.draw, self.go = draw, go
         self._changed = Condition()
         self._now = (0, 0, "")  # number of changes, the cursor's line; 0: unknown; and the run that is shown
-        handler = type("Handler", (_Handler,), {"preview": self, "draw_": staticmethod(draw), "go_": staticmethod(go)})
+        handler = type("Handler", (_Handler,), {"preview": self})
         self._server = ThreadingHTTPServer((ADDRESS, port), handler)
         self._server.daemon_threads = True
         self.port: int = self._server.server_address[1]
@@ -86,8 +84,6 @@ class Preview:
 
 class _Handler(BaseHTTPRequestHandler):
     preview: Preview
-    draw_: Callable[[Sequence[str]], dict[str, object]]
-    go_: Callable[[str], dict[str, object]]
 
     def do_GET(self) -> None:
         if not self._is_ours():
@@ -108,9 +104,9 @@ class _Handler(BaseHTTPRequestHandler):
         try:
             request = json.loads(self.rfile.read(int(length)))
             if self.path == "/picture":
-                answer = self.draw_([str(name) for name in request["folded"]])
+                answer = self.preview.draw([str(name) for name in request["folded"]])
             elif self.path == "/go":
-                answer = self.go_(str(request["key"]))
+                answer = self.preview.go(str(request["key"]))
             else:
                 return self._refuse(HTTPStatus.NOT_FOUND)
         except (ValueError, KeyError, TypeError):
