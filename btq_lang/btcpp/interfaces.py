@@ -74,8 +74,8 @@ def interfaces(workspaces: Iterable[Workspace], version: str, unknown: Container
 
 def tree_names(workspaces: Iterable[Workspace]) -> list[str]:
     """The names of the trees of all files, sorted."""
-    summaries = (each for workspace in workspaces for file in workspace.files.values() for each in file.summaries)
-    return sorted({symbol.name for each in summaries for symbol in each.symbols if symbol.kind is Kind.TREE})
+    files = (file for workspace in workspaces for file in workspace.files.values())
+    return sorted({name for file in files for name in file.names.by_kind[Kind.TREE]})
 
 
 def _of_engine(kind: NodeKind, version: str) -> Interface:
@@ -94,17 +94,16 @@ def _values(port: PortKind) -> tuple[str, ...]:
 
 
 def _models(workspace: Workspace, path: str) -> Iterator[Interface]:
-    for summary in workspace.files[path].summaries:
-        for symbol in summary.symbols:
-            model = symbol.target
-            if symbol.kind is Kind.MODEL and isinstance(model, Model) and model.category.raw != "SubTree":
-                # Only the robot's program knows whether it requires an input.
-                known = (PortInterface(port.name, _values(port), doc=port.doc) for port in map(as_kind, model.ports))
-                ports = {each.name: each for each in known if is_port_name(each.name) and is_xml_name(each.name)}
-                doc = model.text.text if model.text is not None else ""
-                category = model.category.raw
-                # A model without ports is often unfinished; the checks warn of ports then, and do not refuse them.
-                yield Interface(symbol.name, (category,), *CHILDREN[category], ports, not ports, doc)
+    for symbol in (each.symbol for each in workspace.files[path].defined):
+        model = symbol.target
+        if symbol.kind is Kind.MODEL and isinstance(model, Model) and model.category.raw != "SubTree":
+            # Only the robot's program knows whether it requires an input.
+            known = (PortInterface(port.name, _values(port), doc=port.doc) for port in map(as_kind, model.ports))
+            ports = {each.name: each for each in known if is_port_name(each.name) and is_xml_name(each.name)}
+            doc = model.text.text if model.text is not None else ""
+            category = model.category.raw
+            # A model without ports is often unfinished; the checks warn of ports then, and do not refuse them.
+            yield Interface(symbol.name, (category,), *CHILDREN[category], ports, not ports, doc)
 
 
 def _merged(one: Interface, other: Interface) -> Interface:

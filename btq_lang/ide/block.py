@@ -32,29 +32,20 @@ class Block(Record):
     begins_its_line: bool = True
 
 
-class Standing(Record):
-    """A node and its place."""
-
-    node: Node
-    parent: Node | None
-    tree: Tree
-    entry: Entry
-
-
-def node_at(file: File, entry: Entry, offset: int) -> Standing | None:
-    """The node on whose own line (or lines, with brackets) an offset is."""
-    tree = entry.item
-    if not isinstance(tree, Tree):
-        return None
+def nodes_at(file: File, entry: Entry, offset: int) -> tuple[Node, ...]:
+    """The nodes around an offset, the outermost first: the last is the one on whose own line (or lines, with brackets)
+    it is; empty if it is on none."""
     inside = offset - entry.start
-    waiting: list[tuple[Node, Node | None]] = [(child, None) for child in tree.children if isinstance(child, Node)]
+    children = entry.item.children if isinstance(entry.item, Tree) else ()
+    waiting: list[tuple[Node, ...]] = [(child,) for child in children if isinstance(child, Node)]
     while waiting:
-        node, parent = waiting.pop()
+        line = waiting.pop()
+        node = line[-1]
         start = line_start(file.text, 0, entry.start + node.start) - entry.start
         if start <= inside <= max(node.end, line_end(file.text, entry.start + node.end) - entry.start):
-            return Standing(node, parent, tree, entry)
-        waiting += [(child, node) for child in node.nodes]
-    return None
+            return line
+        waiting += [(*line, child) for child in node.nodes]
+    return ()
 
 
 def block_of(file: File, entry: Entry, node: Node) -> Block:

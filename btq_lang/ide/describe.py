@@ -16,7 +16,6 @@ from btq_lang.ide.meaning import (
     ROOT_BLACKBOARD,
     Found,
     Subject,
-    defined_elsewhere,
     everywhere,
     home_of,
     quality_match,
@@ -77,7 +76,7 @@ def port(one: PortKind) -> str:
 
 def tree(workspace: Workspace, path: str, name: str) -> str:
     """A tree: its ports, what is attached to it, and its callers."""
-    found = workspace.scope(path).find(Kind.TREE, name) or next(defined_elsewhere(workspace, Kind.TREE, name), None)
+    found = _definition(workspace, path, Kind.TREE, name)
     if found is None:
         return f"`{name}`: unknown tree."
     item = found.symbol.target
@@ -148,13 +147,12 @@ def used(workspace: Workspace, wanted: Subject, heading: str) -> str:
 
 def place_of(workspace: Workspace, found: Found) -> str:
     """The place of a reference: `` `MoveBase ToWard` in `Deliver` (deliver.btq) ``, or the `apply` that it is in."""
-    node = found.mention.node
-    item = found.entry.item if found.entry is not None else None
-    if isinstance(item, Apply) and found.entry is not None:
-        text = workspace.files[found.path].on_one_line(found.entry, item)
-        return f"`{text}` ({workspace.project.shown(found.path)})"
+    node, entry = found.mention.node, found.entry
+    item = entry.item if entry is not None else None
     name = item.name.text if isinstance(item, Tree | Requirement | Signal | Context) and item.name else ""
     where = f"`{node.called}`" + (f" in `{name}`" if name else "") if node is not None else f"`{name}`" if name else ""
+    if isinstance(item, Apply) and entry is not None:
+        where = f"`{workspace.files[found.path].on_one_line(entry, item)}`"
     path = workspace.project.shown(found.path)
     return f"{where} ({path})" if where else path
 
@@ -306,7 +304,7 @@ def include_edits(workspace: Workspace, path: str, other: str) -> tuple[Edit, ..
 
 
 def _definition(workspace: Workspace, path: str, kind: Kind, name: str) -> Definition | None:
-    return workspace.scope(path).find(kind, name) or next(defined_elsewhere(workspace, kind, name), None)
+    return workspace.scope(path).find(kind, name) or next(iter(workspace.defined_anywhere(kind, name)), None)
 
 
 _SI = ("s", "m", "kg", "A", "K", "rad", "bit", "m/s", "m/s^2", "rad/s", "Hz", "N", "Pa", "J", "W", "V", "ohm", "A*s")

@@ -118,12 +118,8 @@ def definition(workspace: Workspace, path: str, wanted: Subject) -> Definition |
     found = workspace.find(path, kind, wanted.name)
     if found is not None and home_of(found) == wanted.home:
         return found
-    return next((one for one in defined_elsewhere(workspace, kind, wanted.name, wanted.home)), None)
-
-
-def defined_elsewhere(workspace: Workspace, kind: Kind, name: str, home: str = "") -> Iterator[Definition]:
-    """The definitions of a name in the whole project; given a home, only the one there."""
-    return (one for one in workspace.defined_anywhere(kind, name) if not home or home_of(one) == home)
+    anywhere = workspace.defined_anywhere(kind, wanted.name)
+    return next((one for one in anywhere if not wanted.home or home_of(one) == wanted.home), None)
 
 
 def home_of(found: Definition) -> str:

@@ -15,18 +15,15 @@ from btq_lang.workspace.references import called
 from btq_lang.workspace.workspace import Workspace
 
 
-def ports_of(workspace: Workspace, path: str, node: Node) -> tuple[PortKind, ...]:
-    """The ports of a node; empty if they are unknown."""
-    tree = called(node)
-    if tree is not None:
-        return ports_of_tree(workspace, path, tree.text)
-    meaning = meaning_of(node, partial(inputs.declared, workspace.store, path))
-    return _ports(workspace, path, meaning.kind, node.id.text) if node.id is not None else ()
-
-
 def port_of(workspace: Workspace, path: str, node: Node, name: str) -> PortKind | None:
     """A port of a node, by its name; None if it is unknown."""
-    return next((port for port in ports_of(workspace, path, node) if port.name == name), None)
+    ports: tuple[PortKind, ...] = ()
+    if (tree := called(node)) is not None:
+        ports = ports_of_tree(workspace, path, tree.text)
+    elif node.id is not None:
+        meaning = meaning_of(node, partial(inputs.declared, workspace.store, path))
+        ports = _ports(workspace, path, meaning.kind, node.id.text)
+    return next((port for port in ports if port.name == name), None)
 
 
 def ports_of_kind(

@@ -12,11 +12,12 @@ from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
 from btq_lang.checks.lookups import taken_names
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.ide.block import STEP, Standing, blanks_before, block_of, deeper, moved, node_at, shifts
+from btq_lang.ide.block import STEP, blanks_before, block_of, deeper, moved, nodes_at, shifts
 from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.ports import port_of
 from btq_lang.requirements.model import Span as Time
 from btq_lang.requirements.resolve import requirements
+from btq_lang.syntax.scan import line_end
 from btq_lang.syntax.tokens import BRACED, NODE_CLAUSES
 from btq_lang.syntax.tree import (
     Between,
@@ -34,7 +35,7 @@ from btq_lang.syntax.tree import (
     written,
 )
 from btq_lang.util.record import Record
-from btq_lang.util.text import Edit, Position, Span, apply_edits
+from btq_lang.util.text import Edit, Span, apply_edits
 from btq_lang.workspace.file import File
 from btq_lang.workspace.node_names import is_placeholder
 from btq_lang.workspace.references import Mention, What
@@ -66,37 +67,38 @@ def refactorings(workspace: Workspace, path: str, offset: int) -> Iterator[Actio
     if entry is None or file.origin is not None or any(one.rule == "syntax-error" for one in entry.diagnostics):
         return
     yield from _lift(workspace, path, entry, offset)
-    standing = node_at(file, entry, offset)
-    if standing is None:
+    line = nodes_at(file, entry, offset)
+    if not line:
         return
-    yield from _extract(workspace, path, standing)
-    yield from _inline(workspace, path, standing)
-    if block_of(file, entry, standing.node).begins_its_line:
-        yield from _unwrap(workspace, path, standing)
-        yield from _wrap(workspace, path, standing)
+    node = line[-1]
+    if len(line) > 1:
+        yield from _extract(workspace, path, entry, node)
+    yield from _inline(workspace, path, entry, node)
+    if block_of(file, entry, node).begins_its_line:
+        yield from _unwrap(file, entry, node)
+        yield from _wrap(file, entry, node)
 
 
 # ---- extract a subtree ----
 
 
-def _extract(workspace: Workspace, path: str, standing: Standing) -> Iterator[Action]:
-    node, entry = standing.node, standing.entry
-    if standing.parent is None or (node.category is not None and node.category.raw == "SubTree"):
+def _extract(workspace: Workspace, path: str, entry: Entry, node: Node) -> Iterator[Action]:
+    if node.category is not None and node.category.raw == "SubTree":
         return
     file = workspace.files[path]
     keys = _keys_in(workspace, path, entry, node)
     if keys is None or _parts_a_time(workspace, path, node):
         return
-    name = _free_name(workspace, path, node)
+    name, tree = _free_name(workspace, path, node), entry.item
+    assert isinstance(tree, Tree), "only trees have nodes"
     block = block_of(file, entry, node)
-    above = file.text[: entry.start + standing.tree.start]
-    margin = above[len(above.rstrip(" \t")) :]
+    margin = blanks_before(file.text, entry.start + tree.start)
     lines = [f"{margin}BehaviorTree {written(name)}"]
     lines += [f"{margin}{STEP}{ways} {written(key)}" for key, ways in keys.items()]
     lines += [f"{margin}{STEP}{moved(file, block, margin + STEP)}"]
     arguments = " ".join(f"{written(key)} = {{=}}" for key in keys)
     call = f"SubTree {written(name)}{f' ({arguments})' if arguments else ''}"
-    end = _item_end(file, entry)
+    end = line_end(file.text, entry.start + tree.block_end)
     made = (Edit(block.span, call), Edit(Span(end, end), "\n\n" + "\n".join(lines)))
     yield Action(f"Extract into the tree `{name}`", "refactor.extract", {path: made})
 
@@ -168,19 +170,10 @@ def _has_span(file: File) -> bool:
     return any(isinstance(one, Claim) and isinstance(one.subject, Between) for each in clauses for one in each)
 
 
-def _item_end(file: File, entry: Entry) -> int:
-    """Where the last line of a tree ends."""
-    tree = entry.item
-    assert isinstance(tree, Tree), "only trees have nodes"
-    line = file.lines.position(entry.start + tree.block_end).line
-    return file.lines.offset(Position(line, len(file.lines.line(line))))
-
-
 # ---- inline a subtree ----
 
 
-def _inline(workspace: Workspace, path: str, standing: Standing) -> Iterator[Action]:
-    node, entry = standing.node, standing.entry
+def _inline(workspace: Workspace, path: str, entry: Entry, node: Node) -> Iterator[Action]:
     if node.category is None or node.category.raw != "SubTree" or node.id is None or node.clauses or node.name:
         return
     found = workspace.scope(path).find(Kind.TREE, node.id.text)
@@ -231,29 +224,26 @@ def _inline(workspace: Workspace, path: str, standing: Standing) -> Iterator[Act
 # ---- wrap and unwrap a node ----
 
 
-def _wrap(workspace: Workspace, path: str, standing: Standing) -> Iterator[Action]:
-    file = workspace.files[path]
-    block = block_of(file, standing.entry, standing.node)
+def _wrap(file: File, entry: Entry, node: Node) -> Iterator[Action]:
+    block = block_of(file, entry, node)
     for head, what in _WRAPPERS:
         first, *others = shifts(file, block, block.blanks + STEP)
         opened = Edit(first.span, f"{block.blanks}{head}\n{first.text}")
-        yield Action(f"Wrap in {what}", "refactor.rewrite", {path: (opened, *others)})
+        yield Action(f"Wrap in {what}", "refactor.rewrite", {file.path: (opened, *others)})
 
 
-def _unwrap(workspace: Workspace, path: str, standing: Standing) -> Iterator[Action]:
-    node = standing.node
+def _unwrap(file: File, entry: Entry, node: Node) -> Iterator[Action]:
     if len(node.children) != 1 or not isinstance(node.children[0], Node) or node.clauses:
         return
-    file = workspace.files[path]
-    child = block_of(file, standing.entry, node.children[0])
-    own = block_of(file, standing.entry, node)
+    child = block_of(file, entry, node.children[0])
+    own = block_of(file, entry, node)
     between = Span(own.span.start, child.span.start)
     if "#" in file.text[slice(*between)] or "/" in file.text[slice(*between)]:
         return  # a comment would be lost
     first, *others = shifts(file, child, own.blanks)
     removed = Edit(Span(own.span.start - len(own.blanks), first.span.end), own.blanks)
     title = f"Unwrap: remove `{node.head.text}`"
-    yield Action(title, "refactor.rewrite", {path: (removed, *others)})
+    yield Action(title, "refactor.rewrite", {file.path: (removed, *others)})
 
 
 _WRAPPERS = (

@@ -8,7 +8,7 @@ from typing import TypeAlias
 from btq_lang.catalog.nodes import PLACEHOLDERS
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.ide.block import node_at
+from btq_lang.ide.block import nodes_at
 from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.refactor import Action
 from btq_lang.syntax.tokens import CLOSE, NODE_CLAUSES, OPEN
@@ -30,8 +30,8 @@ def short_form(
     if entry is None or file.origin is not None:
         return
     rewrites = _placeholders(workspace, path, found)
-    standing = node_at(file, entry, offset)
-    if standing is not None and (edits := tuple(_of_node(file, entry, standing.node, rewrites))):
+    line = nodes_at(file, entry, offset)
+    if line and (edits := tuple(_of_node(file, entry, line[-1], rewrites))):
         yield Action("Write the node in the short form", "refactor.rewrite", {path: edits})
     text = _whole_file(file, rewrites)
     if text != file.text:

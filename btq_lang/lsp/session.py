@@ -278,16 +278,13 @@ class Session:
         cpp = (path for path, home in self._home.items() if self._workspaces[home].files[path].is_cpp)
         return (*self.projects, *self.parameters, *cpp)
 
-    def reads_cpp(self, path: str) -> bool:
-        """Whether a project may name a C++ source, which may be new."""
-        projects = [workspace.project for workspace in self._workspaces] if path.endswith(CPP_SUFFIXES) else ()
-        return any(path_matcher(each.cpp_patterns, each.root)(path) for each in projects)
-
     def concerns(self, changed: Set[str]) -> bool:
         """Whether changes on the disk may matter: most deleted files and folders do not, nor does most C++."""
         if any(path.endswith(_ENDINGS) for path in changed) or not changed.isdisjoint(self.places()):
             return True
-        return any(map(self.reads_cpp, changed))
+        cpp = [path for path in changed if path.endswith(CPP_SUFFIXES)]  # that a project may name: it may be new
+        projects = [workspace.project for workspace in self._workspaces] if cpp else ()
+        return any(any(map(path_matcher(each.cpp_patterns, each.root), cpp)) for each in projects)
 
     def is_side_file(self, path: str) -> bool:
         """Whether a path is that of a side file, on which only lenses and hovers depend."""

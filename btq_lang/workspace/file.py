@@ -19,7 +19,7 @@ from btq_lang.syntax.tree import Entry, Include, Item
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Placed, Span, changed
 from btq_lang.workspace.item_index import Facts, Name, Names, Said, Tally
-from btq_lang.workspace.symbols import Summary, Symbol, Use
+from btq_lang.workspace.symbols import Symbol, Use
 
 if TYPE_CHECKING:
     from btq_lang.cpp.model import CppNode
@@ -157,12 +157,6 @@ class File:
         return {id(entry.item): Facts(entry.item) for entry in self.parsed.entries}
 
     @cached_property
-    def summaries(self) -> tuple[Summary, ...]:
-        """One for each entry."""
-        facts = self.facts
-        return tuple([facts[id(entry.item)].summary for entry in self.parsed.entries])
-
-    @cached_property
     def lines(self) -> LineIndex:
         return LineIndex(self.text)
 
@@ -176,8 +170,8 @@ class File:
         """What the file itself defines, in the order of its text."""
         return tuple(
             Definition(self.path, entry, symbol)
-            for entry, summary in zip(self.parsed.entries, self.summaries, strict=True)
-            for symbol in summary.symbols
+            for entry in self.parsed.entries
+            for symbol in self.facts[id(entry.item)].summary.symbols
         )
 
     @property
