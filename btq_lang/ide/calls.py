@@ -49,7 +49,9 @@ def callers(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
             found.setdefault((one.path, one.entry.start), []).append(one)
     calls = []
     for places in found.values():
-        caller = _tree_of(workspace, places[0])
+        defined = workspace.files[places[0].path].defined
+        trees = (each for each in defined if each.symbol.kind is Kind.TREE and each.entry is places[0].entry)
+        caller = next(trees, None)
         if caller is not None:
             calls.append(Call(_item(caller), caller.path, tuple(one.span for one in places)))
     return tuple(calls)
@@ -69,12 +71,6 @@ def called(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
         if place is not None:
             found.setdefault(home_of(place), (place, []))[1].append(mention.span.shifted(entry.start))
     return tuple(Call(_item(place), tree.path, tuple(spans)) for place, spans in found.values())
-
-
-def _tree_of(workspace: Workspace, found: Found) -> Definition | None:
-    """The tree in which a reference is."""
-    defined = workspace.files[found.path].defined
-    return next((each for each in defined if each.symbol.kind is Kind.TREE and each.entry is found.entry), None)
 
 
 def _item(place: Definition) -> TreeItem:

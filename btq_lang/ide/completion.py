@@ -254,10 +254,8 @@ def _line_heads(workspace: Workspace, path: str, place: Place) -> Iterator[Propo
     """What a line may begin with."""
     if place.block == "items":
         yield from offer.item_words(workspace, path)
-        yield from snippets_for(place.block)
     elif place.block == "models":
         yield from offer.category_words()
-        yield from snippets_for(place.block)
     elif place.block == "ports":
         yield from offer.port_heads()
     elif place.block == "clauses":
@@ -267,7 +265,7 @@ def _line_heads(workspace: Workspace, path: str, place: Place) -> Iterator[Propo
         yield from offer.node_clause_words()
         if place.block == "tree":
             yield from offer.port_heads()
-        yield from snippets_for(place.block)
+    yield from snippets_for(place.block)
 
 
 def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Iterator[Proposal]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 from btq_lang.catalog.language import phrases_of
 from btq_lang.catalog.name_kinds import Kind
@@ -243,13 +243,9 @@ def si_symbol(unit: Unit) -> str:
         named = parse_unit(symbol)
         if named is not None and named.dimension == unit.dimension and named.factor == 1.0 and named.offset == 0.0:
             return symbol
-    return "*".join(_powers(unit))
-
-
-def _powers(unit: Unit) -> Iterator[str]:
-    for base, power in zip(BASES, unit.dimension, strict=True):
-        if power and base in _BASE_SYMBOLS:
-            yield _BASE_SYMBOLS[base] if power == 1 else f"{_BASE_SYMBOLS[base]}^{power}"
+    powers = zip(BASES, unit.dimension, strict=True)
+    factors = [(_BASE_SYMBOLS[base], power) for base, power in powers if power and base in _BASE_SYMBOLS]
+    return "*".join([symbol if power == 1 else f"{symbol}^{power}" for symbol, power in factors])
 
 
 def rule(name: str) -> str | None:

@@ -164,8 +164,5 @@ def signature_help(workspace: Workspace, path: str, offset: int) -> Signature | 
     parameters = tuple(Parameter(signature(port), describe.port(port)) for port in ports)
     label = f"{node.name} ({', '.join(parameter.label for parameter in parameters)})"
     names = [port.name for port in ports]
-    if place.key is not None:
-        active = names.index(place.key) if place.key in names else None
-    else:
-        active = next((index for index, name in enumerate(names) if name not in place.given), None)
-    return Signature(label, parameters, active)
+    missing = [name for name in names if name not in place.given] if place.key is None else [place.key]
+    return Signature(label, parameters, names.index(missing[0]) if missing and missing[0] in names else None)

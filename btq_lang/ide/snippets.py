@@ -8,8 +8,8 @@ from btq_lang.ide.proposals import Proposal
 
 
 def snippets_for(block: str) -> Iterator[Proposal]:
-    """Those that begin a line of a block: an item, a model or a node."""
-    for label, detail, snippet in _SNIPPETS[block]:
+    """Those that begin a line of a block, if it is of items, models or nodes."""
+    for label, detail, snippet in _SNIPPETS.get(block, ()):
         yield Proposal(label, "snippet", detail, label, snippet)
 
 

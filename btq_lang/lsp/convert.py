@@ -200,7 +200,8 @@ class Converter:
         children = [self.outline(workspace, path, child) for child in outline.children]
         whole, name = self.range(workspace, path, outline.span), self.range(workspace, path, outline.name_span)
         if workspace.files[path].origin is not None:  # in XML the parts may be in another order
-            whole = _around(whole, name, *(child.range for child in children))
+            parts = [whole, name, *(child.range for child in children)]
+            whole = types.Range(min(one.start for one in parts), max(one.end for one in parts))
         return types.DocumentSymbol(
             outline.name, SYMBOL_KINDS[outline.kind], whole, name, detail=outline.detail, children=children
         )
@@ -340,11 +341,6 @@ def _url_of(path: str) -> str:
     from urllib.request import pathname2url  # as above
 
     return pathname2url(path)
-
-
-def _around(*ranges: types.Range) -> types.Range:
-    starts, ends = [one.start for one in ranges], [one.end for one in ranges]
-    return types.Range(min(starts), max(ends))
 
 
 def markdown(text: str) -> types.MarkupContent:

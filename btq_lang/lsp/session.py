@@ -313,15 +313,14 @@ class Session:
             Cancelled: one does; results so far are cached.
         """
         stores = [each.store for each in self.workspaces_of(path)] if path in self.open else []
-        before = [store.is_cancelled for store in stores]
         for store in stores:
             store.is_cancelled = is_outdated
         try:
             if stores:
                 self.findings(path)
         finally:
-            for store, is_cancelled in zip(stores, before, strict=True):
-                store.is_cancelled = is_cancelled
+            for store in stores:
+                store.is_cancelled = lambda: False
 
     def findings(self, path: str) -> Findings:
         """The current findings of a file."""
