@@ -203,8 +203,7 @@ class _Reader:
         if any(other.tag == closing for other in self.open):
             note = f"close <{element.tag}> first: write </{element.tag}>, or /> where it has no children"
         related = (Related(Place(Span(element.start, element.end)), f"<{element.tag}> opens here"),)
-        message = f"expected </{element.tag}>, found </{closing}>"
-        raise _Broken(Diagnostic(RULE, span, message, related, (note,)))
+        self.broken(span, f"expected </{element.tag}>, found </{closing}>", note, related)
 
     def comment(self, start: int, last_end: int, contents: list[Content]) -> int:
         """ "<!--" … "-->"; last_end: the end of what was read last"""
@@ -247,8 +246,8 @@ class _Reader:
 
     # ---- mistakes ----
 
-    def broken(self, span: Span, message: str, note: str) -> NoReturn:
-        raise _Broken(Diagnostic(RULE, span, message, notes=(note,)))
+    def broken(self, span: Span, message: str, note: str, related: tuple[Related, ...] = ()) -> NoReturn:
+        raise _Broken(Diagnostic(RULE, span, message, related, (note,)))
 
     def twice(self, tag: str, span: Span) -> NoReturn:
         """Refuse two values for one attribute."""
@@ -259,8 +258,7 @@ class _Reader:
                 break
             first[name] = Span(*match.span(1))
         related = (Related(Place(first[name]), "its first value is here"),)
-        message = f"duplicate attribute `{name}` in <{tag}>"
-        raise _Broken(Diagnostic(RULE, Span(*match.span(1)), message, related, ("keep one of them",)))
+        self.broken(Span(*match.span(1)), f"duplicate attribute `{name}` in <{tag}>", "keep one of them", related)
 
     def unclosed(self, element: Element) -> NoReturn:
         message = f"<{element.tag}> is never closed"

@@ -195,12 +195,9 @@ def _of_other_edition(old: Quality, index: _Index) -> QualityMatch:
     candidates = tuple(index.by_id[id_] for id_ in _in_edition(old.id, index))
     now = " or ".join(quality.id for quality in candidates)
     same = len(candidates) == 1 and _are_equal(old.id, candidates[0].id)
-    if index.edition == "2023":
-        explanation = f"`{old.id}` is a name of {old.source}"
-        explanation += f"; in 2023 it is {'' if same else 'nearest to '}{now}" if now else "; 2023 has no counterpart"
-    else:
-        explanation = f"`{old.id}` is new in {old.source}"
-        explanation += f"; in 2011 it was {'' if same else 'nearest to '}{now}" if now else "; 2011 has no counterpart"
+    where, verb = ("a name of", "is") if index.edition == "2023" else ("new in", "was")
+    here = f"in {index.edition} it {verb} {'' if same else 'nearest to '}{now}"
+    explanation = f"`{old.id}` is {where} {old.source}; {here if now else f'{index.edition} has no counterpart'}"
     return QualityMatch("other-edition", candidates[0] if same else old, candidates, same, explanation)
 
 
