@@ -34,7 +34,7 @@ def build_parser() -> Parser:
         epilog="exit codes: 0 clean, 1 findings, 2 usage or I/O\n\nstart here: btq init my-robot && btq check my-robot",
         formatter_class=RawDescriptionHelpFormatter,
     )
-    parser.add_argument("-V", "--version", action="version", version=f"btq {__version__}")
+    parser.add("-V", "--version", action="version", version=f"btq {__version__}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
     for name, help, epilog, add_options in _COMMANDS:
         command = commands.add_parser(
@@ -52,6 +52,12 @@ def build_parser() -> Parser:
 class Parser(ArgumentParser):
     """A parser that suggests what an invalid choice was probably meant to be, as argparse does since Python 3.14."""
 
+    add = ArgumentParser.add_argument
+
+    def flag(self, name: str, help: str) -> None:
+        """Add an option without a value."""
+        self.add(name, action="store_true", help=help)
+
     def error(self, message: str) -> NoReturn:
         """End the program with the usage and the error."""
         if wrong := re.search(r"invalid choice: '([^']*)' \(choose from (.*)\)$", message):
@@ -60,7 +66,7 @@ class Parser(ArgumentParser):
         super().error(message)
 
 
-_Adder: TypeAlias = "Callable[[ArgumentParser], None]"
+_Adder: TypeAlias = "Callable[[Parser], None]"
 _COMMANDS: Final[list[tuple[str, str, str | None, _Adder]]] = []  # name, help, epilog, and what adds the options
 
 
@@ -74,13 +80,11 @@ def _command(name: str, help: str, epilog: str | None = None) -> Callable[[_Adde
     return register
 
 
-def _add_paths(parser: ArgumentParser) -> None:
-    parser.add_argument(
+def _add_paths(parser: Parser) -> None:
+    parser.add(
         "paths", nargs="*", default=["."], metavar="PATH", help="files and folders, `-` for standard input; default: ."
     )
-    parser.add_argument(
-        "--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes"
-    )
+    parser.add("--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes")
 
 
 @_command(
@@ -92,59 +96,53 @@ def _add_paths(parser: ArgumentParser) -> None:
     "  btq check --fix mission.btq        and apply the safe fixes\n"
     "  btq check --statistics             which rules have most findings\n",
 )
-def _add_check(parser: ArgumentParser) -> None:
+def _add_check(parser: Parser) -> None:
     _add_paths(parser)
-    parser.add_argument(
-        "--output-format",
-        choices=FORMATS,
-        help="default: full; on GitHub github, on GitLab with --output-file gitlab",
+    parser.add(
+        "--output-format", choices=FORMATS, help="default: full; on GitHub github, on GitLab with --output-file gitlab"
     )
-    parser.add_argument("-o", "--output-file", metavar="FILE", help="where to write; default: standard output")
-    parser.add_argument("--statistics", action="store_true", help="only the number of findings of each rule")
-    parser.add_argument("--exit-zero", action="store_true", help="exit 0 also with errors and warnings")
-    parser.add_argument("--select", action="append", metavar="RULES", help="only these rules, separated by commas")
-    parser.add_argument(
-        "--ignore", action="append", metavar="RULES", help="all rules except these, separated by commas"
-    )
-    parser.add_argument("--severity", choices=SEVERITIES, help="report this severity and worse; default: hint")
+    parser.add("-o", "--output-file", metavar="FILE", help="where to write; default: standard output")
+    parser.flag("--statistics", "only the number of findings of each rule")
+    parser.flag("--exit-zero", "exit 0 also with errors and warnings")
+    parser.add("--select", action="append", metavar="RULES", help="only these rules, separated by commas")
+    parser.add("--ignore", action="append", metavar="RULES", help="all rules except these, separated by commas")
+    parser.add("--severity", choices=SEVERITIES, help="report this severity and worse; default: hint")
     from btq_lang.catalog.nav2 import PACKAGED  # of the catalog, which not every reader of this module needs
     from btq_lang.catalog.versions import targets
 
-    parser.add_argument(
+    parser.add(
         "--target",
         choices=(*targets(), *PACKAGED),
         metavar="TARGET",
         help="also what this version of the engine (4.6 … 4.10), or this distribution of Nav2 (nav2-iron … "
         "nav2-lyrical), changes for trees of an earlier one",
     )
-    parser.add_argument(
+    parser.add(
         "--nav2-params",
         action="append",
         metavar="FILE",
         help="also a parameter file of Nav2, and the trees as it loads them; a FILE.yaml among the paths is one too",
     )
-    parser.add_argument("--fix", action="store_true", help="apply the safe fixes")
-    parser.add_argument(
-        "--diff", action="store_true", help="write nothing, show what --fix would change; exit 1 if there is anything"
-    )
-    parser.add_argument(
+    parser.flag("--fix", "apply the safe fixes")
+    parser.flag("--diff", "write nothing, show what --fix would change; exit 1 if there is anything")
+    parser.add(
         "--since",
         metavar="REV",
         help="only files that changed since a git revision, and those that depend on such a file",
     )
-    parser.add_argument(
+    parser.add(
         "--baseline", metavar="FILE", help="do not report the findings in this file; default: `baseline` of btq.toml"
     )
-    parser.add_argument("--update-baseline", action="store_true", help="write the findings of today into the baseline")
-    parser.add_argument(
+    parser.flag("--update-baseline", "write the findings of today into the baseline")
+    parser.add(
         "--add-ignore",
         nargs="?",
         const="",
         metavar="REASON",
         help="write a comment that silences them for all findings; with `=`, it says why",
     )
-    parser.add_argument("--watch", action="store_true", help="check again whenever a file changes")
-    parser.add_argument("--jobs", type=int, metavar="N", help="number of processes; default: chosen by btq")
+    parser.flag("--watch", "check again whenever a file changes")
+    parser.add("--jobs", type=int, metavar="N", help="number of processes; default: chosen by btq")
     _add_color(parser)
     parser.set_defaults(**{name: value for name, value in vars(CheckOptions).items() if not name.startswith("_")})
 
@@ -158,10 +156,10 @@ def _add_check(parser: ArgumentParser) -> None:
     "  btq format --check           in CI: is everything formatted?\n"
     "  btq format - < mission.btq   to standard output\n",
 )
-def _add_format(parser: ArgumentParser) -> None:
+def _add_format(parser: Parser) -> None:
     _add_paths(parser)
-    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file would change")
-    parser.add_argument("--diff", action="store_true", help="write nothing, show the changes; exit 1 if there are any")
+    parser.flag("--check", "write nothing; exit 1 if a file would change")
+    parser.flag("--diff", "write nothing, show the changes; exit 1 if there are any")
     _add_color(parser)
 
 
@@ -173,28 +171,24 @@ def _add_format(parser: ArgumentParser) -> None:
     "  btq build missions -o install      below another folder\n"
     "  btq build --check                  in CI: does the XML match the missions?\n",
 )
-def _add_build(parser: ArgumentParser) -> None:
+def _add_build(parser: Parser) -> None:
     from btq_lang.catalog.versions import targets  # of the catalog, which not every reader of this module needs
 
     _add_paths(parser)
     _add_folder(parser, "FOLDER", "where to write; default: beside the missions")
-    parser.add_argument("--bundle", action="store_true", help="each mission in one file with all that it needs")
-    parser.add_argument("--target", choices=targets(), help="the engine's version; default: the project's newest")
-    parser.add_argument(
-        "--no-enforce", action="store_true", help="the plain tree, without the nodes that enforce requirements"
-    )
-    parser.add_argument(
-        "--verbatim", action="store_true", help="exactly the content of the file: no repairs and no additions"
-    )
-    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file is not up to date")
-    parser.add_argument("--force", action="store_true", help="overwrite XML that btq did not write")
-    parser.add_argument("--verbose", action="store_true", help="show for every clause whether and how it is enforced")
-    parser.add_argument("--watch", action="store_true", help="build again whenever a file changes")
+    parser.flag("--bundle", "each mission in one file with all that it needs")
+    parser.add("--target", choices=targets(), help="the engine's version; default: the project's newest")
+    parser.flag("--no-enforce", "the plain tree, without the nodes that enforce requirements")
+    parser.flag("--verbatim", "exactly the content of the file: no repairs and no additions")
+    parser.flag("--check", "write nothing; exit 1 if a file is not up to date")
+    parser.flag("--force", "overwrite XML that btq did not write")
+    parser.flag("--verbose", "show for every clause whether and how it is enforced")
+    parser.flag("--watch", "build again whenever a file changes")
     parser.set_defaults(report="full")  # editors need one line for each error
     _add_color(parser)
 
 
-def _add_folder(parser: ArgumentParser, metavar: str, help: str) -> None:
+def _add_folder(parser: Parser, metavar: str, help: str) -> None:
     def folder(path: str) -> str:
         if path == "-":
             raise ArgumentTypeError("expected a folder; input from `-` goes to standard output")
@@ -202,7 +196,7 @@ def _add_folder(parser: ArgumentParser, metavar: str, help: str) -> None:
             raise ArgumentTypeError("expected a folder; each file keeps its name there")
         return path
 
-    parser.add_argument("-o", "--output", type=folder, metavar=metavar, help=help)
+    parser.add("-o", "--output", type=folder, metavar=metavar, help=help)
 
 
 @_command(
@@ -213,11 +207,11 @@ def _add_folder(parser: ArgumentParser, metavar: str, help: str) -> None:
     "  btq import trees/*.xml -o btq   and into a folder\n"
     "  btq import - < mission.xml      to standard output\n",
 )
-def _add_import(parser: ArgumentParser) -> None:
-    parser.add_argument("files", nargs="+", metavar="FILE", help="XML files, `-` for standard input")
+def _add_import(parser: Parser) -> None:
+    parser.add("files", nargs="+", metavar="FILE", help="XML files, `-` for standard input")
     _add_folder(parser, "DIR", "the folder to write into; default: that of each file")
-    parser.add_argument("--keep-v3", action="store_true", help="keep the syntax of files for version 3 of the engine")
-    parser.add_argument("--force", action="store_true", help="overwrite existing .btq files")
+    parser.flag("--keep-v3", "keep the syntax of files for version 3 of the engine")
+    parser.flag("--force", "overwrite existing .btq files")
     _add_color(parser)
 
 
@@ -230,9 +224,9 @@ def _add_import(parser: ArgumentParser) -> None:
     "  btq trace --format markdown             for a pull request\n"
     "  btq trace --evidence verdicts.json      with the verdicts that btq verify wrote\n",
 )
-def _add_trace(parser: ArgumentParser) -> None:
+def _add_trace(parser: Parser) -> None:
     _add_paths(parser)
-    parser.add_argument(
+    parser.add(
         "--evidence",
         action="append",
         default=[],
@@ -240,9 +234,9 @@ def _add_trace(parser: ArgumentParser) -> None:
         help="show verdicts: those in a file of btq verify --format json, or by logs; may be repeated; default: by the"
         " `logs` in [evidence] of btq.toml",
     )
-    parser.add_argument("--bundle", action="store_true", help="what is enforced in builds with --bundle")
-    parser.add_argument("--format", choices=TRACE_FORMATS, help="default: by the suffix of the -o file, else table")
-    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    parser.flag("--bundle", "what is enforced in builds with --bundle")
+    parser.add("--format", choices=TRACE_FORMATS, help="default: by the suffix of the -o file, else table")
+    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     _add_color(parser)
 
 
@@ -261,47 +255,42 @@ def _add_trace(parser: ArgumentParser) -> None:
     "  btq verify --store evidence --by label             the verdicts of all that is kept\n"
     "  btq verify --live tcp://127.0.0.1:1667             a running robot, until Ctrl+C\n",
 )
-def _add_verify(parser: ArgumentParser) -> None:
-    parser.add_argument(
+def _add_verify(parser: Parser) -> None:
+    parser.add(
         "logs",
         nargs="*",
         metavar="LOG",
         help="files of FileLogger2 (.btlog) or SqliteLogger (.db3), ROS 2 bags (.mcap, .db3, folders), folders;"
         " default: `logs` in [evidence] of btq.toml",
     )
-    parser.add_argument(
+    parser.add(
         "--mission",
         action="append",
         default=[],
         metavar="FILE",
         help="the mission, may be repeated; default: all of the project, and those of side files beside the logs",
     )
-    parser.add_argument(
+    parser.add(
         "--signals",
         metavar="FILE",
         help="samples as CSV or Parquet: seconds since the epoch, then one column for each signal or entry",
     )
-    parser.add_argument(
+    parser.add(
         "--events",
         metavar="FILE",
         help="write the violations as messages of a bag (.mcap), for the timeline of Foxglove and for rqt_console",
     )
-    parser.add_argument(
+    parser.add(
         "--live",
         metavar="ADDRESS",
         help="judge a running robot through its Groot2Publisher, until Ctrl+C, as in tcp://127.0.0.1:1667",
     )
-    parser.add_argument(
+    parser.add(
         "--summary",
         metavar="FILE",
         help="for editors: write the verdicts as JSON with all that was measured, and progress to standard output",
     )
-    parser.add_argument(
-        "--run",
-        type=int,
-        metavar="N",
-        help="for editors: print the run with this number in a log, as JSON",
-    )
+    parser.add("--run", type=int, metavar="N", help="for editors: print the run with this number in a log, as JSON")
     kept = parser.add_argument_group("keeping verdicts")
     store = kept.add_mutually_exclusive_group()
     store.add_argument(
@@ -327,10 +316,10 @@ def _add_verify(parser: ArgumentParser) -> None:
     )
     robot.add_argument("--robot", metavar="NAME", help="whose logs these are; a bag's topics name the robot themselves")
     robot.add_argument("--robot-by", choices=folders, help="name the robot of each log in the same way")
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="judge logs in N processes; default: 1")
-    parser.add_argument("--format", choices=VERDICT_FORMATS, help="default: as the file of -o ends, else table")
-    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
-    parser.add_argument("--verbose", action="store_true", help="in the table, explain more violations of each clause")
+    parser.add("--jobs", type=int, default=1, metavar="N", help="judge logs in N processes; default: 1")
+    parser.add("--format", choices=VERDICT_FORMATS, help="default: as the file of -o ends, else table")
+    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    parser.flag("--verbose", "in the table, explain more violations of each clause")
     fails = parser.add_mutually_exclusive_group()
     fails.add_argument("--strict", action="store_true", help="exit 1 unless every requirement is satisfied")
     fails.add_argument("--exit-zero", action="store_true", help="exit 0 also if a requirement is violated")
@@ -346,16 +335,16 @@ def _add_verify(parser: ArgumentParser) -> None:
     "  btq compare evidence --by robot r7 r8         two robots\n"
     "  btq compare evidence v1.3 v1.4 -o report.md   for a pull request\n",
 )
-def _add_compare(parser: ArgumentParser) -> None:
+def _add_compare(parser: Parser) -> None:
     # Two names alone are `store` and `before`: if `store` were the optional one, `STORE --by robot A B` would fail.
     parser.usage = "btq compare [-h] [STORE] A B [--by {label,robot}] [--label LABEL] [--format FORMAT] [-o FILE]"
-    parser.add_argument("store", metavar="STORE", help=_STORE)
-    parser.add_argument("before", metavar="A", help="the label that is compared with, or the robot")
-    parser.add_argument("after", metavar="B", nargs="?", help="the label, or the robot, that may have changed")
-    parser.add_argument("--by", choices=("label", "robot"), default="label", help="what A and B are; default: label")
-    parser.add_argument("--label", metavar="LABEL", help="with --by robot: only the runs of this label")
-    parser.add_argument("--format", choices=COMPARISON_FORMATS, help="default: as the file of -o ends, else table")
-    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    parser.add("store", metavar="STORE", help=_STORE)
+    parser.add("before", metavar="A", help="the label that is compared with, or the robot")
+    parser.add("after", metavar="B", nargs="?", help="the label, or the robot, that may have changed")
+    parser.add("--by", choices=("label", "robot"), default="label", help="what A and B are; default: label")
+    parser.add("--label", metavar="LABEL", help="with --by robot: only the runs of this label")
+    parser.add("--format", choices=COMPARISON_FORMATS, help="default: as the file of -o ends, else table")
+    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 
 @_command(
@@ -366,16 +355,16 @@ def _add_compare(parser: ArgumentParser) -> None:
     "examples:\n  btq report evidence -o report.html                by version and robot\n"
     "  btq report evidence --by label -o report.html     without the robots\n",
 )
-def _add_report(parser: ArgumentParser) -> None:
-    parser.add_argument("store", nargs="?", metavar="STORE", help=_STORE)
-    parser.add_argument(
+def _add_report(parser: Parser) -> None:
+    parser.add("store", nargs="?", metavar="STORE", help=_STORE)
+    parser.add(
         "--by",
         action="append",
         default=[],
         choices=("label", "robot"),
         help="what has columns or rows of its own; may be repeated; default: both",
     )
-    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 
 @_command(
@@ -385,17 +374,13 @@ def _add_report(parser: ArgumentParser) -> None:
     "examples:\n  btq graph mission.btq --qualities -o mission.svg   for documents\n"
     "  btq graph mission.btq --format mermaid             for pull requests\n",
 )
-def _add_graph(parser: ArgumentParser) -> None:
-    parser.add_argument("paths", nargs=1, metavar="FILE", help="the mission, `-` for standard input")
-    parser.add_argument(
-        "--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes"
-    )
-    parser.add_argument("--format", choices=GRAPH_FORMATS, help="default: by the suffix of the -o file, else svg")
-    parser.add_argument("--qualities", action="store_true", help="show qualities and requirements beside their nodes")
-    parser.add_argument(
-        "--direction", choices=DIRECTIONS, default="down", help="the position of the children; default: down"
-    )
-    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+def _add_graph(parser: Parser) -> None:
+    parser.add("paths", nargs=1, metavar="FILE", help="the mission, `-` for standard input")
+    parser.add("--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes")
+    parser.add("--format", choices=GRAPH_FORMATS, help="default: by the suffix of the -o file, else svg")
+    parser.flag("--qualities", "show qualities and requirements beside their nodes")
+    parser.add("--direction", choices=DIRECTIONS, default="down", help="the position of the children; default: down")
+    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     _add_color(parser)
 
 
@@ -406,21 +391,18 @@ def _add_graph(parser: ArgumentParser) -> None:
     "examples:\n  btq preview mission.btq --open\n"
     "  btq preview mission.btq --on-click 'emacsclient -n +{line}:{column} {file}'\n",
 )
-def _add_preview(parser: ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="the mission")
-    parser.add_argument(
-        "--port", type=int, default=0, metavar="N", help="the port, on this machine only; default: a free one"
-    )
-    parser.add_argument("--open", action="store_true", help="show it in the browser")
-    parser.add_argument(
+def _add_preview(parser: Parser) -> None:
+    parser.add("file", metavar="FILE", help="the mission")
+    parser.add("--port", type=int, default=0, metavar="N", help="the port, on this machine only; default: a free one")
+    parser.flag("--open", "show it in the browser")
+    parser.add(
         "--on-click",
         metavar="COMMAND",
         help="the command to run on a click on a node, with {file}, {line} and {column}; no shell",
     )
-    parser.add_argument(
+    parser.flag(
         "--follow",
-        action="store_true",
-        help='for an editor: read {"line": N} and {"text": "…"} from standard input, an object a line, until it closes',
+        'for an editor: read {"line": N} and {"text": "…"} from standard input, an object a line, until it closes',
     )
 
 
@@ -433,20 +415,16 @@ def _add_preview(parser: ArgumentParser) -> None:
     "  btq diff --git main...HEAD --format markdown mission.btq\n"
     "  ssh robot cat mission.xml | btq diff - mission.btq\n",
 )
-def _add_diff(parser: ArgumentParser) -> None:
-    parser.add_argument(
+def _add_diff(parser: Parser) -> None:
+    parser.add(
         "paths",
         nargs="*",
         metavar="PATH",
         help="two files or folders, `-` for standard input; with --git any number, default: .",
     )
-    parser.add_argument(
-        "--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes"
-    )
-    parser.add_argument(
-        "--git", metavar="REV", help="compare revisions: REV with the working tree, REV..REV, or REV...REV"
-    )
-    parser.add_argument("--format", choices=("text", "markdown", "json"), default="text", help="default: text")
+    parser.add("--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes")
+    parser.add("--git", metavar="REV", help="compare revisions: REV with the working tree, REV..REV, or REV...REV")
+    parser.add("--format", choices=("text", "markdown", "json"), default="text", help="default: text")
     _add_color(parser)
 
 
@@ -456,8 +434,8 @@ def _add_diff(parser: ArgumentParser) -> None:
     "examples:\n  btq explain unknown-port\n  btq explain '->'\n  btq explain time-behaviour\n"
     "  btq explain on violation\n",
 )
-def _add_explain(parser: ArgumentParser) -> None:
-    parser.add_argument("subject", nargs="*", metavar="RULE|NODE|QUALITY|WORD", help="default: list them all")
+def _add_explain(parser: Parser) -> None:
+    parser.add("subject", nargs="*", metavar="RULE|NODE|QUALITY|WORD", help="default: list them all")
     _add_color(parser)
 
 
@@ -469,12 +447,10 @@ def _add_explain(parser: ArgumentParser) -> None:
     "  btq nodes src --format xml -o nodes.xml   a palette for Groot\n"
     "  btq nodes src include -o nodes.html       a page for people\n",
 )
-def _add_nodes(parser: ArgumentParser) -> None:
-    parser.add_argument("paths", nargs="+", metavar="SRC", help="C++ files and folders")
-    parser.add_argument(
-        "--format", choices=("btq", "xml", "html"), help="default: by the suffix of the -o file, else btq"
-    )
-    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+def _add_nodes(parser: Parser) -> None:
+    parser.add("paths", nargs="+", metavar="SRC", help="C++ files and folders")
+    parser.add("--format", choices=("btq", "xml", "html"), help="default: by the suffix of the -o file, else btq")
+    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 
 @_command(
@@ -485,13 +461,13 @@ def _add_nodes(parser: ArgumentParser) -> None:
     "  btq schema xsd missions --target 4.6     for an older engine\n"
     "  btq schema project -o btq.schema.json    a JSON schema of btq.toml\n",
 )
-def _add_schema(parser: ArgumentParser) -> None:
+def _add_schema(parser: Parser) -> None:
     from btq_lang.catalog.versions import targets  # as above
 
-    parser.add_argument("format", choices=("xsd", "project"), help="an XSD of the nodes, or a JSON schema of btq.toml")
-    parser.add_argument("paths", nargs="*", metavar="PATH", help="of xsd: files and folders with nodes; default: .")
-    parser.add_argument("--target", choices=targets(), help="the engine's version; default: the project's newest")
-    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    parser.add("format", choices=("xsd", "project"), help="an XSD of the nodes, or a JSON schema of btq.toml")
+    parser.add("paths", nargs="*", metavar="PATH", help="of xsd: files and folders with nodes; default: .")
+    parser.add("--target", choices=targets(), help="the engine's version; default: the project's newest")
+    parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 
 @_command(
@@ -501,10 +477,10 @@ def _add_schema(parser: ArgumentParser) -> None:
     "examples:\n  btq init my-robot && btq check my-robot\n"
     "  btq init --from-xml        a project file for the XML in this folder\n",
 )
-def _add_init(parser: ArgumentParser) -> None:
-    parser.add_argument("folder", nargs="?", default=".", metavar="FOLDER", help="default: .")
-    parser.add_argument("--from-xml", action="store_true", help="only a project file, for the XML that is there")
-    parser.add_argument("--convert", action="store_true", help="with --from-xml: and write .btq files beside the XML")
+def _add_init(parser: Parser) -> None:
+    parser.add("folder", nargs="?", default=".", metavar="FOLDER", help="default: .")
+    parser.flag("--from-xml", "only a project file, for the XML that is there")
+    parser.flag("--convert", "with --from-xml: and write .btq files beside the XML")
 
 
 @_command(
@@ -512,19 +488,19 @@ def _add_init(parser: ArgumentParser) -> None:
     "print the completion script of a shell",
     'examples:\n  eval "$(btq completion bash)"\n  btq completion fish > ~/.config/fish/completions/btq.fish\n',
 )
-def _add_completion(parser: ArgumentParser) -> None:
+def _add_completion(parser: Parser) -> None:
     from btq_lang.commands.shell import SHELLS
 
-    parser.add_argument("shell", choices=SHELLS)
+    parser.add("shell", choices=SHELLS)
 
 
 @_command("lsp", "serve an editor: the language server, also called btq-lsp")
-def _add_lsp(parser: ArgumentParser) -> None:
+def _add_lsp(parser: Parser) -> None:
     add_server_options(parser)
 
 
-def _add_color(parser: ArgumentParser) -> None:
-    parser.add_argument("--color", choices=("auto", "always", "never"), default="auto", help="default: auto")
+def _add_color(parser: Parser) -> None:
+    parser.add("--color", choices=("auto", "always", "never"), default="auto", help="default: auto")
 
 
 _STORE: Final = "the folder that btq verify --store writes; default: `store` in [evidence] of btq.toml"
