@@ -34,7 +34,7 @@ from btq_lang.requirements.model import (
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Moment, SampleValue
     from btq_lang.evidence.observed import Observed
-    from btq_lang.requirements.model import Bounded, Condition, Limit, Number
+    from btq_lang.requirements.model import Bounded, Claim, Condition, Number
 
     Truth: TypeAlias = bool | Unknown
 
@@ -122,8 +122,10 @@ def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Value | Un
     return Value(bounded.text, value, unit or ONE)
 
 
-def compared(limit: Limit, si: float, observed: Observed, moment: Moment) -> Measure | Unknown:
-    """Compare a measured value with its bound, which is evaluated at a moment."""
+def compared(claim: Claim, si: float, observed: Observed, moment: Moment) -> Measure | Unknown:
+    """Compare a measured value with the bound of a claim, which is evaluated at a moment."""
+    limit = claim.limit
+    assert limit is not None, "what is measured has a bound"
     bound = bound_at(limit.value, observed, moment)
     if isinstance(bound, Unknown):
         return bound

@@ -68,9 +68,8 @@ def _answered(claim: Claim, run: OverRun, event: Happening, answer: Happening | 
         answer: None: there is none in the run.
         never: the sentence for its absence.
     """
-    assert claim.limit is not None, "an answer has a time"
     until = answer.until if answer is not None else run.root.ended
-    found = compared(claim.limit, (until[0] - event.at[0]) / 1e6, run.observed, event.at)
+    found = compared(claim, (until[0] - event.at[0]) / 1e6, run.observed, event.at)
     deadline = until
     if not isinstance(found, Unknown):
         deadline = min(until, (event.at[0] + round(found.bound.si * 1e6), until[1]))
@@ -141,7 +140,7 @@ def _number(claim: Claim, run: OverRun, period: Activation, starts: Sequence[Act
     """The judgement of a number of starts; None: undecided, because there may have been more."""
     assert claim.limit is not None, "a number of tries has a bound"
     number = len(starts)
-    found = compared(claim.limit, float(number), run.observed.during(period), period.started)
+    found = compared(claim, float(number), run.observed.during(period), period.started)
     if isinstance(found, Unknown):
         return Judgement(None, period.end, found.why)
     holds = found.kept(period.outcome in ("S", "F"))
@@ -176,12 +175,11 @@ def _runs(claim: Claim, run: OverRun) -> Judgements:
 
 def _between(claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool) -> Judgements:
     """Judge the times from each start to the next, and from the last to the end of the stretch."""
-    assert claim.limit is not None, "`every` has a bound"
     said = VERBS[claim.verb].said.replace("{}", "{} after its last start")
     for index, start in enumerate(starts):
         is_last = index + 1 == len(starts)
         until = stretch.end[0] if is_last else starts[index + 1].begin
-        found = compared(claim.limit, (until - start.begin) / 1e6, run.observed, start.started)
+        found = compared(claim, (until - start.begin) / 1e6, run.observed, start.started)
         if isinstance(found, Unknown):
             yield Judgement(None, until, found.why)
         elif is_last and is_open and found.holds:
@@ -195,8 +193,7 @@ def _in_windows(
     claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool
 ) -> Judgements:
     """Judge the windows with the fewest and the most starts; a stretch shorter than a window has none."""
-    assert claim.limit is not None, "a number of starts has a bound"
-    assert isinstance(claim.per, Value), "and a time"
+    assert isinstance(claim.per, Value), "the starts are counted in a time"
     length = round(claim.per.si * 1e6)
     begin, last = stretch.begin[0], stretch.end[0] - length  # when the first and the last window begin
     if begin > last:
@@ -214,7 +211,7 @@ def _in_windows(
     fullest = max([begin, *[max(begin, min(time + 1 - length, last)) for time in times]], key=number)
     measures: list[tuple[Measure, int]] = []
     for window in (fewest, fullest):
-        found = compared(claim.limit, float(number(window)), run.observed, stretch.begin)
+        found = compared(claim, float(number(window)), run.observed, stretch.begin)
         if isinstance(found, Unknown):
             yield Judgement(None, stretch.begin[0], found.why)
             return
@@ -265,7 +262,7 @@ def _ended(claim: Claim, run: OverRun, first: Happening, last: Moment | None, un
     counts = run.counts(first.at, until)
     if counts is False:
         return
-    found = compared(claim.limit, (until[0] - first.at[0]) / 1e6, run.observed, first.at)
+    found = compared(claim, (until[0] - first.at[0]) / 1e6, run.observed, first.at)
     if first.why or isinstance(found, Unknown):
         yield Judgement(None, until[0], found.why if isinstance(found, Unknown) else first.why)
         return
@@ -300,9 +297,8 @@ def _total(claim: Claim, run: OverRun) -> Judgements:
 
 def _sum(claim: Claim, run: OverRun, starts: Sequence[Activation]) -> Judgement | None:
     """The judgement of a sum of durations; None: undecided, because the log ends before the run does."""
-    assert claim.limit is not None, "a time has a bound"
     total = sum(each.end - each.begin for each in starts)
-    found = compared(claim.limit, total / 1e6, run.observed, run.observed.begin)
+    found = compared(claim, total / 1e6, run.observed, run.observed.begin)
     if isinstance(found, Unknown):
         return Judgement(None, run.root.end, found.why)
     holds = found.kept(not run.is_cut_off)

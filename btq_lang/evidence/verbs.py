@@ -13,7 +13,7 @@ from btq_lang.evidence.conditions import Measure, compared, measure_of, truth
 from btq_lang.evidence.model import CLOCK_SET_BACK, UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.signals import Unknown
-from btq_lang.requirements.model import Aggregate, Claim, Condition, Limit, Not, Signal, parts_in
+from btq_lang.requirements.model import Aggregate, Claim, Condition, Not, Signal, parts_in
 
 Judge: TypeAlias = Callable[[Claim, Activation, Observed], "Judgement | None"]
 
@@ -42,8 +42,7 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
 
 def takes(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
     """`takes at most d`: how long an activation lasts."""
-    assert claim.limit is not None, "a time has a bound"
-    return judged(claim, duration(claim.limit, activation, observed), activation)
+    return judged(claim, duration(claim, activation, observed), activation)
 
 
 def succeeds(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
@@ -52,7 +51,7 @@ def succeeds(claim: Claim, activation: Activation, observed: Observed) -> Judgem
     if outcome == "F" or claim.limit is None:
         said = {"S": "succeeded", "F": "failed"}
         return Judgement(outcome == "S", at, said[outcome]) if outcome in said else None
-    found = duration(claim.limit, activation, observed)
+    found = duration(claim, activation, observed)
     if isinstance(found, Unknown):
         return Judgement(None, at, found.why)
     if not found.holds and activation.timing == "latest":
@@ -64,10 +63,9 @@ def succeeds(claim: Claim, activation: Activation, observed: Observed) -> Judgem
 
 def uses(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
     """`uses at most x of k`: how much a level falls, or a counter rises, during an activation."""
-    assert claim.limit is not None, "the use has a bound"
     assert claim.signal is not None, "the clause names what is used"
     used = _used(claim.signal, activation, observed)
-    found = used if isinstance(used, Unknown) else compared(claim.limit, used, observed, activation.started)
+    found = used if isinstance(used, Unknown) else compared(claim, used, observed, activation.started)
     return judged(claim, found, activation)
 
 
@@ -90,11 +88,11 @@ def judged(claim: Claim, found: Measure | Unknown, activation: Activation) -> Ju
     return Judgement(holds, activation.end, VERBS[claim.verb].said, found)
 
 
-def duration(limit: Limit, activation: Activation, observed: Observed) -> Measure | Unknown:
-    """The duration of an activation, compared with its bound; unknown if either is."""
+def duration(claim: Claim, activation: Activation, observed: Observed) -> Measure | Unknown:
+    """The duration of an activation, compared with the bound of a claim; unknown if either is."""
     if activation.timing == "broken":
         return Unknown(CLOCK_SET_BACK)
-    return compared(limit, activation.seconds, observed, activation.started)
+    return compared(claim, activation.seconds, observed, activation.started)
 
 
 def _used(signal: Signal, activation: Activation, observed: Observed) -> float | Unknown:
