@@ -32,9 +32,9 @@ class Signals:
     def reading(self, signal: Signal, time: int) -> SampleValue | Unknown:
         """The value of a signal at a time, in SI."""
         series = self._series(signal)
-        found = series.at(time) if series is not None else None
+        found = series.at(time)
         if found is None:
-            return _initially(signal, is_sampled=bool(series is not None and series.times))
+            return _initially(signal, is_sampled=bool(series.times))
         sampled, value = found
         if value is None:
             return Unknown(f"`{signal.name}` was not on the blackboard")
@@ -42,21 +42,17 @@ class Signals:
             return Unknown(f"the last sample of `{signal.name}` is too old")
         last = self._last.get(signal.name)
         if last is None or last[0] is not value:
-            unit = series.unit if series is not None else None
-            last = self._last[signal.name] = value, _as_declared(signal, value, unit)
+            last = self._last[signal.name] = value, _as_declared(signal, value, series.unit)
         return last[1]
 
     def sampled(self, signal: Signal, time: int) -> int | None:
         """The time of the sample that gives a signal its value at a time."""
-        series = self._series(signal)
-        found = series.at(time) if series is not None else None
+        found = self._series(signal).at(time)
         return found[0] if found is not None else None
 
     def changes(self, signal: Signal, begin: int, end: int) -> list[int]:
         """The times after `begin`, up to `end`, at which a signal may change: a sample comes or expires."""
         series = self._series(signal)
-        if series is None:
-            return []
         times = list(series.between(begin, end))
         if signal.fresh is not None:
             age = round(signal.fresh * 1e6) + 1
@@ -70,12 +66,11 @@ class Signals:
         one expired before the next.
         """
         series = self._series(signal)
-        times = list(series.between(begin, end)) if series is not None else []
+        times = list(series.between(begin, end))
         if not isinstance(self.reading(signal, begin), Unknown):
             times.insert(0, begin)
         if not times:
-            is_sampled = series is not None and series.times
-            return Unknown(f"no sample of `{signal.name}` meanwhile" if is_sampled else _none_of(signal))
+            return Unknown(f"no sample of `{signal.name}` meanwhile" if series.times else _none_of(signal))
         checked = [*times, *self.changes(signal, times[0], end)] if signal.fresh is not None else times
         found: list[float] = []
         for time in checked:
@@ -88,18 +83,15 @@ class Signals:
     def number(self, signal: Signal, begin: int, end: int) -> float | Unknown:
         """How many samples of a signal there are from `begin` to `end`."""
         series = self._series(signal)
-        if series is None or not series.times:
-            return Unknown(_none_of(signal))
-        return float(len(series.between(begin - 1, end)))
+        return float(len(series.between(begin - 1, end))) if series.times else Unknown(_none_of(signal))
 
     def forget_before(self, time: int) -> None:
         """Drop the samples of the log's entries that are not needed for this time or later ones."""
         for series in self.logged.values():
             series.forget_before(time)
 
-    def _series(self, signal: Signal) -> Series | None:
-        series = self._given.get(signal.name)
-        return series if series is not None else self.logged.get(signal.entry)
+    def _series(self, signal: Signal) -> Series:
+        return self._given.get(signal.name) or self.logged.get(signal.entry) or _EMPTY
 
 
 def _initially(signal: Signal, is_sampled: bool) -> SampleValue | Unknown:
@@ -143,4 +135,5 @@ def by_signal(signals: Iterable[Signal], *sources: Mapping[str, Series]) -> dict
 
 
 NO_SAMPLES: Final = "no samples of"
+_EMPTY: Final = Series()
 _BOOLS: Final[dict[str, SampleValue | Unknown]] = {"true": True, "1": True, "false": False, "0": False}
