@@ -1,6 +1,6 @@
 """The columns of a Parquet file, read by DuckDB.
 
-One invariant: any failure of DuckDB is one NotParquet whose message names what was expected.
+One invariant: any failure of DuckDB is one NoSamples whose message names what was expected.
 """
 
 from __future__ import annotations
@@ -13,26 +13,26 @@ from typing import Any, Final
 MAGIC: Final = b"PAR1"
 
 
-class NotParquet(Exception):
-    """A file that cannot be read; the message says why."""
+class NoSamples(Exception):
+    """A file that is not a table of samples; the message says what was expected."""
 
 
 def read(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
     """The names of the columns, and the rows; timestamps are in seconds since the epoch.
 
     Raises:
-        NotParquet: DuckDB is missing, or cannot read the file, also while the rows are read.
+        NoSamples: DuckDB is missing, or cannot read the file, also while the rows are read.
     """
     try:
         import duckdb
 
         database = _engine().cursor()
     except ImportError as error:
-        raise NotParquet("Parquet is read with duckdb; install it with pip install 'btq-lang[evidence]'") from error
+        raise NoSamples("Parquet is read with duckdb; install it with pip install 'btq-lang[evidence]'") from error
     try:
         columns = database.execute("DESCRIBE SELECT * FROM read_parquet(?)", [path]).fetchall()
     except duckdb.Error as error:
-        raise NotParquet(_message(error)) from error
+        raise NoSamples(_message(error)) from error
     names = [str(name) for name, *_ in columns]
     expressions = ", ".join(_expression(str(name), str(kind)) for name, kind, *_ in columns)
 
@@ -43,7 +43,7 @@ def read(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
                 for row in block:
                     yield tuple(float(value) if isinstance(value, Decimal) else value for value in row)
         except duckdb.Error as error:
-            raise NotParquet(_message(error)) from error
+            raise NoSamples(_message(error)) from error
         finally:
             database.close()
 

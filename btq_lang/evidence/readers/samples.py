@@ -13,14 +13,11 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import SampleValue, Series, is_sample
 from btq_lang.evidence.readers import parquet
+from btq_lang.evidence.readers.parquet import NoSamples as NoSamples
 from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
     from btq_lang.workspace.project_evidence import SignalSource
-
-
-class NoSamples(Exception):
-    """A file that is not a table of samples; the message says what was expected."""
 
 
 def read(path: str, time: str = "") -> dict[str, Series]:
@@ -35,24 +32,21 @@ def read(path: str, time: str = "") -> dict[str, Series]:
     """
     with open(path, "rb") as file:
         is_parquet = file.read(len(parquet.MAGIC)) == parquet.MAGIC
-    try:
-        if is_parquet:
-            names, rows = parquet.read(path)
-            return _table(names, time, ((f"row {number}", row) for number, row in enumerate(rows, start=1)))
-        with open(path, encoding="utf-8-sig", errors="replace", newline="") as text:
-            lines = csv.reader(text)
-            try:
-                names = [name.strip() for name in next(lines, [])]
-                if any("\0" in name for name in names):
-                    raise NoSamples("expected text in UTF-8, found UTF-16 or no text")
-                if names and isinstance(_value(names[0]), float):
-                    raise NoSamples(f"line 1: {_NAMES}, found the number `{names[0]}`; write one above it: `t,battery`")
-                rows_of_text = ([_value(cell.strip()) for cell in row] for row in lines if row)
-                return _table(names, time, ((f"line {lines.line_num}", row) for row in rows_of_text))
-            except csv.Error as error:
-                raise NoSamples(f"line {lines.line_num}: {error}") from error
-    except parquet.NotParquet as error:
-        raise NoSamples(str(error)) from error
+    if is_parquet:
+        names, rows = parquet.read(path)
+        return _table(names, time, ((f"row {number}", row) for number, row in enumerate(rows, start=1)))
+    with open(path, encoding="utf-8-sig", errors="replace", newline="") as text:
+        lines = csv.reader(text)
+        try:
+            names = [name.strip() for name in next(lines, [])]
+            if any("\0" in name for name in names):
+                raise NoSamples("expected text in UTF-8, found UTF-16 or no text")
+            if names and isinstance(_value(names[0]), float):
+                raise NoSamples(f"line 1: {_NAMES}, found the number `{names[0]}`; write one above it: `t,battery`")
+            rows_of_text = ([_value(cell.strip()) for cell in row] for row in lines if row)
+            return _table(names, time, ((f"line {lines.line_num}", row) for row in rows_of_text))
+        except csv.Error as error:
+            raise NoSamples(f"line {lines.line_num}: {error}") from error
 
 
 def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[object]]]) -> dict[str, Series]:

@@ -8,10 +8,6 @@ from __future__ import annotations
 from typing import Any, Final
 
 
-class TooLarge(Exception):
-    """Decompressed data exceeds the limit."""
-
-
 def limit_chunks() -> None:
     """Make `rosbags` decompress chunks of MCAP files within the limit; it has none by itself."""
     from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]  # it has no stubs
@@ -25,7 +21,7 @@ def unpacked(data: bytes, size: int | None = None) -> bytes:
     """Decompress data that zstd compressed, to the size that the bag declares, if it does.
 
     Raises:
-        TooLarge: it is larger.
+        ValueError: it is larger.
     """
     from rosbags.rosbag2.storage_mcap import zstd  # type: ignore[attr-defined]  # whichever module this Python has
 
@@ -39,7 +35,7 @@ def _whole(data: bytes, decompressor: Any, size: int | None) -> bytes:
         frame = decompressor()
         found += frame.decompress(data, max_length=most + 1 - len(found))
         if len(found) > most:
-            raise TooLarge(f"{len(data)} packed bytes are more than {most} when unpacked")
+            raise ValueError(f"{len(data)} packed bytes are more than {most} when unpacked")
         if not frame.eof:
             raise EOFError("what is packed has no end")
         data = frame.unused_data
