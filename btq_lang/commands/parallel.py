@@ -6,14 +6,11 @@ Each process has the whole workspace, so that includes are available, and parses
 from __future__ import annotations
 
 import multiprocessing
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 
 from btq_lang.checks import findings
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.workspace.config import Project
-from btq_lang.workspace.factories import Factory
-from btq_lang.workspace.file import File
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
@@ -26,13 +23,13 @@ def check_all(workspace: Workspace, paths: tuple[str, ...], workers: int) -> Ite
     """The diagnostics of each path, in order."""
     # A forked process has the files already; otherwise each process gets their texts once.
     context = multiprocessing.get_context("fork" if "fork" in multiprocessing.get_all_start_methods() else None)
-    with ProcessPoolExecutor(workers, context, _begin, (workspace.files, workspace.project, workspace.factory)) as pool:
+    with ProcessPoolExecutor(workers, context, _begin, (workspace,)) as pool:
         yield from pool.map(_check, paths, chunksize=_CHUNK)
 
 
-def _begin(files: Mapping[str, File], project: Project, factory: Factory | None) -> None:
+def _begin(workspace: Workspace) -> None:
     global _store
-    _store = Store(Workspace(files, project, factory))
+    _store = Store(workspace)
 
 
 def _check(path: str) -> tuple[Diagnostic, ...]:

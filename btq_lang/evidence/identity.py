@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 from btq_lang.btcpp.export import is_mission
 from btq_lang.btcpp.instances import Instance
@@ -44,9 +44,7 @@ class Candidate:
 
     def __reduce__(self) -> tuple[object, ...]:
         """What makes it again in a process that does not share the memory of this one."""
-        workspace = self.workspace
-        files = (workspace.files, workspace.project, workspace.factory)
-        return _candidate, (files, self.path, self.name, self.side)
+        return Candidate, (self.workspace, self.path, self.name, self.side)
 
     @cached_property
     def indices(self) -> dict[int, int]:
@@ -122,10 +120,6 @@ class Build(Record):
                 if each.uid is not None
             ]
         )
-
-
-def _candidate(files: tuple[Any, ...], path: str, name: str, side: list[tuple[int, str]] | None) -> Candidate:
-    return Candidate(Workspace(*files), path, name, side)
 
 
 def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:

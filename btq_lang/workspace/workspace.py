@@ -48,6 +48,10 @@ class Workspace:
         self._everywhere: dict[Name, tuple[Definition, ...]] = {}
         self._closures: dict[str, tuple[str, ...]] = {}
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """What makes it again in another process."""
+        return Workspace, (self.files, self.project, self.factory)
+
     @classmethod
     def of(cls, texts: Mapping[str, str], project: Project | None = None) -> Workspace:
         """A workspace of these texts, by path."""
