@@ -14,7 +14,7 @@ from btq_lang.commands.options import Refused, refuse
 from btq_lang.commands.output import is_coloured, tell
 from btq_lang.commands.reporting import FOR_PEOPLE, form_of, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.render import Finding, Report, Trouble
+from btq_lang.render import Finding, Report
 from btq_lang.util.record import replace
 from btq_lang.util.text import counted
 from btq_lang.workspace.config import Project, unknown_rule
@@ -146,7 +146,7 @@ def _report(
 
         findings = together(findings)
     why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)
-    report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), why_empty, known)
+    report = Report(tuple(findings), texts, checked, problems, why_empty, known)
     write_report(report, options, mended)
     if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
         print(f"btq check: {empty}", file=sys.stderr)
@@ -260,11 +260,6 @@ def _show_fixes(groups: tuple[Group, ...], options: CheckOptions, has_problems: 
     if mended:
         print(f"Would fix {counted(mended, 'problem')}", file=sys.stderr)
     return 2 if has_problems else int(is_changed and not options.exit_zero)
-
-
-def _trouble(problem: LoadProblem) -> Trouble:
-    at = problem.position
-    return Trouble(problem.path, problem.message, at.line + 1 if at else None, at.column + 1 if at else None)
 
 
 def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...]]]:

@@ -13,7 +13,6 @@ from importlib import import_module
 from btq_lang.diagnostics.model import Place, relocated
 from btq_lang.render.report import Finding as Finding
 from btq_lang.render.report import Report as Report
-from btq_lang.render.report import Trouble as Trouble
 from btq_lang.util.record import replace
 
 FORMATS = ("full", "concise", "json", "sarif", "github", "gitlab", "junit")

@@ -12,7 +12,8 @@ from collections.abc import Iterator
 
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.render.cells import printable
-from btq_lang.render.report import Finding, Report, Trouble, location
+from btq_lang.render.report import Finding, Report, location
+from btq_lang.workspace.loader import LoadProblem
 
 _COMMANDS = {
     Severity.ERROR: "error",
@@ -29,8 +30,9 @@ def render(report: Report) -> Iterator[str]:
         yield _command(report, finding)
 
 
-def _trouble(trouble: Trouble) -> str:
-    place = f",line={trouble.line},col={trouble.column}" if trouble.line is not None else ""
+def _trouble(trouble: LoadProblem) -> str:
+    at = trouble.position
+    place = f",line={at.line + 1},col={at.column + 1}" if at is not None else ""
     return f"::error file={_property(trouble.path)}{place},title=io-error::{_data([str(trouble)])}\n"
 
 

@@ -14,7 +14,8 @@ from collections.abc import Iterator
 
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.render.fingerprint import digest, fingerprint
-from btq_lang.render.report import Finding, Report, Trouble, location
+from btq_lang.render.report import Finding, Report, location
+from btq_lang.workspace.loader import LoadProblem
 
 _SEVERITIES = {Severity.ERROR: "major", Severity.WARNING: "minor", Severity.INFO: "info", Severity.HINT: "info"}
 
@@ -45,8 +46,9 @@ def _issue(report: Report, finding: Finding, known: Counter[tuple[str, str]]) ->
     }
 
 
-def _trouble(trouble: Trouble) -> dict[str, object]:
-    begin = {"line": trouble.line or 1, "column": trouble.column or 1}
+def _trouble(trouble: LoadProblem) -> dict[str, object]:
+    line, column = trouble.position or (0, 0)
+    begin = {"line": line + 1, "column": column + 1}
     return {
         "description": f"io-error: {trouble.message}",
         "check_name": "io-error",

@@ -26,9 +26,10 @@ from collections.abc import Iterator
 
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.render.report import Finding, Report, Trouble, location
+from btq_lang.render.report import Finding, Report, location
 from btq_lang.render.summary import count, is_fixable
 from btq_lang.util.version import __version__
+from btq_lang.workspace.loader import LoadProblem
 
 
 def render(report: Report) -> Iterator[str]:
@@ -60,8 +61,9 @@ def summed_up(report: Report) -> dict[str, int]:
     }
 
 
-def _trouble(trouble: Trouble) -> dict[str, object]:
-    at = {"line": trouble.line or 1, "column": trouble.column or 1}
+def _trouble(trouble: LoadProblem) -> dict[str, object]:
+    line, column = trouble.position or (0, 0)
+    at = {"line": line + 1, "column": column + 1}
     return {
         "rule": "io-error",
         "severity": Severity.ERROR.value,

@@ -11,8 +11,9 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.render.cells import printable
-from btq_lang.render.report import Finding, Report, Trouble, location
+from btq_lang.render.report import Finding, Report, location
 from btq_lang.render.summary import counted_by_severity
+from btq_lang.workspace.loader import LoadProblem
 
 _FAILURES = (Severity.ERROR, Severity.WARNING)
 
@@ -22,7 +23,7 @@ def render(report: Report) -> Iterator[str]:
     cases: dict[str, list[Finding]] = {path: [] for path in report.checked}
     for finding in report.findings:
         cases.setdefault(finding.path, []).append(finding)
-    troubles: dict[str, list[Trouble]] = {}
+    troubles: dict[str, list[LoadProblem]] = {}
     for trouble in report.troubles:
         cases.setdefault(trouble.path, [])
         troubles.setdefault(trouble.path, []).append(trouble)
@@ -36,7 +37,7 @@ def render(report: Report) -> Iterator[str]:
     yield "  </testsuite>\n</testsuites>\n"
 
 
-def _case(report: Report, path: str, findings: list[Finding], troubles: list[Trouble]) -> Iterator[str]:
+def _case(report: Report, path: str, findings: list[Finding], troubles: list[LoadProblem]) -> Iterator[str]:
     """A test case; with an `<error>` it has no `<failure>`, because a test case has one result."""
     failures = [finding for finding in findings if not troubles and _fails(finding)]
     others = [finding for finding in findings if troubles or not _fails(finding)]

@@ -7,10 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Span
+
+if TYPE_CHECKING:
+    from btq_lang.workspace.loader import LoadProblem
 
 
 class Finding(Record):
@@ -21,22 +25,6 @@ class Finding(Record):
     diagnostic: Diagnostic
 
 
-class Trouble(Record):
-    """A file that could not be read or written, or only in part, so that findings may be missing.
-
-    Line and column count from 1; None: the whole file.
-    """
-
-    path: str
-    message: str
-    line: int | None = None
-    column: int | None = None
-
-    def __str__(self) -> str:
-        place = f":{self.line}:{self.column}" if self.line is not None else ""
-        return f"{self.path}{place}: {self.message}"
-
-
 class Report(Record):
     """The findings of one run.
 
@@ -44,7 +32,8 @@ class Report(Record):
         findings: in the order of output.
         texts: of other files that related places and fixes may name; a file without one is shown by its name.
         checked: the requested files, including those without findings.
-        troubles: for the formats for programs; for people, the command prints them itself.
+        troubles: files that could not be read or written, or only in part, so that findings may be missing; for the
+            formats for programs: for people, the command prints them itself.
         why_empty: why there are no findings, if known.
         known: the number of findings that a baseline has, and the report leaves out.
     """
@@ -52,7 +41,7 @@ class Report(Record):
     findings: tuple[Finding, ...]
     texts: Mapping[str, str]
     checked: tuple[str, ...] = ()
-    troubles: tuple[Trouble, ...] = ()
+    troubles: tuple[LoadProblem, ...] = ()
     why_empty: str | None = None
     known: int = 0
 

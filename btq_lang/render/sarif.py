@@ -14,8 +14,9 @@ from urllib.parse import quote
 
 from btq_lang.diagnostics.model import Fix, Place
 from btq_lang.diagnostics.rules import RULES, Severity, page
-from btq_lang.render.report import Finding, Report, Trouble, location
+from btq_lang.render.report import Finding, Report, location
 from btq_lang.util.version import __version__
+from btq_lang.workspace.loader import LoadProblem
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note", Severity.HINT: "note"}
@@ -59,7 +60,7 @@ def _rule(name: str, page: Callable[[str], str]) -> Json:
     }
 
 
-def _invocations(troubles: tuple[Trouble, ...]) -> Json:
+def _invocations(troubles: tuple[LoadProblem, ...]) -> Json:
     """The failures to read or write files (§3.20); empty without any."""
     if not troubles:
         return {}
@@ -70,10 +71,10 @@ def _invocations(troubles: tuple[Trouble, ...]) -> Json:
     return {"invocations": [{"executionSuccessful": False, "toolExecutionNotifications": notifications}]}
 
 
-def _where(trouble: Trouble) -> Json:
+def _where(trouble: LoadProblem) -> Json:
     where: Json = {"artifactLocation": _artifact(trouble.path)}
-    if trouble.line is not None:
-        where["region"] = {"startLine": trouble.line, "startColumn": trouble.column}
+    if trouble.position is not None:
+        where["region"] = {"startLine": trouble.position.line + 1, "startColumn": trouble.position.column + 1}
     return where
 
 

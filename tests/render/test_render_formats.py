@@ -10,8 +10,9 @@ import pytest
 from btq_lang import __version__
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import RULES, Severity
-from btq_lang.render import Finding, Report, Trouble, render, sarif
-from btq_lang.util.text import Span
+from btq_lang.render import Finding, Report, render, sarif
+from btq_lang.util.text import Position, Span
+from btq_lang.workspace.loader import LoadProblem
 
 TEXT = "BehaviorTree main\n    🤖 Rety\n"
 RETY = Span(24, 28)
@@ -44,7 +45,7 @@ TROUBLED = Report(
     (Finding("latin.btq", "x", Diagnostic("syntax-error", Span(0, 0), "empty")),),
     {},
     ("latin.btq",),
-    (Trouble("latin.btq", "this is no UTF-8", 2, 18), Trouble("a&b,c.btq", "cannot be read")),
+    (LoadProblem("latin.btq", "this is no UTF-8", Position(1, 17)), LoadProblem("a&b,c.btq", "cannot be read")),
 )
 
 
