@@ -6,6 +6,7 @@ once.  Errors of missions are not reported here: an overview has all valid parts
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Final, TypeAlias
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
 
     BoxDetails: TypeAlias = Callable[[ResolvedNode], tuple[tuple[str, ...], str]]
     VerdictsOf: TypeAlias = Callable[[str], Sequence[RequirementVerdict]]
+    _Key: TypeAlias = tuple[int, int]  # where a requirement is defined
 
 
 def collect(
@@ -75,7 +77,7 @@ def collect(
 
 
 class _Collector:
-    """The rows so far, by what they represent."""
+    """The rows so far, by what they represent, and what is added to them at the end."""
 
     def __init__(
         self,
@@ -89,9 +91,17 @@ class _Collector:
         self._verdicts_of = verdicts_of
         self._shown = shown
         self._edition: Edition | None = None
-        self._nodes: dict[int, _Node] = {}  # by `id` of the syntax, which all missions share
-        self._requirements: dict[tuple[int, int], _Requirement] = {}
-        self._qualities: dict[str, _Quality] = {}
+        self._nodes: dict[int, NodeRow] = {}  # by `id` of the syntax, which all missions share
+        self._sources: dict[int, ResolvedNode] = {}  # of these nodes
+        self._notes: defaultdict[int, dict[object, Note]] = defaultdict(dict)  # at them, by what they represent
+        self._places: dict[int, At] = {}  # of trees
+        self._requirements: dict[_Key, RequirementRow] = {}
+        self._meanings: dict[_Key, Meaning] = {}  # of their qualities
+        self._uses: defaultdict[_Key, dict[Use, None]] = defaultdict(dict)
+        self._loose: dict[_Key, list[str]] = {}  # without a node in every mission in which other clauses have one
+        self._seen: defaultdict[_Key, list[Evidence]] = defaultdict(list)
+        self._qualities: dict[str, QualityRow] = {}
+        self._concerned: defaultdict[str, dict[str, None]] = defaultdict(dict)  # the nodes that satisfice a quality
 
     def add(self, workspace: Workspace, path: str) -> None:
         """Add a mission: a file and all its includes."""
@@ -101,42 +111,52 @@ class _Collector:
         place = _places(workspace, self._shown)
         for source in found.nodes.all:
             if id(source.node) not in self._nodes:
-                tree = place(_tree_place(source))
-                self._nodes[id(source.node)] = _Node(f"n{len(self._nodes) + 1}", source, place(source.place), tree)
+                self._sources[id(source.node)] = source
+                self._places.setdefault(id(source.item), place(_tree_place(source)))
+                self._nodes[id(source.node)] = _node(f"n{len(self._nodes) + 1}", source, place(source.place))
         self._declared(workspace, path, meanings, place)
         self._concerns(found, meanings, place)
         self._definitions(found, meanings, place)
         self._evidence(path, found)
-        own = self._uses(workspace, path, found, place)
+        own = self._add_uses(workspace, path, found, place)
         for source in found.nodes.all:
             node = self._nodes[id(source.node)]
             carries: Carries = "own" if id(source) in own else "above" if _is_below(found, source, own) else "none"
-            if node.carries is None or _CARRIES.index(carries) > _CARRIES.index(node.carries):
-                node.carries = carries  # of several missions, the weakest
+            if _CARRIES.index(carries) > _CARRIES.index(node.carries):
+                self._nodes[id(source.node)] = replace(node, carries=carries)  # of several missions, the weakest
 
     def overview(self, files: tuple[str, ...]) -> Overview:
         """All rows, linked with each other."""
         edition = self._edition or "2023"
-        is_single = len(files) == 1
-        rows = tuple(each.row(self._key(each.meaning, each.quality), is_single) for each in self._requirements.values())
-        measured: dict[str, list[str]] = {}
-        for each, row in zip(self._requirements.values(), rows, strict=True):
-            for id_ in (each.meaning.id or each.quality or "", *each.meaning.above):
-                measured.setdefault(id_, []).append(row.key)
+        measured: defaultdict[str, dict[str, None]] = defaultdict(dict)
+        for key, row in self._requirements.items():
+            meaning = self._meanings[key]
+            for id_ in (meaning.id or row.quality or "", *meaning.above):
+                measured[id_][row.key] = None
+        rows = tuple(self._linked(key, row, len(files) == 1) for key, row in self._requirements.items())
         quality_rows = tuple(
-            each.row(tuple(measured.get(each.meaning.id or each.name, ()))) for each in self._qualities.values()
+            replace(row, concerns=tuple(self._concerned[row.key]), requirements=tuple(measured[id_]))
+            for id_, row in self._qualities.items()
         )
-        nodes = tuple(each.row() for each in self._nodes.values())
         trees = tuple(sorted(self._trees(), key=lambda tree: tree.at.path not in files))  # included trees last
         return Overview(
             edition,
             files,
             rows,
             quality_rows,
-            nodes,
+            tuple(self._nodes.values()),
             trees,
-            _totals(edition, rows, quality_rows, self._requirements),
+            _totals(edition, rows, quality_rows, [each.characteristic for each in self._meanings.values()]),
             self._verdicts_of is not None,
+        )
+
+    def _linked(self, key: _Key, row: RequirementRow, is_of_one_mission: bool) -> RequirementRow:
+        evidence = sorted(self._seen[key], key=lambda one: WORST_FIRST.index(one.verdict))
+        return replace(
+            row,
+            uses=tuple(self._uses[key]),
+            loose=tuple(self._loose.get(key, ())),
+            evidence=tuple(replace(one, mission="") if is_of_one_mission else one for one in evidence),
         )
 
     def _declared(self, workspace: Workspace, path: str, meanings: Meanings, place: Callable[[Place], At]) -> None:
@@ -151,85 +171,90 @@ class _Collector:
         for source in found.nodes.all:
             for name, written in concerns(source):
                 at = place(Place(written.span, source.path, source.item))
-                node = self._nodes[id(source.node)]
-                quality = self._quality(name, meanings, at)
-                quality.concerns[node.key] = None
-                node.notes[name] = Note("quality", quality.key, name, text=f"satisfices {name}", link=f"#{quality.key}")
+                key = self._quality(name, meanings, at)
+                self._concerned[key][self._nodes[id(source.node)].key] = None
+                note = Note("quality", key, name, text=f"satisfices {name}", link=f"#{key}")
+                self._notes[id(source.node)][name] = note
 
     def _definitions(self, found: Requirements, meanings: Meanings, place: Callable[[Place], At]) -> None:
         for requirement in found.all.values():
-            key = _place_of(requirement)
-            name = requirement.quality
-            meaning = meanings.of(name) if name is not None else _NO_MEANING
+            key, name, at = _place_of(requirement), requirement.quality, place(requirement.place)
+            quality = self._quality(name, meanings, at) if name is not None else None
             if key not in self._requirements:
-                number = f"r{len(self._requirements) + 1}"
-                self._requirements[key] = _Requirement(number, requirement, meaning, place(requirement.place))
-            if name is not None:
-                self._quality(name, meanings, place(requirement.place))
+                self._meanings[key] = meanings.of(name) if name is not None else _NO_MEANING
+                self._requirements[key] = RequirementRow(
+                    f"r{len(self._requirements) + 1}",
+                    requirement.name,
+                    " ".join((requirement.title or "").split()),
+                    name,
+                    quality,
+                    tuple(_stated(requirement)),
+                    at,
+                    uses=(),
+                    loose=(),
+                    is_hard=requirement.demands_enforcement and not requirement.is_verified_by_people,
+                    evidence=(),
+                )
 
     def _evidence(self, path: str, found: Requirements) -> None:
         for each in self._verdicts_of(path) if self._verdicts_of is not None else ():
             if (requirement := found.all.get(each.id)) is not None:
-                evidence = self._requirements[_place_of(requirement)].evidence
-                evidence += [
+                self._seen[_place_of(requirement)] += [
                     Evidence(self._shown(path), one.text, one.path, one.verdict, result(one)) for one in each.clauses
                 ]
 
-    def _quality(self, name: str, meanings: Meanings, at: At) -> _Quality:
+    def _quality(self, name: str, meanings: Meanings, at: At) -> str:
+        """The key of a quality, which is added if it is new."""
         meaning = meanings.of(name)
-        key = meaning.id or name
-        if key not in self._qualities:
-            self._qualities[key] = _Quality(f"q{len(self._qualities) + 1}", name, meaning, at)
-        return self._qualities[key]
+        id_ = meaning.id or name
+        if id_ not in self._qualities:
+            key, of = f"q{len(self._qualities) + 1}", meaning.characteristic
+            self._qualities[id_] = QualityRow(key, name, meaning.id, of, meaning.definition, at, (), ())
+        return self._qualities[id_].key
 
-    def _key(self, meaning: Meaning, name: str | None) -> str | None:
-        found = self._qualities.get(meaning.id or name or "")
-        return found.key if found is not None else None
-
-    def _uses(
+    def _add_uses(
         self, workspace: Workspace, path: str, found: Requirements, place: Callable[[Place], At]
     ) -> dict[int, None]:
         """Add what requirements hold for; returns the nodes that carry something themselves, by `id`."""
         own = {id(source): None for source in found.nodes.all if any(True for _ in concerns(source))}
-        rows = {each.name: self._requirements[_place_of(each)] for each in found.all.values()}
+        places = {each.name: _place_of(each) for each in found.all.values()}
         loose = {(requirement.name, claim.text) for requirement, claim in found.about_no_node()}
         for name in dict.fromkeys(each.requirement.name for each in found.applied):
-            row = rows[name]
-            known = row.loose if row.loose is not None else [claim.text for claim in row.requirement.claims]
-            row.loose = [text for text in known if (name, text) in loose]
+            known = self._loose.get(places[name], [claim.text for claim in found.all[name].claims])
+            self._loose[places[name]] = [text for text in known if (name, text) in loose]
         for applied, clauses in zip(found.applied, self._ways(workspace, path, found), strict=True):
-            row = rows[applied.requirement.name]
+            at = places[applied.requirement.name]
             sources = applied.nodes
             own.update((id(source), None) for source in sources)
-            nodes = [self._nodes[id(source.node)] for source in sources]
             use = Use(
                 _subject(applied),
-                tuple(dict.fromkeys(node.key for node in nodes)),
+                tuple(dict.fromkeys(self._nodes[id(source.node)].key for source in sources)),
                 applied.how,
                 applied.given,
                 place(applied.place),
                 tuple(clauses),
             )
-            row.uses[use] = None
-            note = _note(row, applied, use)
-            for node in nodes:
-                node.notes.setdefault((row.key, use.arguments, tuple(note.lines)), note)
+            self._uses[at][use] = None
+            note = _note(self._requirements[at].key, applied, use)
+            for source in sources:
+                self._notes[id(source.node)].setdefault((note.key, use.arguments, tuple(note.lines)), note)
         for trace in found.traces:
             own[id(trace.node)] = None
-            node = self._nodes[id(trace.node.node)]
-            row = rows[trace.requirement]
-            row.uses[Use(_name(trace.node), (node.key,), "link", "", place(trace.node.place), ())] = None
-            if all(note.key != row.key for note in node.notes.values()):
-                node.notes[row.key] = Note("requirement", row.key, trace.requirement, link=f"#{row.key}")
+            at, node, name = places[trace.requirement], id(trace.node.node), trace.requirement
+            use = Use(_name(trace.node), (self._nodes[node].key,), "link", "", place(trace.node.place), ())
+            self._uses[at][use] = None
+            key, notes = self._requirements[at].key, self._notes[node]
+            if all(note.key != key for note in notes.values()):
+                notes[key] = Note("requirement", key, name, link=f"#{key}")
         return own
 
     def _trees(self) -> Iterator[TreeRow]:
-        sources = [node.source for node in self._nodes.values()]
+        sources = list(self._sources.values())
         keys = {id(source): self._nodes[id(source.node)].key for source in sources}
         notes = {
-            id(source): tuple(dict.fromkeys(self._nodes[id(source.node)].notes.values()))
+            id(source): tuple(dict.fromkeys(self._notes[id(source.node)].values()))
             for source in sources
-            if self._nodes[id(source.node)].notes
+            if id(source.node) in self._notes
         }
         groups = list(by_tree(sources))
         links = {group[0].tree or "": f"#{keys[id(group[0])]}" for group in reversed(groups)}
@@ -239,82 +264,13 @@ class _Collector:
             drawn = figure(group, keys, notes, links)
             if self._details_of is not None:
                 drawn = replace(drawn, boxes=tuple(map(_with_details, drawn.boxes, map(self._details_of, group))))
-            yield TreeRow(group[0].tree or "", rows[0].tree, tuple(row.key for row in rows), is_bare, drawn)
+            at = self._places[id(group[0].item)]
+            yield TreeRow(group[0].tree or "", at, tuple(row.key for row in rows), is_bare, drawn)
 
 
 def _with_details(box: Box, details: tuple[tuple[str, ...], str]) -> Box:
     lines, state = details
     return replace(box, lines=(*box.lines, *lines), text="; ".join((box.text, *lines)), state=state)
-
-
-# ---- rows while they are made ----
-
-
-class _Node:
-    """A node; tree: the place of its tree; notes: those at it in its figure, by what they represent."""
-
-    def __init__(self, key: str, source: ResolvedNode, at: At, tree: At) -> None:
-        self.key = key
-        self.source = source
-        self.at = at
-        self.tree = tree
-        self.carries: Carries | None = None
-        self.notes: dict[object, Note] = {}
-
-    def row(self) -> NodeRow:
-        source = self.source
-        is_skill = source.kind is None and source.category != "SubTree" and not source.children
-        carries = self.carries or "none"
-        return NodeRow(self.key, _name(source), source.tree or "", source.category, is_skill, carries, self.at)
-
-
-class _Requirement:
-    """A requirement; uses: what it holds for, as an ordered set; loose: the clauses without a node in every mission in
-    which other clauses have one, None: no such mission yet.
-    """
-
-    def __init__(self, key: str, requirement: Requirement, meaning: Meaning, at: At) -> None:
-        self.key = key
-        self.requirement = requirement
-        self.quality = requirement.quality
-        self.meaning = meaning
-        self.at = at
-        self.uses: dict[Use, None] = {}
-        self.loose: list[str] | None = None
-        self.evidence: list[Evidence] = []
-
-    def row(self, quality_key: str | None, is_of_one_mission: bool) -> RequirementRow:
-        each = self.requirement
-        evidence = sorted(self.evidence, key=lambda one: WORST_FIRST.index(one.verdict))
-        return RequirementRow(
-            self.key,
-            each.name,
-            " ".join((each.title or "").split()),
-            each.quality,
-            quality_key,
-            tuple(_stated(each)),
-            self.at,
-            tuple(self.uses),
-            tuple(self.loose or ()),
-            each.demands_enforcement and not each.is_verified_by_people,
-            tuple(replace(one, mission="") if is_of_one_mission else one for one in evidence),
-        )
-
-
-class _Quality:
-    """A quality; concerns: the keys of the nodes that satisfice it."""
-
-    def __init__(self, key: str, name: str, meaning: Meaning, at: At) -> None:
-        self.key = key
-        self.name = name
-        self.meaning = meaning
-        self.at = at
-        self.concerns: dict[str, None] = {}
-
-    def row(self, measured: tuple[str, ...]) -> QualityRow:
-        id_, characteristic, definition = self.meaning.id, self.meaning.characteristic, self.meaning.definition
-        concerns, measured = tuple(self.concerns), tuple(dict.fromkeys(measured))
-        return QualityRow(self.key, self.name, id_, characteristic, definition, self.at, concerns, measured)
 
 
 # ---- single rows ----
@@ -332,7 +288,7 @@ def _places(workspace: Workspace, shown: Callable[[str], str]) -> Callable[[Plac
     return at
 
 
-def _place_of(requirement: Requirement) -> tuple[int, int]:
+def _place_of(requirement: Requirement) -> _Key:
     """The place where a requirement is defined: the same in all missions that use it."""
     return id(requirement.place.anchor), requirement.place.span.start
 
@@ -377,6 +333,11 @@ def _subject(applied: Applied) -> str:
     return claim.text.partition(f" {claim.verb} ")[0]
 
 
+def _node(key: str, source: ResolvedNode, at: At) -> NodeRow:
+    is_skill = source.kind is None and source.category != "SubTree" and not source.children
+    return NodeRow(key, _name(source), source.tree or "", source.category, is_skill, _CARRIES[0], at)
+
+
 def _name(source: ResolvedNode) -> str:
     """Its kind and its instance name; for a placeholder of a skill, those of the skill."""
     if is_placeholder(source.node) and source.node.name is not None:
@@ -384,16 +345,16 @@ def _name(source: ResolvedNode) -> str:
     return source.shown.removeprefix("`").removesuffix("`")
 
 
-def _note(row: _Requirement, applied: Applied, use: Use) -> Note:
+def _note(key: str, applied: Applied, use: Use) -> Note:
     """The note at a node; its state is that of the weakest clause."""
-    name = row.requirement.name
+    name = applied.requirement.name
     found = {clause.way for clause in use.clauses}
     state = next((way for way in ("reviewed", "monitored", "enforced") if way in found), "")
     lines = clauses_in_words(applied)
     if isinstance(applied.subject, Span | Total):
         lines = (applied.requirement.claims[0].text, *lines[1:])
     text = "; ".join((f"{name}{use.arguments}", *lines, *([state] if state else [])))
-    return Note("requirement", row.key, name + use.arguments, lines, text, state, f"#{row.key}")
+    return Note("requirement", key, name + use.arguments, lines, text, state, f"#{key}")
 
 
 def _stated(requirement: Requirement) -> Iterator[str]:
@@ -418,11 +379,14 @@ def _totals(
     edition: Edition,
     rows: Sequence[RequirementRow],
     quality_rows: Sequence[QualityRow],
-    found: dict[tuple[int, int], _Requirement],
+    meant: Sequence[str | None],
 ) -> tuple[TotalRow, ...]:
-    """A total for each product characteristic, each characteristic in use that is named, and the rest."""
+    """A total for each product characteristic, each characteristic in use that is named, and the rest.
+
+    Args:
+        meant: the characteristic of each requirement.
+    """
     characteristics = [each.id for each in qualities(edition) if each.parent is None and each.kind == "product"]
-    meant = [each.meaning.characteristic for each in found.values()]
     named = (*meant, *(each.characteristic for each in quality_rows if each.concerns))
     characteristics += [each for each in dict.fromkeys(named) if each is not None and each not in characteristics]
     totals: list[TotalRow] = []
