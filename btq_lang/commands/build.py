@@ -162,8 +162,7 @@ def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     report = with_paths(Report(tuple(findings), texts, tuple(path for group in groups for path in group.given)), shown)
     colour = is_coloured(options, sys.stdout.isatty())
-    for piece in render(options.report, report, colour=colour, width=120):
-        sys.stdout.write(piece)
+    sys.stdout.writelines(render(options.report, report, colour=colour))
     print("nothing was written", file=sys.stderr)
     return True
 

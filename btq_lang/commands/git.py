@@ -18,6 +18,7 @@ from btq_lang.btcpp.recognition import is_mission
 from btq_lang.btcpp.side_file import xml_path
 from btq_lang.commands.options import Refused
 from btq_lang.util.globs import glob_matcher
+from btq_lang.util.record import Record
 from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import SIDE_SUFFIX, SUFFIXES, File
 from btq_lang.workspace.loader import absolute, find_project, read, shown
@@ -139,13 +140,12 @@ class Commit:
         return Workspace(files, project, factory)
 
 
-class Revisions:
-    """Two revisions of a repository; `new`: None is the working tree."""
+class Revisions(Record):
+    """Two revisions of a repository, below `root`; `new`: None is the working tree."""
 
-    def __init__(self, root: str, old: Commit, new: Commit | None) -> None:
-        self.old: Final = old
-        self.new: Final = new
-        self._root: Final = root
+    root: str
+    old: Commit
+    new: Commit | None
 
     def changed(self, folder: str) -> list[tuple[str | None, str | None]]:
         """The missions below a folder whose text changed: their old and new paths, None if absent.
@@ -154,13 +154,13 @@ class Revisions:
         represents the mission together with its side file.
         """
         commits = [each.id for each in (self.old, self.new) if each is not None]
-        inside = _inside(self._root, folder) or "."
-        words = _git(self._root, "diff", "--name-status", "--find-renames", "-z", *commits, "--", inside).split("\0")
+        inside = _inside(self.root, folder) or "."
+        words = _git(self.root, "diff", "--name-status", "--find-renames", "-z", *commits, "--", inside).split("\0")
         pairs: dict[tuple[str | None, str | None], None] = {}
         at = 0
         while at + 1 < len(words):
-            status, path = words[at][:1], _outside(self._root, words[at + 1])
-            target = _outside(self._root, words[at + 2]) if status in ("R", "C") else path
+            status, path = words[at][:1], _outside(self.root, words[at + 1])
+            target = _outside(self.root, words[at + 2]) if status in ("R", "C") else path
             at += 3 if status in ("R", "C") else 2
             before, after = (None if status in ("A", "C") else path, None if status == "D" else target)
             if path.endswith(SIDE_SUFFIX) and target.endswith(SIDE_SUFFIX):  # its XML may be unchanged
@@ -175,9 +175,9 @@ class Revisions:
     def changed_paths(self) -> frozenset[str]:
         """The files of the repository that differ between the old revision and the working tree; those that git does
         not know yet, and under both names those that were renamed."""
-        words = _git(self._root, "diff", "--name-only", "--no-renames", "-z", self.old.id, "--")
-        words += _git(self._root, "ls-files", "--others", "--exclude-standard", "-z")
-        return frozenset(_outside(self._root, path) for path in words.split("\0") if path)
+        words = _git(self.root, "diff", "--name-only", "--no-renames", "-z", self.old.id, "--")
+        words += _git(self.root, "ls-files", "--others", "--exclude-standard", "-z")
+        return frozenset(_outside(self.root, path) for path in words.split("\0") if path)
 
     def had_folder(self, path: str) -> bool:
         """Whether a path is a folder in one of the revisions, even if it has been removed."""
@@ -196,7 +196,7 @@ class Revisions:
     @cache  # noqa: B019  # there is one for a command
     def _sources(self, revision: Commit | None) -> frozenset[str]:
         """The names of a revision's .btq files, without folders."""
-        paths = _git(self._root, *_OF_WORKING_TREE).split("\0") if revision is None else revision.paths
+        paths = _git(self.root, *_OF_WORKING_TREE).split("\0") if revision is None else revision.paths
         return frozenset(posixpath.basename(path) for path in paths if path.endswith(SUFFIXES))
 
 

@@ -36,6 +36,6 @@ def run(options: Namespace) -> int:
     if unread:
         text = workspace.files[path].source
         report = Report(tuple([Finding(path, text, each) for each in unread]), {path: text}, (path,))
-        sys.stderr.writelines(render("concise", with_paths(report, shown), colour=False, width=120))
+        sys.stderr.writelines(render("concise", with_paths(report, shown)))
         print("btq graph: the picture shows only what could be read", file=sys.stderr)
     return int(bool(unread))

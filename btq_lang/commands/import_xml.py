@@ -193,8 +193,7 @@ def _show_findings(jobs: Iterable[_Job], options: Namespace) -> None:
         return
     report = with_paths(Report(tuple(findings), {job.path: job.xml for job in jobs}, ()), shown)
     colour = is_coloured(options, sys.stderr.isatty())
-    for piece in render("full", report, colour=colour, width=120):
-        sys.stderr.write(piece)
+    sys.stderr.writelines(render("full", report, colour=colour))
 
 
 def _show_changes(job: _Job) -> None:

@@ -21,6 +21,7 @@ from btq_lang.evidence.readers import sqlite
 from btq_lang.evidence.readers.bag_database import BagDatabase
 from btq_lang.evidence.readers.tree import NotALog
 from btq_lang.evidence.readers.unpacking import limit_chunks, unpacked
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
@@ -235,25 +236,24 @@ _IDL_RULE: Final = f"{'=' * 80}\n"
 # ---- truncated recordings ----
 
 
-class _WholeFile:
+class _WholeFile(Record):
     """An MCAP file for `rosbags` to open; a truncated one appears as its complete records followed by an end."""
 
-    def __init__(self, path: str, remarks: list[str]) -> None:
-        self._path: Final = path
-        self._remarks: Final = remarks
+    path: str
+    remarks: list[str]
 
     def open(self, _: str) -> BinaryIO:
-        file = open(self._path, "rb")  # noqa: SIM115  # `rosbags` closes it
+        file = open(self.path, "rb")  # noqa: SIM115  # `rosbags` closes it
         size = os.fstat(file.fileno()).st_size
         if _has_end(file, size):
             file.seek(0)
             return file
         parts = _whole_records(file, size)
-        self._remarks.append(f"cut off: the last {size - parts[-1][1]} bytes are not a whole record and are left out")
+        self.remarks.append(f"cut off: the last {size - parts[-1][1]} bytes are not a whole record and are left out")
         return BufferedReader(_Parts(file, parts))
 
     def __str__(self) -> str:
-        return self._path
+        return self.path
 
 
 def _has_end(file: BinaryIO, size: int) -> bool:

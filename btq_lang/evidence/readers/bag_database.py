@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from rosbags.interfaces import Connection
 
 
-class BagDatabase:
+class BagDatabase(ExitStack):
     """The file, with its topics once it is open."""
 
     def __init__(self, path: str, remarks: list[str]) -> None:
+        super().__init__()
         self._path: Final = path
         self._remarks: Final = remarks
-        self._stack: Final = ExitStack()
         self._database: sqlite3.Connection
         self.connections: list[Connection] = []
 
@@ -34,7 +34,7 @@ class BagDatabase:
         """
         from rosbags.interfaces import Connection, ConnectionExtRosbag2, MessageDefinition, MessageDefinitionFormat
 
-        database = self._database = self._stack.enter_context(sqlite.opened(self._path, self._remarks))
+        database = self._database = self.enter_context(sqlite.opened(self._path, self._remarks))
         definitions = {}
         if "message_definitions" in sqlite.tables(database):
             for name, encoding, text in database.execute(
@@ -59,7 +59,3 @@ class BagDatabase:
         ):
             if topic in wanted:
                 yield wanted[topic], received, data
-
-    def close(self) -> None:
-        """Close the file."""
-        self._stack.close()

@@ -26,33 +26,23 @@ if TYPE_CHECKING:
     from btq_lang.evidence.verbs import Judgement
 
 
-class Rows:
-    """The rows of a log, in a file for each table.
+class Rows(ExitStack):
+    """The rows of a log, in a file for each table until they are closed.
 
     Attributes:
         run: the number of the open run.
     """
 
     def __init__(self, folder: str) -> None:
-        self._files: Final = ExitStack()
+        super().__init__()
         self.write: Final[dict[str, Callable[[Sequence[object]], object]]] = {}
         for name in ROWS:
             path = file_of(folder, name)
             file = open(path, "w", encoding="utf-8", errors="replace", newline="")  # noqa: SIM115 - the stack closes it
-            self._files.enter_context(file)
+            self.enter_context(file)
             self.write[name] = csv.writer(file, lineterminator="\n").writerow
         self.run = 1
         self.clauses = 0  # how many the parts have
-
-    def __enter__(self) -> Rows:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Close the files."""
-        self._files.close()
 
     def part(self, mission: str, robot: str) -> Part:
         """The rows of a mission and a robot in the log."""
