@@ -19,6 +19,7 @@ from btq_lang.diagnostics.rules import RULES, page
 from btq_lang.ide.describe import in_si, si_symbol
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import is_name, quote
+from btq_lang.util.grouping import grouped
 from btq_lang.util.spelling import near
 
 
@@ -179,9 +180,7 @@ def _likely(name: str) -> tuple[str, ...]:
 
 
 def _overview() -> str:
-    by_dimension: dict[str, list[str]] = {}
-    for unit in symbols():
-        by_dimension.setdefault(dimension_name(unit), []).append(unit.symbol)
+    by_dimension = grouped((dimension_name(unit), unit.symbol) for unit in symbols())
     sections = {
         "Rules": [f"{rule.name:<28} {rule.severity.value:<8} {rule.summary}" for rule in RULES.values()],
         "Nodes": [f"{kind.tag:<28} {'  '.join(spellings(kind)[1:]):<22} {kind.doc}" for kind in BUILTINS.values()],

@@ -18,6 +18,7 @@ from btq_lang.commands.files import Group
 from btq_lang.commands.options import CheckOptions
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.render import Finding
+from btq_lang.util.grouping import grouped
 from btq_lang.util.text import Edit, apply_edits
 from btq_lang.workspace.file import File
 from btq_lang.workspace.loader import LoadProblem, write_whole
@@ -30,9 +31,7 @@ def add_ignores(
     groups: Iterable[Group], findings: Sequence[Finding], reason: str
 ) -> tuple[int, tuple[LoadProblem, ...]]:
     """Write comments for the findings into their files; returns how many, and what could not be written."""
-    of_file: dict[str, list[Diagnostic]] = {}
-    for finding in findings:
-        of_file.setdefault(finding.path, []).append(finding.diagnostic)
+    of_file = grouped((finding.path, finding.diagnostic) for finding in findings)
     count = 0
     trouble: list[LoadProblem] = []
     done: set[str] = set()

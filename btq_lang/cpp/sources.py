@@ -15,6 +15,7 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.cpp.grammar import place_of
 from btq_lang.cpp.model import CppPort, Place, Unseen
 from btq_lang.cpp.source import Class, Function, Source, parts, substituted
+from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
@@ -49,15 +50,11 @@ class Sources:
         self.unseen: Final = [each for source in self.files.values() for each in source.unseen]
         self.accessed: Final = frozenset().union(*(source.accessed for source in self.files.values()))
         self._orders: Final[dict[str, list[Source]]] = {}  # by path, the nearest first
-        self._by_file_name: Final[dict[str, list[str]]] = {}
-        self._classes: Final[dict[str, list[Class]]] = {}  # by the last part of the name
-        self._methods: Final[dict[str, list[Function]]] = {}  # likewise, of a function
-        for path, source in self.files.items():
-            self._by_file_name.setdefault(path.rpartition("/")[2], []).append(path)
-            for class_ in source.classes:
-                self._classes.setdefault(_last(class_.name), []).append(class_)
-            for function in source.functions:
-                self._methods.setdefault(_last(function.name), []).append(function)
+        every = self.files.values()
+        self._by_file_name: Final = grouped((path.rpartition("/")[2], path) for path in self.files)
+        # By the last part of the name, of a class and of a function.
+        self._classes: Final = grouped((_last(each.name), each) for source in every for each in source.classes)
+        self._methods: Final = grouped((_last(each.name), each) for source in every for each in source.functions)
 
     def report(self, message: str, place: Place, hides_node: bool = False) -> None:
         """Report once what cannot be read."""

@@ -11,6 +11,7 @@ from typing import Final
 
 from btq_lang.diff.changes import Change, Detail, details
 from btq_lang.diff.contents import MAIN, MISSION, Item, Part, Value
+from btq_lang.util.grouping import grouped
 from btq_lang.util.text import counted
 
 # The things that can be renamed: others refer to them by name.
@@ -106,12 +107,11 @@ def _by_name(items: Iterable[Item]) -> dict[tuple[str, object], Item]:
 
 
 def _by_content(items: Iterable[Item]) -> dict[Hashable, list[Item]]:
-    found: dict[Hashable, list[Item]] = {}
-    for item in items:
-        if item.thing in _RENAMED and item.values:
-            content = item.thing, frozenset((aspect, value.key) for aspect, value in item.values.items())
-            found.setdefault(content, []).append(item)
-    return found
+    return grouped(
+        ((item.thing, frozenset((aspect, value.key) for aspect, value in item.values.items())), item)
+        for item in items
+        if item.thing in _RENAMED and item.values
+    )
 
 
 def _nodes(number: int) -> str:

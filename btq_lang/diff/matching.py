@@ -23,6 +23,7 @@ from typing import Final, TypeAlias
 
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.diff.contents import TREE, Part
+from btq_lang.util.grouping import grouped
 
 Ids: TypeAlias = dict[Hashable, int]
 Key: TypeAlias = "Callable[[Forest, int], Hashable]"
@@ -141,18 +142,14 @@ def _same_trees(old: Forest, new: Forest) -> Iterator[tuple[int, int]]:
     left, right = dict.fromkeys(old.tops), dict.fromkeys(new.tops)
     steps: tuple[Key, ...] = (lambda forest, top: forest.parts[top].name, lambda forest, top: forest.whole[top])
     for key in steps:
-        waiting: dict[Hashable, list[int]] = {}
-        for top in reversed(right):
-            waiting.setdefault(key(new, top), []).append(top)
+        waiting = grouped((key(new, top), top) for top in reversed(right))
         for top in list(left):
             if found := waiting.get(key(old, top)):
                 other = found.pop()
                 del left[top], right[other]
                 yield top, other
-    holders: dict[int, list[int]] = {}  # the trees of the new mission with a node of these values
-    for other in right:
-        for own in set(_nodes(new, other)):
-            holders.setdefault(own, []).append(other)
+    # The trees of the new mission with a node of these values.
+    holders = grouped((own, other) for other in right for own in set(_nodes(new, other)))
     for top in list(left):
         votes: Counter[int] = Counter()
         for own in _nodes(old, top):
@@ -259,10 +256,7 @@ def _line_up_children(old: Forest, new: Forest, left: list[int], right: list[int
 
 def _pair_equal(old: Forest, new: Forest, left: Iterable[int], right: Sequence[int], key: Key) -> None:
     """Pair unmatched parts of equal keys, in order."""
-    waiting: dict[Hashable, list[int]] = {}
-    for other in reversed(right):
-        if new.match[other] < 0:
-            waiting.setdefault(key(new, other), []).append(other)
+    waiting = grouped((key(new, other), other) for other in reversed(right) if new.match[other] < 0)
     for one in left:
         found = waiting.get(key(old, one), []) if old.match[one] < 0 else []
         while found and new.match[found[-1]] >= 0:  # in an identical subtree that was paired before
@@ -346,9 +340,7 @@ def _table(left: Sequence[Hashable], right: Sequence[Hashable]) -> list[tuple[in
 
 def _rough(left: Sequence[Hashable], right: Sequence[Hashable]) -> list[tuple[int, int]]:
     """Each one on the left with the next equal one on the right."""
-    places: dict[Hashable, list[int]] = {}
-    for to in range(len(right) - 1, -1, -1):
-        places.setdefault(right[to], []).append(to)
+    places = grouped((right[to], to) for to in range(len(right) - 1, -1, -1))
     found = []
     last = -1
     for at, key in enumerate(left):
@@ -391,12 +383,9 @@ def _leftovers(old: Forest, new: Forest, left: range, right: range, elsewhere: b
 
 def _by_name(forest: Forest, places: range) -> dict[Hashable, list[int]]:
     """The unmatched parts that have a name of their own, by kind and name."""
-    named: dict[Hashable, list[int]] = {}
-    for index in places:
-        part = forest.parts[index]
-        if forest.match[index] < 0 and part.name is not None and part.kind != TREE:
-            named.setdefault((forest.kinds[index], part.name), []).append(index)
-    return named
+    free = ((index, forest.parts[index]) for index in places if forest.match[index] < 0)
+    named = ((index, part) for index, part in free if part.name is not None and part.kind != TREE)
+    return grouped(((forest.kinds[index], part.name), index) for index, part in named)
 
 
 def _is_known_again(forest: Forest, index: int) -> bool:

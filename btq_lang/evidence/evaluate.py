@@ -33,6 +33,7 @@ from btq_lang.evidence.verdicts import (
     Source,
     worst_of,
 )
+from btq_lang.util.grouping import grouped
 from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
@@ -141,10 +142,7 @@ class MissionEvaluation:
         signals = Signals(given, session.samples)
         history = History()
         nearby = cache(lambda uid: Nearby(uid, joined, history))
-        at: dict[int, list[JudgedClause]] = {}
-        for clause in self._clauses:
-            for uid in clause.join(joined, signals, history, nearby):
-                at.setdefault(uid, []).append(clause)
+        at = grouped((uid, each) for each in self._clauses for uid in each.join(joined, signals, history, nearby))
         judged = {uid: (clauses, tree.nodes[uid].path, nearby(uid)) for uid, clauses in at.items()}
         guards = Guards(tree, joined.enforcing(), at)
         over_runs = any(clause.is_over_run for clause in self._clauses)

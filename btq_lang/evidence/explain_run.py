@@ -15,6 +15,7 @@ from btq_lang.evidence.over_run import OverRun, target_of
 from btq_lang.evidence.verdicts import Link
 from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import Claim, Condition, Event, Span, Total
+from btq_lang.util.grouping import grouped
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
@@ -80,9 +81,7 @@ class RunExplainer:
 
     def _shares(self, starts: Sequence[Activation]) -> Iterator[Link]:
         """How long each node of a sum ran, the longest first."""
-        by_node: dict[int, list[Activation]] = {}
-        for each in starts:
-            by_node.setdefault(each.uid, []).append(each)
+        by_node = grouped((each.uid, each) for each in starts)
         times = {uid: sum(each.end - each.begin for each in own) for uid, own in by_node.items()}
         for uid in sorted(by_node, key=lambda uid: (-times[uid], uid)):
             yield part(self._tree.nodes[uid].path, times[uid], len(by_node[uid]), _failed(by_node[uid]))

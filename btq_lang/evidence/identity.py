@@ -21,6 +21,7 @@ from btq_lang.evidence.model import LoggedTree
 from btq_lang.evidence.readers.tree import kind_of
 from btq_lang.requirements.model import Target
 from btq_lang.requirements.resolve import Requirements, requirements
+from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.workspace import Workspace
 
@@ -242,7 +243,4 @@ def without_number(path: str) -> str:
 
 
 def _unique(pairs: list[tuple[tuple[str, str], int]]) -> dict[tuple[str, str], int]:
-    numbers_of: dict[tuple[str, str], list[int]] = {}
-    for key, number in pairs:
-        numbers_of.setdefault(key, []).append(number)
-    return {key: numbers[0] for key, numbers in numbers_of.items() if len(numbers) == 1}
+    return {key: numbers[0] for key, numbers in grouped(pairs).items() if len(numbers) == 1}

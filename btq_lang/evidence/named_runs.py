@@ -17,6 +17,7 @@ from typing import Final
 from btq_lang.evidence.identity import Build, Candidate, Joined, join, join_build
 from btq_lang.evidence.model import FAILURE, IDLE, ROOT, RUNNING, SUCCESS, LoggedTree, NamedLog, Session, Transition
 from btq_lang.evidence.runs import ONE_COMPLETION
+from btq_lang.util.grouping import grouped
 from btq_lang.util.record import replace
 
 OTHER: Final = "of another mission"
@@ -176,9 +177,7 @@ class _Names:
 
     def __init__(self, tree: LoggedTree) -> None:
         self._names: Final = {uid: node.name for uid, node in tree.nodes.items()}
-        self._named: Final[dict[str, list[int]]] = {}
-        for uid, name in self._names.items():
-            self._named.setdefault(name, []).append(uid)
+        self._named: Final = grouped((name, uid) for uid, name in self._names.items())
         self.root: Final = self._names.get(ROOT, "")
 
     def has(self, nodes: Set[tuple[int, str]]) -> bool:

@@ -13,6 +13,7 @@ from btq_lang.graph.figure import Box, Figure, Note, Outline
 from btq_lang.requirements.model import Applied, Claim
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import Node, NodeClause, QualityPath, Satisfices
+from btq_lang.util.grouping import grouped
 from btq_lang.workspace.node_names import is_placeholder
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
@@ -69,10 +70,7 @@ def keyed(workspace: Workspace, path: str) -> tuple[tuple[str, ResolvedNode], ..
 
 def by_tree(nodes: Iterable[ResolvedNode]) -> Iterator[tuple[ResolvedNode, ...]]:
     """Nodes in the order of their text, grouped by tree."""
-    found: dict[int, list[ResolvedNode]] = {}
-    for node in nodes:
-        found.setdefault(id(node.item), []).append(node)
-    return map(tuple, found.values())
+    return map(tuple, grouped((id(node.item), node) for node in nodes).values())
 
 
 def figure(

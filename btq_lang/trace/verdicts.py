@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import OUTCOMES, VIOLATED, WORST_FIRST
 from btq_lang.evidence.wording import duration, quantity, timestamp
+from btq_lang.util.grouping import grouped
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import (
-        Bar,
         ClauseVerdict,
         Histogram,
         MissionVerdicts,
@@ -134,9 +134,7 @@ def _histogram(found: Histogram) -> str:
 
 
 def _timeline(timeline: Timeline) -> Iterator[str]:
-    rows: dict[tuple[str, int], list[Bar]] = {}
-    for bar in timeline.bars:
-        rows.setdefault((bar.path, bar.depth), []).append(bar)
+    rows = grouped(((bar.path, bar.depth), bar) for bar in timeline.bars)
     length = max((bar.end for bar in timeline.bars), default=0) or 1e-6
     name = f"Run {timeline.run} of {timeline.source}"
     yield f'<figure class="run" id="run-{timeline.run}"><figcaption><h3>{escape(name)}</h3>'

@@ -7,6 +7,7 @@ One invariant: nothing here concerns behavior trees or imports another room.
     spelling.py     names similar to a misspelt one
     record.py       immutable classes, without the start-up time of dataclasses
     reach.py        what is reached from something, step by step
+    grouping.py     what belongs together, by what it has in common
     globs.py        patterns of paths
     toml_places.py  positions of keys in a TOML text
     garbage.py      pauses of the garbage collector

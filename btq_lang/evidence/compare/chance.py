@@ -13,6 +13,8 @@ from math import comb, exp, lgamma, prod
 from operator import itemgetter, mul
 from typing import Final, TypeAlias
 
+from btq_lang.util.grouping import grouped
+
 Failures: TypeAlias = tuple[tuple[int, int], tuple[int, int]]  # of each side, how many, of how many
 
 
@@ -28,9 +30,7 @@ class Shuffles:
             first, second: the stratum of each unit of a side.
         """
         chance = random.Random(_SEED)
-        strata: dict[Hashable, list[int]] = {}
-        for index, stratum in enumerate((*first, *second)):
-            strata.setdefault(stratum, []).append(index)
+        strata = grouped((stratum, index) for index, stratum in enumerate((*first, *second)))
         fewer = Counter(first if len(first) <= len(second) else second)
         parted = [(units, fewer[stratum]) for stratum, units in strata.items() if 0 < fewer[stratum] < len(units)]
         self._first: Final = len(first)

@@ -6,14 +6,14 @@ One invariant: what is loaded are counts and the worst violation of each clause.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from operator import itemgetter
 
 from btq_lang.evidence.compare.comparison import Comparison, Unknown, compare
 from btq_lang.evidence.report.trends import Steps, Trends, steps_of, trends
 from btq_lang.evidence.store.queries import OVERVIEW, Ask, Row, only
-from btq_lang.evidence.store.summary import grouped, parted
+from btq_lang.evidence.store.summary import parted
 from btq_lang.evidence.store.tables import quoted
 from btq_lang.evidence.verdicts import VIOLATED, MissionVerdicts
+from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record
 
 
@@ -108,7 +108,7 @@ def overview(ask: Ask, store: str, by: Sequence[str]) -> Overview:
         comparisons = ()
     steps = steps_of(min(row["first_us"] for row in rows), max(row["last_us"] for row in rows))
     of_time = trends(ask, steps)
-    failures, active = (grouped(ask(OVERVIEW[name]), itemgetter("mission")) for name in ("failures", "nodes"))
+    failures, active = (grouped((row["mission"], row) for row in ask(OVERVIEW[name])) for name in ("failures", "nodes"))
     missions = []
     for name, parts in _parts(ask, store, names if "label" in by else None).items():
         labels = [each.name for each in parts] if "label" in by else None

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from operator import itemgetter
 from typing import Final, TypeAlias
 
 from btq_lang.evidence.store.queries import OVERVIEW, Ask, Row
-from btq_lang.evidence.store.summary import grouped
+from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record
 from btq_lang.util.text import counted
 
@@ -64,7 +63,7 @@ def trends(ask: Ask, steps: Steps) -> Mapping[str, Trends]:
     """The trends of each mission."""
     words = {"origin": steps.origin, "step": steps.length}
     runs, verdicts = (
-        grouped(ask(OVERVIEW[name].format(**words)), itemgetter("mission")) for name in ("runs", "verdicts")
+        grouped((row["mission"], row) for row in ask(OVERVIEW[name].format(**words))) for name in ("runs", "verdicts")
     )
     return {mission: _trends(rows, verdicts.get(mission, ()), steps) for mission, rows in runs.items()}
 
@@ -77,7 +76,7 @@ def _trends(runs: Sequence[Row], verdicts: Sequence[Row], steps: Steps) -> Trend
         recoveries=_values(runs, steps, lambda row: row["recoveries"] / row["runs"]),
         violated={
             name: _values(rows, steps, lambda row: row["violated"] / row["judged"])
-            for name, rows in grouped(verdicts, itemgetter("requirement")).items()
+            for name, rows in grouped((row["requirement"], row) for row in verdicts).items()
         },
     )
 

@@ -6,10 +6,10 @@ cover; and verdicts come from counts as for logs (`tally.py`, `clause.verdict_of
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from operator import itemgetter
-from typing import Any, Final
+from typing import Final
 
 from btq_lang.catalog.units import Unit, parse_unit
 from btq_lang.diagnostics.model import Place
@@ -35,6 +35,7 @@ from btq_lang.evidence.verdicts import (
 )
 from btq_lang.evidence.wording import measured, quantity
 from btq_lang.requirements.model import Odds, Value
+from btq_lang.util.grouping import grouped
 from btq_lang.util.text import Span, counted
 
 _VIOLATIONS: Final = 10  # named of each clause
@@ -65,8 +66,8 @@ def parted(
     found = {name: ask(text.format(**columns)) for name, text in QUERIES.items()}
     part_of, clause_of = itemgetter(*by), itemgetter(*by, "requirement", "clause", "node")
     counts = {clause_of(row): row for row in found["verdicts"]}
-    broken, recent = (grouped(found[name], clause_of) for name in ("violations", "recent"))
-    clauses = grouped(found["clauses"], part_of)
+    broken, recent = (grouped((clause_of(row), row) for row in found[name]) for name in ("violations", "recent"))
+    clauses = grouped((part_of(row), row) for row in found["clauses"])
     for part in found["runs"]:
         judged: dict[str, list[ClauseVerdict]] = {}
         titles = {}
@@ -219,14 +220,6 @@ def _measure(row: Row, unit: Unit) -> Measure | None:
         return None
     relation = ">=" if (si > bound) == (row["verdict"] == SATISFIED) else "<="
     return Measure(si, relation, Value(quantity(bound, unit), bound, unit), unit)
-
-
-def grouped(rows: Sequence[Row], key: Callable[[Row], Any]) -> dict[Any, list[Row]]:
-    """The rows that have the same key, by it."""
-    found: dict[Any, list[Row]] = {}
-    for row in rows:
-        found.setdefault(key(row), []).append(row)
-    return found
 
 
 _SAME: Final = 1e-9  # of the larger value: what subtracting and adding a bound may round off
