@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang import evidence
 
@@ -14,23 +14,15 @@ if TYPE_CHECKING:
 FORMATS: Final = (*evidence.FORMATS, "html")
 
 
-def write(
-    report: Report,
-    missions: Sequence[Candidate],
-    form: str,
-    *,
-    colour: bool = False,
-    verbose: bool = False,
-    width: int | None = None,
-) -> str:
+def write(report: Report, missions: Sequence[Candidate], form: str, **options: Any) -> str:
     """Write the verdicts in one of FORMATS.
 
     Args:
         missions: all candidates, including those of the report.
-        colour, verbose, width: for `table`.
+        options: as of `evidence.write`.
     """
     if form != "html":
-        return evidence.write(report, form, colour=colour, verbose=verbose, width=width)
+        return evidence.write(report, form, **options)
     from btq_lang.trace import page
     from btq_lang.trace.missions import trace_tables
     from btq_lang.trace.verdicts import outcomes

@@ -11,6 +11,7 @@ from collections.abc import Hashable, Iterable, Set
 
 from btq_lang.btcpp.marks import is_built_of, is_generated, named_beside
 from btq_lang.btcpp.recognition import defined_in, is_mission, may_be_mission
+from btq_lang.util.grouping import grouped
 from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import absolute, head, read, stamp
 
@@ -92,11 +93,8 @@ def _named_by_side_file(path: str) -> tuple[str, ...]:
 def ignored(paths: Iterable[str]) -> frozenset[str]:
     """Those of some absolute paths that git ignores, none without git; a file that is tracked is not ignored."""
     repository_of: dict[str, str | None] = {}  # by folder
-    by_repository: dict[str, list[str]] = {}
-    for path in paths:
-        repository = _repository(os.path.dirname(path), repository_of)
-        if repository is not None and path != repository:
-            by_repository.setdefault(repository, []).append(path)
+    found = ((_repository(os.path.dirname(path), repository_of), path) for path in paths)
+    by_repository = grouped((root, path) for root, path in found if root is not None and path != root)
     return frozenset().union(*(_ignored_in(root, below) for root, below in by_repository.items()))
 
 

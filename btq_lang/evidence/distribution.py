@@ -6,6 +6,7 @@ edge.
 
 from __future__ import annotations
 
+from collections import Counter
 from math import floor
 from typing import TYPE_CHECKING, Final
 
@@ -20,7 +21,7 @@ class Distribution:
     """The values measured for a clause."""
 
     def __init__(self) -> None:
-        self._counts: dict[int, int] = {}  # by how many steps above the bound
+        self._counts: Counter[int] = Counter()  # by how many steps above the bound
         self._last: Measure | None = None
         self._origin = 0.0
         self._step = 0.0
@@ -32,12 +33,9 @@ class Distribution:
             self._step = abs(measure.bound.si) / _FINEST or 1.0 / _FINEST
         self._last = measure
         at = floor((measure.si - self._origin) / self._step)
-        counts = self._counts
-        if at in counts:
-            counts[at] += 1
-            return
-        counts[at] = 1
-        self._fit()
+        self._counts[at] += 1
+        if self._counts[at] == 1:
+            self._fit()
 
     def add_all(self, other: Distribution) -> None:
         """Count the values of other logs; where they had another bound, each as the middle of its step."""
@@ -49,7 +47,7 @@ class Distribution:
         for at, number in other._counts.items():
             middle = other._origin + (at + 0.5) * other._step
             into = floor((middle - self._origin) / self._step)
-            self._counts[into] = self._counts.get(into, 0) + number
+            self._counts[into] += number
         self._fit()
 
     def _fit(self) -> None:
@@ -57,9 +55,9 @@ class Distribution:
             self._double()
 
     def _double(self) -> None:
-        doubled: dict[int, int] = {}
+        doubled: Counter[int] = Counter()
         for at, number in self._counts.items():
-            doubled[at // 2] = doubled.get(at // 2, 0) + number
+            doubled[at // 2] += number
         self._counts = doubled
         self._step *= 2
 
@@ -71,7 +69,7 @@ class Distribution:
         return Histogram(
             low=self._origin + low * self._step,
             step=self._step,
-            counts=tuple(self._counts.get(at, 0) for at in range(low, high + 1)),
+            counts=tuple(self._counts[at] for at in range(low, high + 1)),
             marks={"bound": self._last.bound, **({"goal": goal} if goal is not None else {})},
             unit=self._last.unit,
         )

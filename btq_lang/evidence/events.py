@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.sentences import explained
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
+from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record
 from btq_lang.workspace.loader import shown
 
@@ -89,11 +90,7 @@ def _found(report: Report) -> tuple[Sequence[_Found], int]:
 def _placed(found: Sequence[_Found], clocks: Mapping[str, Clock]) -> Sequence[tuple[int, _Found]]:
     """The violations whose times a message can have, in the order of the times at which the bag receives them."""
     placed: list[tuple[int, _Found]] = []
-    by_source: dict[str, list[_Found]] = {}
-    for each in found:
-        if 0 <= each[0] < _END:
-            by_source.setdefault(each[-1].source, []).append(each)
-    for source, those in by_source.items():
+    for source, those in grouped((each[-1].source, each) for each in found if 0 <= each[0] < _END).items():
         times = [time for time, *_ in those]
         placed += zip(clocks[source].to_reception(times) if source in clocks else times, those, strict=True)
     return sorted((each for each in placed if 0 <= each[0] < _END), key=itemgetter(0))

@@ -89,21 +89,13 @@ class Joined(Record):
     def written(self) -> dict[int, int]:
         """By uid, the index of the written node of each of the log's nodes among those of the mission."""
         indices = self.mission.indices
-        found: dict[int, int] = {}
-        for instance, node in self.build.running.all:
-            uid = self.uids.get(_number(instance))
-            if node is not None and uid is not None:
-                found[uid] = indices[id(node)]
-        return found
+        nodes = ((self.uids.get(_number(instance)), node) for instance, node in self.build.running.all)
+        return {uid: indices[id(node)] for uid, node in nodes if uid is not None and node is not None}
 
     def enforcing(self) -> dict[int, str]:
         """The guards among the log's nodes, each with its requirement."""
-        found: dict[int, str] = {}
-        for instance, _ in self.build.running.all:
-            mark, uid = instance.element.get(MARK), self.uids.get(_number(instance))
-            if mark is not None and uid is not None:
-                found[uid] = mark
-        return found
+        marks = ((self.uids.get(_number(each)), each.element.get(MARK)) for each, _ in self.build.running.all)
+        return {uid: mark for uid, mark in marks if uid is not None and mark is not None}
 
 
 class Build(Record):

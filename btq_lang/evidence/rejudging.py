@@ -12,6 +12,7 @@ from btq_lang.evidence.outline import Demand, demands
 from btq_lang.evidence.tally import Tally
 from btq_lang.evidence.verdicts import ClauseVerdict, Measures, RequirementVerdict, Worst
 from btq_lang.evidence.wording import measured
+from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
@@ -33,12 +34,12 @@ class Shown(Record):
 
 def shown_now(found: Requirements, judged: Iterable[RequirementVerdict]) -> Iterator[Shown]:
     """The clauses of the present text, each with its verdict; `judged`: those on an earlier text, with measures."""
-    known: dict[tuple[str, str, str], list[ClauseVerdict]] = {}
-    for requirement in judged:
-        for clause in requirement.clauses:
-            if clause.measures is not None:
-                key = requirement.id, clause.measures.key, clause.measures.place
-                known.setdefault(key, []).append(clause)
+    known = grouped(
+        ((requirement.id, clause.measures.key, clause.measures.place), clause)
+        for requirement in judged
+        for clause in requirement.clauses
+        if clause.measures is not None
+    )
     for demand in demands(found):
         subject = demand.applied.subject if demand.applied is not None else None
         edge = edge_of(demand.claim, subject, demand.requirement)

@@ -13,6 +13,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.render.cells import printable
 from btq_lang.render.report import Finding, Report, location
 from btq_lang.render.summary import counted_by_severity
+from btq_lang.util.grouping import grouped
 from btq_lang.workspace.loader import LoadProblem
 
 _FAILURES = (Severity.ERROR, Severity.WARNING)
@@ -20,13 +21,9 @@ _FAILURES = (Severity.ERROR, Severity.WARNING)
 
 def render(report: Report) -> Iterator[str]:
     """The document, line by line."""
-    cases: dict[str, list[Finding]] = {path: [] for path in report.checked}
-    for finding in report.findings:
-        cases.setdefault(finding.path, []).append(finding)
-    troubles: dict[str, list[LoadProblem]] = {}
-    for trouble in report.troubles:
-        cases.setdefault(trouble.path, [])
-        troubles.setdefault(trouble.path, []).append(trouble)
+    found = grouped((finding.path, finding) for finding in report.findings)
+    troubles = grouped((trouble.path, trouble) for trouble in report.troubles)
+    cases = {path: found.get(path, []) for path in (*report.checked, *found, *troubles)}
     failures = sum(any(map(_fails, case)) for path, case in cases.items() if path not in troubles)
     numbers = f'tests="{len(cases)}" failures="{failures}" errors="{len(troubles)}"'
     yield '<?xml version="1.0" encoding="UTF-8"?>\n'

@@ -139,11 +139,8 @@ def _subjects(each: RequirementRow) -> str:
 def _ways(each: RequirementRow) -> str:
     if not any(use.clauses for use in each.uses):
         return f'<span class="way none">{escape(each.way)}</span>'
-    found: dict[tuple[str, str], None] = {}
-    for use in each.uses:
-        found.update(((clause.way, clause.why), None) for clause in use.clauses)
     lines = []
-    for way, why in found:
+    for way, why in dict.fromkeys((clause.way, clause.why) for use in each.uses for clause in use.clauses):
         text = f" <small>{_coded(why)}</small>" if why else ""
         lines.append(f'<li><span class="way {way}">{way}</span>{text}</li>')
     for clause in each.loose:

@@ -37,11 +37,8 @@ def verdicts(missions: Sequence[MissionVerdicts], keys: Mapping[str, str]) -> It
 
 def outcomes(missions: Sequence[MissionVerdicts]) -> BoxDetails:
     """A function from a node to further lines in its box, about its instances in the logs, and to the box's class."""
-    found: dict[int, list[NodeSummary]] = {}
-    for mission in missions:
-        for each in mission.nodes:
-            if each.written is not None:
-                found.setdefault(id(each.written.node), []).append(each)
+    nodes = (each for mission in missions for each in mission.nodes)
+    found = grouped((id(each.written.node), each) for each in nodes if each.written is not None)
     return lambda source: _outcome(found.get(id(source.node), ()))
 
 
