@@ -139,5 +139,6 @@ def enclosing(node: Node, kinds: tuple[str, ...]) -> Node | None:
     return around
 
 
+LAMBDAS: Final = frozenset(("lambda_expression",))
 _EXPORTED: Final = re.compile(r"(\b(?:class|struct)\s+)([A-Z][A-Z0-9_]+)(?=\s+[A-Za-z_]\w*\s*(?:final\s*)?[:{])")
 _ESCAPED: Final = {"\\n": "\n", "\\t": "\t", '\\"': '"', "\\'": "'", "\\\\": "\\"}

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.kinds import Category
-from btq_lang.cpp.grammar import arguments, callee, contents, enclosing, field, place_of, text_of, walk
+from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, place_of, text_of, walk
 from btq_lang.cpp.model import CppNode, CppNodes
 from btq_lang.cpp.ports import Body, PortsReader, Provided
 from btq_lang.cpp.source import Call, Source
@@ -174,7 +174,7 @@ def ends_within_tick(sources: Sources, bound: Bound) -> bool:
 
 
 def _answers(tick: Node) -> bool:
-    returns = [each for each in walk(tick, _FUNCTIONS) if each.type == "return_statement"]
+    returns = [each for each in walk(tick, LAMBDAS) if each.type == "return_statement"]
     return bool(returns) and all(len(contents(each)) == 1 and _is_answer(contents(each)[0]) for each in returns)
 
 
@@ -197,4 +197,3 @@ _ENGINES: Final = ("registerNodeType", "registerBuilder")
 _OTHERS: Final = re.compile(
     r"register(BehaviorTreeFrom\w+|From\w*Plugins?|ScriptingEnums?|PolymorphicCast)|RegisterJsonDefinition"
 ).fullmatch
-_FUNCTIONS: Final = frozenset(("lambda_expression",))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.kinds import Direction
-from btq_lang.cpp.grammar import arguments, callee, contents, enclosing, field, named, place_of, text_of, walk
+from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, named, place_of, text_of, walk
 from btq_lang.cpp.model import CppPort, Place
 from btq_lang.cpp.source import REGISTERS, substituted
 from btq_lang.cpp.sources import Bound, Sources, library_ports
@@ -145,7 +145,7 @@ class Body:
             self._fill(contents(statement)[0] if contents(statement) else statement)
         elif statement.type == "for_range_loop":
             self._loop(statement)
-        elif self.names_list(statement) or any(each.type == "return_statement" for each in walk(statement, _FUNCTIONS)):
+        elif self.names_list(statement) or any(each.type == "return_statement" for each in walk(statement, LAMBDAS)):
             self.incomplete(statement)
 
     def _declare(self, node: Node) -> None:
@@ -221,7 +221,7 @@ class Body:
 
     def names_list(self, node: Node) -> bool:
         """Whether a statement may change a list of ports."""
-        return any(each.type == "identifier" and text_of(each) in self.lists for each in walk(node, _FUNCTIONS))
+        return any(each.type == "identifier" and text_of(each) in self.lists for each in walk(node, LAMBDAS))
 
     # ---- expressions ----
 
@@ -342,5 +342,4 @@ _DIRECTIONS: Final[dict[str, Direction]] = {
     "OUTPUT": "output",
     "INOUT": "inout",
 }
-_FUNCTIONS: Final = frozenset(("lambda_expression",))
 _DEEPEST: Final = 20  # helpers that call themselves

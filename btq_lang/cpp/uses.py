@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.cpp_classes import ENGINE
-from btq_lang.cpp.grammar import arguments, callee, enclosing, field, literal, place_of, text_of, walk
+from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, enclosing, field, literal, place_of, text_of, walk
 from btq_lang.cpp.model import CppPort, Use
 from btq_lang.cpp.source import ACCESSES
 from btq_lang.cpp.sources import Bound, Sources
@@ -163,7 +163,7 @@ def _kept(declared: Node) -> str:
 
 def _fails(branch: Node) -> bool:
     """Whether a branch throws, ends the program, or returns FAILURE."""
-    for each in walk(branch, _FUNCTIONS):
+    for each in walk(branch, LAMBDAS):
         if each.type == "throw_statement" or (each.type == "call_expression" and callee(each)[1] in _ENDS):
             return True
         if each.type == "return_statement" and text_of(each).rstrip("; ").endswith("NodeStatus::FAILURE"):
@@ -172,11 +172,10 @@ def _fails(branch: Node) -> bool:
 
 
 def _leaves(branch: Node) -> bool:
-    return any(each.type in ("return_statement", "throw_statement") for each in walk(branch, _FUNCTIONS))
+    return any(each.type in ("return_statement", "throw_statement") for each in walk(branch, LAMBDAS))
 
 
 _IGNORES: Final = "ignores"
 _PROVIDES: Final = re.compile(r"provided\w*Ports").fullmatch
 _FALLS_BACK: Final = re.compile(r"get\w*Or[A-Z]\w*").fullmatch
 _ENDS: Final = ("exit", "abort", "terminate")
-_FUNCTIONS: Final = frozenset(("lambda_expression",))
