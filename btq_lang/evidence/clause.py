@@ -14,15 +14,7 @@ from btq_lang.evidence import margins
 from btq_lang.evidence.edges import WHILE_IT_RUNS, edge_of, key_of
 from btq_lang.evidence.history import History, Nearby, near
 from btq_lang.evidence.margins import Margins
-from btq_lang.evidence.model import (
-    BEGUN_BEFORE,
-    CLOCK_SET_BACK,
-    CUT_BY_GAP,
-    ROOT,
-    ROWS_LOST,
-    Activation,
-    LoggedTree,
-)
+from btq_lang.evidence.model import BEGUN_BEFORE, CLOCK_SET_BACK, CUT_BY_GAP, ROOT, ROWS_LOST, Activation, LoggedTree
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.over_run import OverRun, target_of
 from btq_lang.evidence.recent import Recent

@@ -18,18 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.model import (
-    FAILURE,
-    GAP,
-    ROOT,
-    RUNNING,
-    SKIPPED,
-    SUCCESS,
-    Activation,
-    LoggedTree,
-    Mark,
-    Session,
-)
+from btq_lang.evidence.model import FAILURE, GAP, ROOT, RUNNING, SKIPPED, SUCCESS, Activation, LoggedTree, Mark, Session
 from btq_lang.evidence.wording import timestamp
 
 if TYPE_CHECKING:

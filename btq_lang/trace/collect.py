@@ -21,17 +21,7 @@ from btq_lang.requirements.model import Applied, Mission, Requirement, Span, Tar
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import QualityDecl
 from btq_lang.trace.meanings import Meaning, Meanings
-from btq_lang.trace.overview import (
-    WAYS,
-    At,
-    Evidence,
-    NodeRow,
-    Overview,
-    QualityRow,
-    RequirementRow,
-    TreeRow,
-    Use,
-)
+from btq_lang.trace.overview import WAYS, At, Evidence, NodeRow, Overview, QualityRow, RequirementRow, TreeRow, Use
 from btq_lang.trace.overview import Total as TotalRow
 from btq_lang.trace.ways import declared_ways
 from btq_lang.util.record import replace
@@ -80,11 +70,7 @@ class _Collector:
     """The rows so far, by what they represent, and what is added to them at the end."""
 
     def __init__(
-        self,
-        ways: Ways,
-        shown: Callable[[str], str],
-        details_of: BoxDetails | None,
-        verdicts_of: VerdictsOf | None,
+        self, ways: Ways, shown: Callable[[str], str], details_of: BoxDetails | None, verdicts_of: VerdictsOf | None
     ) -> None:
         self._ways = ways
         self._details_of = details_of
@@ -162,10 +148,9 @@ class _Collector:
     def _declared(self, workspace: Workspace, path: str, meanings: Meanings, place: Callable[[Place], At]) -> None:
         """Add user-defined qualities, whether used or not."""
         for each in workspace.scope(path).paths:
-            for entry in workspace.files[each].parsed.entries:
-                if isinstance(entry.item, QualityDecl) and entry.item.name is not None:
-                    at = place(Place(entry.item.name.span, each, entry.item))
-                    self._quality(entry.item.name.text, meanings, at)
+            for item in workspace.files[each].of_type(QualityDecl):
+                if item.name is not None:
+                    self._quality(item.name.text, meanings, place(Place(item.name.span, each, item)))
 
     def _concerns(self, found: Requirements, meanings: Meanings, place: Callable[[Place], At]) -> None:
         for source in found.nodes.all:
@@ -376,10 +361,7 @@ def _stated(requirement: Requirement) -> Iterator[str]:
 
 
 def _totals(
-    edition: Edition,
-    rows: Sequence[RequirementRow],
-    quality_rows: Sequence[QualityRow],
-    meant: Sequence[str | None],
+    edition: Edition, rows: Sequence[RequirementRow], quality_rows: Sequence[QualityRow], meant: Sequence[str | None]
 ) -> tuple[TotalRow, ...]:
     """A total for each product characteristic, each characteristic in use that is named, and the rest.
 

@@ -34,15 +34,12 @@ class Meanings:
         scope = workspace.scope(path)
         word = workspace.project.qualities
         for each in scope.paths:
-            for entry in workspace.files[each].parsed.entries:
-                if isinstance(entry.item, Qualities) and entry.item.edition is not None:
-                    word = entry.item.edition.text
+            for item in workspace.files[each].of_type(Qualities):
+                word = item.edition.text if item.edition is not None else word
         self.edition: Edition = EDITIONS.get(word, DEFAULT_EDITION)
-        self._own: dict[str, QualityDecl] = {}
-        for name in scope.names(Kind.QUALITY):
-            definition = scope.find(Kind.QUALITY, name)
-            if definition is not None and isinstance(target := definition.symbol.target, QualityDecl):
-                self._own[fold(name)] = target
+        found = {fold(name): scope.find(Kind.QUALITY, name) for name in scope.names(Kind.QUALITY)}
+        targets = {name: each.symbol.target for name, each in found.items() if each is not None}
+        self._own = {name: each for name, each in targets.items() if isinstance(each, QualityDecl)}
 
     def of(self, name: str) -> Meaning:
         """The meaning of a name, or of names joined by dots."""
