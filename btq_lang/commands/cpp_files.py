@@ -106,12 +106,13 @@ class CppFiles:
         changed = [path for path, text in texts.items() if state.get(path) != text]
         self._store.advance({**state, **texts}, changed)
         nodes = self._store.ask(_nodes, *texts)
-        wrong = findings(nodes, texts)
+        wrong, home = findings(nodes, texts), f"{root.rstrip('/')}/"
         of_path: dict[str, dict[str, CppNode]] = {path: {} for path in texts}
         for node in nodes.nodes:
             of_path[node.place.path][node.name] = node
         for path, text in texts.items():
-            found = tuple(_shown_from(root, each) for each in wrong.get(path, ()))
+            named = ((each, each.message.replace(home, "")) for each in wrong.get(path, ()))  # as people see files
+            found = tuple(replace(each, message=message) for each, message in named)
             known = self._files.get(path)
             before = known.origin if known is not None else None
             if before is None or (before.text, before.nodes, before.diagnostics) != (text, of_path[path], found):
@@ -198,11 +199,6 @@ def _pieces(models: str, path: str, text: str, nodes: Mapping[str, CppNode]) -> 
 
 def _span(start: int, part: Placed) -> Span:
     return Span(part.start, part.end).shifted(start)
-
-
-def _shown_from(root: str, diagnostic: Diagnostic) -> Diagnostic:
-    """A diagnostic that names files as people see them."""
-    return replace(diagnostic, message=diagnostic.message.replace(f"{root.rstrip('/')}/", ""))
 
 
 def _problem(home: Found, pattern: str, message: str) -> LoadProblem:

@@ -15,7 +15,7 @@ from btq_lang.btcpp.recognition import is_mission
 from btq_lang.commands.files import STDIN, Files, Group
 from btq_lang.commands.git import Commit, revisions
 from btq_lang.commands.opening import Disk
-from btq_lang.commands.options import Refused
+from btq_lang.commands.options import Refused, refuse
 from btq_lang.commands.output import is_coloured
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.diff import Place, as_json, as_markdown, as_text
@@ -88,7 +88,7 @@ def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[Comparis
     old, new = (None if path == os.devnull else absolute(path) for path in paths)
     # Checked before paths are normalised, so that messages name them as on the command line.
     missing = (path for path in (old, new) if path is not None and not os.path.exists(path))
-    _raise(tuple(LoadProblem(path, f"cannot be read: {os.strerror(errno.ENOENT)}") for path in missing))
+    refuse(*(LoadProblem(path, f"cannot be read: {os.strerror(errno.ENOENT)}") for path in missing))
     if old is not None and new is not None and os.path.isdir(old) != os.path.isdir(new):
         # As in `diff`: a file and a folder compare with the file of that name in the folder.
         old = f"{old}/{os.path.basename(new)}" if os.path.isdir(old) else old
@@ -179,7 +179,7 @@ def _xml_below(folder: str) -> tuple[str, ...]:
     """The XML files below a folder to compare: without those built from a .btq file that is there."""
     project = find_project(folder).project
     paths, problems = collect([folder], project, (".xml", *SUFFIXES))
-    _raise(problems)
+    refuse(*problems)
     sources = {os.path.basename(path) for path in paths if not path.endswith(".xml")}
     texts = {path: read(path)[0] or "" for path in paths if path.endswith(".xml")}
     return tuple(path for path, xml in texts.items() if is_mission(xml) and not is_built_of(xml, sources))
@@ -187,13 +187,8 @@ def _xml_below(folder: str) -> tuple[str, ...]:
 
 def _groups(paths: list[str], stdin_filename: str | None = None) -> tuple[Group, ...]:
     groups, problems = Files().groups(paths, stdin_filename)
-    _raise(problems)
+    refuse(*problems)
     return groups
-
-
-def _raise(problems: tuple[LoadProblem, ...]) -> None:
-    if problems:
-        raise Refused(*problems)
 
 
 # ---- revisions ----

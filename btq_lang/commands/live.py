@@ -16,7 +16,7 @@ from btq_lang.commands.candidates import candidates
 from btq_lang.commands.files import usage_problem
 from btq_lang.commands.live_lines import Lines
 from btq_lang.commands.live_screen import Screen, is_screen
-from btq_lang.commands.options import Refused, refuse
+from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_of, form_problem, is_coloured
 from btq_lang.commands.stored import name_problem, opened, store_of_project
 from btq_lang.commands.verdict_events import events_problem
@@ -37,8 +37,7 @@ def run(options: Namespace) -> int:
     problems: list[str] = []
     missions = candidates(options.mission, (), problems)
     keeping = opened(options, problems)
-    if problems:
-        raise Refused(*problems)
+    refuse(*problems)
     address = options.live
     entries = {signal.entry for mission in missions for signal in mission.requirements.signals.values()} - {""}
     form = form_of(options, FORMATS)

@@ -36,9 +36,7 @@ def requested(files: Files, options: CheckOptions) -> tuple[ParameterFile, ...]:
         return file.path.startswith(tuple(folders)) and not excluder(file.project)(file.path)
 
     wanted = [each for each in files.parameter_files if is_requested(each)]
-    found = tuple(
-        {each.path: each for each in reversed(wanted)}.values()
-    )  # with the project of trees, if there are any
+    found = tuple({each.path: each for each in reversed(wanted)}.values())  # with the project of trees, if any
     if options.since:
         from btq_lang.commands.since import has_changed
 

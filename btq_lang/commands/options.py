@@ -13,10 +13,10 @@ class Refused(Exception):
     """What a command line asks for is wrong or cannot be done; each argument says why."""
 
 
-def refuse(problem: str | None) -> None:
+def refuse(*problems: object) -> None:
     """Raise `Refused` if there is a problem."""
-    if problem:
-        raise Refused(problem)
+    if found := [*filter(None, problems)]:
+        raise Refused(*found)
 
 
 class CheckOptions:

@@ -38,7 +38,7 @@ def verdicts_for(given: Sequence[str], groups: Sequence[Group], problems: list[s
         logs = [path for path in logs_of(find_project(".").project) if os.path.exists(path)]
         if not logs:
             return None
-    stores = [path for path in logs if _is_store(path)]
+    stores = [path for path in logs if glob(os.path.join(escape(path), "*", ABOUT))]  # of btq verify --store
     instead = "write its verdicts with btq verify --store {} -o verdicts.json, and give that file"
     problems += [f"{path}: a store; {instead.format(path)}" for path in stores]
     logs = [path for path in logs if path not in stores]
@@ -52,11 +52,6 @@ def verdicts_for(given: Sequence[str], groups: Sequence[Group], problems: list[s
     if problems and not found:
         return None
     return lambda mission: found.get(mission) or found.get(name_of(mission), [])
-
-
-def _is_store(path: str) -> bool:
-    """Whether it is a folder where `btq verify` keeps verdicts."""
-    return bool(glob(os.path.join(escape(path), "*", ABOUT)))
 
 
 def _read(path: str, missions: set[str], found: dict[str, list[RequirementVerdict]], problems: list[str]) -> None:

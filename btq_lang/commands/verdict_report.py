@@ -7,7 +7,7 @@ from argparse import Namespace
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from btq_lang.commands.options import Refused
+from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_of, is_coloured, terminal_width, write_output
 from btq_lang.commands.verdict_events import write_events
 from btq_lang.commands.verdict_formats import FORMATS, write
@@ -34,8 +34,7 @@ def finish(options: Namespace, found: Verification, missions: Sequence[Candidate
     code = print_report(options, report, missions)
     if options.events is not None:
         write_events(options.events, report, logs)
-    if found.problems:
-        raise Refused(*found.problems)
+    refuse(*found.problems)
     return code
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.commands.candidates import candidates
 from btq_lang.commands.files import usage_problem
-from btq_lang.commands.options import Refused, refuse
+from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_of, form_problem
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.stored import opened, reads_store, store_problem, summarise
@@ -54,8 +54,7 @@ def run(options: Namespace) -> int:
     home = find_project(next(roots, "."))
     sources, of_files = signal_sources(home.project, shown(home.path or home.project.root), missions, problems)
     keeping = opened(options, problems)
-    if problems:
-        raise Refused(*problems)
+    refuse(*problems)
     with Progress(len(logs), "read") as progress:
         to_editor = progress_to_editor(len(logs)) if options.summary is not None else None
         means = Means(

@@ -99,9 +99,8 @@ def _contents(item: Item, added: bool) -> Iterator[Detail]:
 def _by_name(items: Iterable[Item]) -> dict[tuple[str, object], Item]:
     found: dict[tuple[str, object], Item] = {}
     for item in items:
-        name = (
-            item.values[""].key if item.thing == "apply" else item.name
-        )  # their name is their text, however it is spelt
+        # The name of an `apply` is its text, however it is spelt.
+        name = item.values[""].key if item.thing == "apply" else item.name
         found.setdefault((item.thing, name), item)
     return found
 

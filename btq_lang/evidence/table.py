@@ -68,7 +68,8 @@ def requirement_rows(
         title = requirement.title
         name = requirement.id
         for clause in sorted(requirement.clauses, key=lambda each: _ORDER.index(each.verdict)):
-            texts = [name, title, _clause(clause, requirement), result(clause), _hint(clause)]
+            hint = "give them with --signals FILE" if clause.why.startswith(NO_SAMPLES) else ""
+            texts = [name, title, _clause(clause, requirement), result(clause), hint]
             below: Sequence[str] = [*_explanation(clause, medians, verbose)] if clause.verdict == VIOLATED else []
             rows.append((clause.verdict, [printable(text) for text in texts], below))
             name = title = ""  # shown once
@@ -107,11 +108,6 @@ def _explanation(clause: ClauseVerdict, medians: Mapping[str, float], verbose: b
         yield from (explained(clause, each, medians) for each in others[:_FURTHER])
         if clause.violated - 1 > _FURTHER:
             yield f"… {clause.violated - 1 - _FURTHER} more; --format json has them"
-
-
-def _hint(clause: ClauseVerdict) -> str:
-    """What to do about it."""
-    return "give them with --signals FILE" if clause.why.startswith(NO_SAMPLES) else ""
 
 
 def _summary(mission: MissionVerdicts) -> Iterator[str]:

@@ -38,12 +38,6 @@ def _readable(seconds: float) -> Unit:
     return _HOUR if seconds >= 7200 else _MINUTE if seconds >= 120 else _SECOND
 
 
-def _unit(symbol: str) -> Unit:
-    found = parse_unit(symbol)
-    assert found is not None, "it is one"
-    return found
-
-
 def share(probability: float) -> str:
     """A fraction of one as a percentage, with three digits, or more if rounding would give 0 or 100 %."""
     percent = probability * 100
@@ -82,5 +76,5 @@ def time_of(text: str) -> int:
     return (datetime.fromisoformat(text.replace("Z", "+00:00")) - _EPOCH) // timedelta(microseconds=1)
 
 
-_MILLISECOND, _SECOND, _MINUTE, _HOUR = map(_unit, ("ms", "s", "min", "h"))
+_MILLISECOND, _SECOND, _MINUTE, _HOUR = filter(None, map(parse_unit, ("ms", "s", "min", "h")))
 _EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)

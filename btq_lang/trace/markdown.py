@@ -41,10 +41,7 @@ def _lines(overview: Overview) -> Iterator[str]:
 def _requirement(each: RequirementRow, has_evidence: bool) -> tuple[str, ...]:
     cell = [f"**{escaped(each.name)}**", *([escaped(each.title)] if each.title else [])]
     cell += [code(clause) for clause in each.clauses]
-    subjects = []
-    for use in each.uses:
-        how = remarks(each, use)
-        subjects.append(_node(use.subject + use.arguments, use.at) + (f", {how}" if how else ""))
+    subjects = [", ".join((_node(use.subject + use.arguments, use.at), *remarks(each, use))) for use in each.uses]
     how = "<br>".join((each.way, *each.whys))
     seen = "<br>".join(f"**{verdict}** {escaped(text)}" for verdict, text in evidence_lines(each)) or "none"
     return (

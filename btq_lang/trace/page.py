@@ -131,7 +131,7 @@ def _subjects(each: RequirementRow) -> str:
         name = escape(use.subject)
         shown = f'<a href="#{use.nodes[0]}">{name}</a>' if use.nodes else name
         given = f' <code class="given">{escape(use.arguments)}</code>' if use.arguments else ""
-        how = f" <small>{escape(text)}</small>" if (text := remarks(each, use)) else ""
+        how = f" <small>{escape(text)}</small>" if (text := ", ".join(remarks(each, use))) else ""
         lines.append(f"<li>{shown}{given}{how} {_at(use.at)}</li>")
     return f"<ul>{''.join(lines)}</ul>"
 

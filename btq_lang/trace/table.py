@@ -69,12 +69,8 @@ def _folder(overview: Overview) -> str:
     places += [node.at for node in overview.nodes]
     places += [quality.at for quality in overview.qualities]
     folders = [at.path.rpartition("/")[0] for at in places]
-    return os.path.commonpath(folders).replace(os.sep, "/") if folders and all(map(_is_relative, folders)) else ""
-
-
-def _is_relative(folder: str) -> bool:
-    """Whether a folder is below the current one."""
-    return bool(folder) and not folder.startswith(("/", "..")) and ":" not in folder
+    are_below = all(each and not each.startswith(("/", "..")) and ":" not in each for each in folders)
+    return os.path.commonpath(folders).replace(os.sep, "/") if folders and are_below else ""
 
 
 def _at(at: At, folder: str) -> str:
@@ -82,10 +78,9 @@ def _at(at: At, folder: str) -> str:
 
 
 def _requirement(each: RequirementRow, folder: str) -> tuple[Sequence[str], ...]:
-    subjects = []
-    for use in each.uses:
-        how = remarks(each, use)
-        subjects.append(f"{use.subject}{use.arguments}, {_at(use.at, folder)}" + (f", {how}" if how else ""))
+    subjects = [
+        ", ".join((f"{use.subject}{use.arguments}", _at(use.at, folder), *remarks(each, use))) for use in each.uses
+    ]
     lines = [f"{each.name}, {_at(each.at, folder)}", *([each.title] if each.title else []), *each.clauses]
     lines += [f"for {each.quality}"] if each.quality else []
     lines[1:] = [f"  {line}" for line in lines[1:]]

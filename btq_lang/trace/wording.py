@@ -49,14 +49,14 @@ def evidence_lines(requirement: RequirementRow) -> Iterator[tuple[Verdict, str]]
         yield each.verdict, f"{' '.join(parts)}: {each.result}" if parts else each.result
 
 
-def remarks(requirement: RequirementRow, use: Use) -> str:
+def remarks(requirement: RequirementRow, use: Use) -> Iterator[str]:
     """The remarks on a subject: how its requirement is attached, unless by `satisfies`, and how it is covered, unless
     that is the same for all.
     """
-    parts = [_ATTACHED[use.how]]
+    if use.how in _ATTACHED:
+        yield _ATTACHED[use.how]
     if "," in requirement.way:
-        parts.append(", ".join(dict.fromkeys(clause.way for clause in use.clauses)))
-    return ", ".join(filter(None, parts))
+        yield from dict.fromkeys(clause.way for clause in use.clauses)
 
 
 GAPS: Final = {
@@ -67,4 +67,4 @@ GAPS: Final = {
     "bare_trees": "Trees without any quality",
     "bare_nodes": "Custom leaf nodes without any quality",
 }
-_ATTACHED: Final = {"subject": "", "satisfies": "", "apply": "by apply", "link": "a link only"}
+_ATTACHED: Final = {"apply": "by apply", "link": "a link only"}
