@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.evaluate import Findings, MissionEvaluation
 from btq_lang.evidence.identity import Candidate, difference
-from btq_lang.evidence.model import Series
+from btq_lang.evidence.model import ROOT, Series
 from btq_lang.evidence.named_runs import joined_sessions
 from btq_lang.evidence.odds import Limits
 from btq_lang.evidence.readers import NotALog, read
-from btq_lang.evidence.runs import count_runs
+from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signals import by_signal
 from btq_lang.evidence.verdicts import Foreign, Report
 from btq_lang.util.record import Record, replace
@@ -116,7 +116,7 @@ def _judged(
             if isinstance(joined, str):
                 if running is not None:
                     running.foreign(difference(missions, session.tree))
-                number = count_runs(session)
+                number = sum(each.uid == ROOT for each in activations(session))
                 known = foreign.get((source, joined))
                 what = known or Foreign(source, 0, joined, difference(missions, session.tree))
                 foreign[source, joined] = replace(what, runs=what.runs + number)

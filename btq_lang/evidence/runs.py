@@ -102,11 +102,6 @@ def activations(session: Session) -> Iterator[Activation]:
     session.remarks.extend(odd.remarks())
 
 
-def count_runs(session: Session) -> int:
-    """How many runs a session holds."""
-    return sum(activation.uid == ROOT for activation in activations(session))
-
-
 class _OpenNodes:
     """The nodes that are active.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Final
 
 from btq_lang.evidence.compare.comparison import WORSE, Comparison
 from btq_lang.evidence.compare.words import difference, heading, remarks, subject, turn
@@ -17,10 +16,10 @@ def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
 
 def _lines(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
     yield heading(comparison, sides)
-    rows = [(_NEWLY, f"{each.id}  {each.title}".rstrip(), turn(each)) for each in comparison.newly]
+    rows = [("newly violated", f"{each.id}  {each.title}".rstrip(), turn(each)) for each in comparison.newly]
     changes = sorted((each for each in comparison.changes if each.finding), key=lambda each: each.finding not in WORSE)
     rows += [(each.finding, subject(each), difference(each)) for each in changes]
-    rows += [(_NO_LONGER, f"{each.id}  {each.title}".rstrip(), turn(each)) for each in comparison.no_longer]
+    rows += [("no longer violated", f"{each.id}  {each.title}".rstrip(), turn(each)) for each in comparison.no_longer]
     if rows:
         yield ""
     left, middle = (max(cells_of(row[column]) for row in rows) if rows else 0 for column in (0, 1))
@@ -29,7 +28,3 @@ def _lines(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
         yield f"  {word:{left}}  {about}{blanks}  {change}"
     if notes := [*remarks(comparison, sides)]:
         yield from ("", *notes)
-
-
-_NEWLY: Final = "newly violated"
-_NO_LONGER: Final = "no longer violated"

@@ -245,7 +245,8 @@ class _WholeFile(Record):
     def open(self, _: str) -> BinaryIO:
         file = open(self.path, "rb")  # noqa: SIM115  # `rosbags` closes it
         size = os.fstat(file.fileno()).st_size
-        if _has_end(file, size):
+        file.seek(max(0, size - len(MCAP)))
+        if file.read() == MCAP and size > len(MCAP):  # it has an end
             file.seek(0)
             return file
         parts = _whole_records(file, size)
@@ -254,11 +255,6 @@ class _WholeFile(Record):
 
     def __str__(self) -> str:
         return self.path
-
-
-def _has_end(file: BinaryIO, size: int) -> bool:
-    file.seek(max(0, size - len(MCAP)))
-    return file.read() == MCAP and size > len(MCAP)
 
 
 def _whole_records(file: BinaryIO, size: int) -> list[tuple[int, int]]:
