@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import engine_simulator as engine
 from check_asserts import workspace_of
 from random_guards import Guarded
+from requirement_problems import problems_of
 
 from btq_lang.btcpp.marks import MARK
 from btq_lang.diagnostics.rules import Severity
@@ -75,7 +76,7 @@ def case(seed: int) -> Case:
     while True:
         text = mission(chance)
         candidate = Candidate(workspace_of({"main.btq": text}), "main.btq", "main", None)
-        problems = [each.diagnostic for each in candidate.requirements.problems]
+        problems = [each.diagnostic for each in problems_of(candidate.requirements)]
         assert not any(each.severity == Severity.ERROR for each in problems), (text, problems)
         build = next(candidate.builds())
         elements = [each.element for each, _ in build.running.all]
