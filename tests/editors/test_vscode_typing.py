@@ -126,6 +126,7 @@ def test_the_tree_is_shown_and_the_xml_converted(window: Workbench) -> None:
     (window.folder / "trees.btq").unlink()
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize(
     ("closing", "pause"), of_the_day([("languageDefined", 0), ("never", 0), ("languageDefined", 300)], 3)
 )
@@ -211,6 +212,7 @@ def code(served: Workbench) -> Iterator[Workbench]:
     served.clean()
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize("piece", of_the_day(range(len(PIECES)), len(PIECES)))
 def test_a_mission_that_is_typed_is_saved(code: Workbench, piece: int) -> None:
     """The first piece, the mission of the README, with another pause each time."""
@@ -244,6 +246,7 @@ def shows_no_list(code: Workbench) -> bool:
     return not code.page.locator(LIST).count()
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize(
     ("text", "typed", "asked"),
     of_the_day(
@@ -307,6 +310,7 @@ def test_enter_after_a_word_that_begins_another_is_a_line_break(code: Workbench)
     assert path.read_text(encoding="utf-8").rstrip(" ") == "BehaviorTree Main\n    Retry\n"
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize(
     ("text", "typed", "label", "after"),
     of_the_day(

@@ -366,6 +366,7 @@ def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None
     assert session.close(skills) == (skills,)
 
 
+@pytest.mark.by_turns
 def test_what_edits_replace_goes_when_it_is_swept(folder: Path) -> None:
     main = f"{folder}/main.btq"
     session = session_of(folder, {})

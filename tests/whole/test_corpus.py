@@ -77,6 +77,7 @@ def imported(corpus: dict[str, str]) -> Callable[[bool], dict[str, Imported]]:
     return imported
 
 
+@pytest.mark.by_turns
 def test_an_import_has_no_mistake_and_is_formatted(imported: Callable[[bool], dict[str, Imported]]) -> None:
     texts = {each.text: name for keep_v3 in (True, False) for name, each in imported(keep_v3).items()}
     for text in texts:
@@ -112,6 +113,7 @@ def test_what_was_version_3_can_be_built(imported: Callable[[bool], dict[str, Im
     assert count > 100
 
 
+@pytest.mark.by_turns
 def test_diagnostics_point_at_the_words_of_the_xml(
     corpus: dict[str, str], found: dict[str, tuple[Diagnostic, ...]]
 ) -> None:
@@ -151,6 +153,7 @@ def test_verdicts_as_the_engine_has_them(found: dict[str, tuple[Diagnostic, ...]
 REFUSED_BY_XSD = {"unknown-node", "not-an-engine-node", "xml-ignored"}
 
 
+@pytest.mark.by_turns
 def test_files_without_an_error_are_valid_by_the_xsd_of_their_nodes(
     corpus: dict[str, str], found: dict[str, tuple[Diagnostic, ...]]
 ) -> None:
