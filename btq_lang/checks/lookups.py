@@ -256,6 +256,12 @@ def items(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
 
 
 @of_viewpoint
+def first_tree(workspace: Workspace, viewpoint: str) -> Facts | None:
+    """The file's first tree: an edit of another one does not change it, as it changes `trees`."""
+    return next((each for each in workspace.files[viewpoint].facts.values() if isinstance(each.item, Tree)), None)
+
+
+@of_viewpoint
 def trees(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
     """The file's trees, in order."""
     return tuple([each for each in workspace.files[viewpoint].facts.values() if isinstance(each.item, Tree)])

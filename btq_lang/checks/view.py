@@ -369,11 +369,11 @@ def _torn_places(store: Store[Workspace], viewpoint: str, facts: Facts) -> list[
 
 
 def _has_trees(store: Store[Workspace], viewpoint: str) -> bool:
-    return bool(lookups.trees(store, viewpoint))
+    return lookups.first_tree(store, viewpoint) is not None
 
 
 def _is_first_tree(store: Store[Workspace], viewpoint: str, tree: Facts) -> bool:
-    return lookups.trees(store, viewpoint)[:1] == (tree,)
+    return lookups.first_tree(store, viewpoint) is tree
 
 
 def _is_main_tree(store: Store[Workspace], viewpoint: str, name: str) -> bool | None:
