@@ -20,5 +20,5 @@ marks       what a build puts into the XML so that an import knows it
 recognition which XML is the engine's, and what it defines
 typed_xml   the tag at a place of XML that is being typed
 
-One invariant: no other package knows XML.
+One invariant: no other package reads or writes the engine's XML.
 """

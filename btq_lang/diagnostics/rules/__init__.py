@@ -1,6 +1,6 @@
 """The rules: one row a rule, one page a rule (`<name>.md` beside this file), which is its documentation and its test.
 
-The table knows names, severities and one line each; detection lives in the lexer, the parser and `checks/`.
+The table knows names, severities and one line each; what a rule finds is found elsewhere, mostly in `checks/`.
 """
 
 from __future__ import annotations
