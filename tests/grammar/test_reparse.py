@@ -226,8 +226,9 @@ def test_a_line_index_that_is_patched_is_that_of_the_text(seed: int) -> None:
 
 def test_the_file_after_an_edit_keeps_what_is_known_of_its_items() -> None:
     before = Workspace.of({"/f": "BehaviorTree A\n    X\nBehaviorTree B\n    Y\n"})
-    known = before.files["/f"].summaries
+    known, _ = before.files["/f"].facts.values()
     after = before.with_file("/f", "BehaviorTree A\n    X\nBehaviorTree B\n    YY\n").files["/f"]
-    assert after.summaries[0] is known[0]
-    assert [use.name for use in after.summaries[1].uses] == ["YY"]
+    same, edited = after.facts.values()
+    assert same is known
+    assert [use.name for use in edited.summary.uses] == ["YY"]
     assert after == Workspace.of({"/f": after.text}).files["/f"]

@@ -27,7 +27,7 @@ VERBS["rests"] = Verb(
 from btq_lang.evidence.verbs import JUDGES, duration, judged
 
 JUDGES["rests"] = lambda claim, activation, observed: judged(
-    claim, duration(claim.limit, activation, observed), activation
+    claim, duration(claim, activation, observed), activation
 )
 
 from btq_lang.cli import main
