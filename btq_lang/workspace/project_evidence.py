@@ -15,7 +15,7 @@ topics.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import inf
+from sys import float_info
 from typing import Any, Final, TypeAlias
 
 from btq_lang.catalog.units import Unit, nearest_units, parse_unit
@@ -102,7 +102,7 @@ def _wrong(name: str, source: Any) -> Iterator[Complaint]:
             yield f"`{key}.{each}` must be a string", (each,)
     for each in NUMBERS:
         number = source.get(each, 0.0)
-        if isinstance(number, bool) or not isinstance(number, int | float) or not abs(number) < inf:
+        if isinstance(number, bool) or not isinstance(number, int | float) or not abs(number) <= float_info.max:
             yield f"`{key}.{each}` must be a number", (each,)
     unit = source.get("unit")
     if isinstance(unit, str) and unit and parse_unit(unit) is None:

@@ -109,7 +109,7 @@ driver() {
     # In CI with what the tests need: while apt and npm work, and by one pip, for two would write the same packages.  pip
     # would compile them on one core, with their tests and what no test of ours imports as a whole; a file of theirs that
     # is no valid Python does no harm.
-    # A pip of before 2024 spends half of its time on comparing each file of each package with all of Python's tags.
+    # pip 23.2 spends half of its time on comparing each file of each package with all of Python's tags.
     [ -z "${BTQ_CI:-}" ] || "$python" -m pip install -q --no-compile --upgrade pip
     "$python" -c 'import playwright' 2>/dev/null ||
         "$python" -m pip install -q ${BTQ_CI:+--no-compile} 'playwright>=1.49,<2' ${BTQ_CI:+'.[test]'}

@@ -83,6 +83,10 @@ SIGNALS = "[evidence.signals]\n"
             f'{SIGNALS}a = {{ topic = "/x", field = "y", offset = inf }}',
             "2:34: `evidence.signals.a.offset` must be a number",
         ),
+        (  # as an integer it is finite, but no float
+            f'{SIGNALS}a = {{ topic = "/x", field = "y", offset = 1{"0" * 400} }}',
+            "2:34: `evidence.signals.a.offset` must be a number",
+        ),
         (f'{SIGNALS}a = {{ topic = "", field = "y" }}', "2:7: `evidence.signals.a.topic` must be a string"),
     ],
 )
