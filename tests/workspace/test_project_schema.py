@@ -114,7 +114,8 @@ def test_it_agrees_with_the_reader(text: str) -> None:
         assert problems
         return
     messages = [problem.message for problem in problems]
-    expressible = [each for each in messages if "unknown unit" not in each and "= inf" not in text]
+    is_too_large = "= inf" in text or "0" * 400 in text  # a schema knows numbers of any size
+    expressible = [each for each in messages if "unknown unit" not in each and not is_too_large]
     assert bool(list(violations(table, SCHEMA))) == bool(expressible)
 
 
