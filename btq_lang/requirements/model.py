@@ -12,7 +12,8 @@ from typing import Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import Dimension, Unit
 from btq_lang.diagnostics.model import Place
-from btq_lang.util.record import Record, values_of
+from btq_lang.util.fields import values_of
+from btq_lang.util.record import Record
 from btq_lang.workspace.resolved import ResolvedNode
 
 Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]

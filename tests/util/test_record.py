@@ -2,7 +2,8 @@ import pickle
 
 import pytest
 
-from btq_lang.util.record import Part, Record, fields_of, replace
+from btq_lang.util.fields import fields_of
+from btq_lang.util.record import Part, Record, replace
 
 
 class Point(Record):
@@ -49,14 +50,6 @@ def test_replace_repr_match_pickle() -> None:
     match Point(1, 2):
         case Point(x, 2):
             assert x == 1
-
-
-def test_a_default_before_a_field_without_is_refused() -> None:
-    with pytest.raises(TypeError, match="without a default follows"):
-
-        class Wrong(Record):
-            a: int = 1
-            b: int  # type: ignore[misc]
 
 
 def test_a_part_begins_with_its_place() -> None:
