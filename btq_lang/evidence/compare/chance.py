@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+from itertools import chain
 from math import comb, exp, lgamma, prod
 from operator import itemgetter, mul
-from typing import Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from btq_lang.util.grouping import grouped
 
@@ -34,12 +35,14 @@ class Shuffles:
         fewer = Counter(first if len(first) <= len(second) else second)
         parted = [(units, fewer[stratum]) for stratum, units in strata.items() if 0 < fewer[stratum] < len(units)]
         self._first: Final = len(first)
+        self._number: Final = number
         # That of a zero, twice, for `itemgetter` gives no tuple for a single index.
         zero = len(first) + len(second)
-        self._sides: Final = [
+        self._to_draw: Final = (
             itemgetter(zero, zero, *(at for units, size in parted for at in chance.sample(units, size)))
             for _ in range(number)
-        ]
+        )
+        self._drawn: Final[list[itemgetter[Any]]] = []  # only as many as a difference has needed
 
     def probability(self, scores: Sequence[int]) -> float:
         """The p-value of the difference between the sides, in both directions.
@@ -53,13 +56,18 @@ class Shuffles:
         if not observed:
             return 1.0
         padded = [*scores, 0]
-        beyond, enough = 0, LEVEL * (len(self._sides) + 1)
-        for number, side in enumerate(self._sides, start=1):
+        beyond, enough = 0, LEVEL * (self._number + 1)
+        for number, side in enumerate(chain(self._drawn, self._draw()), start=1):
             if abs(sum(side(padded))) >= observed:
                 beyond += 1
                 if beyond > enough:
                     return beyond / number
-        return (beyond + 1) / (len(self._sides) + 1)
+        return (beyond + 1) / (self._number + 1)
+
+    def _draw(self) -> Iterator[itemgetter[Any]]:
+        for side in self._to_draw:
+            self._drawn.append(side)
+            yield side
 
 
 def shuffles_for(comparisons: int) -> int:
