@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from datetime import date
 from itertools import islice
 from typing import TypeVar
+from zlib import crc32
 
 from hypothesis import settings
 
@@ -25,9 +26,9 @@ def of_the_day(every: Iterable[T], share: int) -> list[T]:
     return list(every if takes_all() else islice(every, NUMBER % share, None, share))
 
 
-def of_the_week(every: Iterable[T], share: int) -> list[T]:
-    """One in so many, for eight days: as long as it takes until all of what goes by days has come."""
-    return list(every if takes_all() else islice(every, NUMBER // 8 % share, None, share))
+def is_its_day(name: str) -> bool:
+    """Every name has one day of the week, whatever others there are."""
+    return takes_all() or crc32(name.encode()) % 7 == NUMBER % 7
 
 
 def takes_all() -> bool:

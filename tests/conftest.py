@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from build_command import btq as btq  # a fixture of every folder
-from by_day import DAY, of_the_week
+from by_day import DAY, is_its_day
 from hypothesis import settings
 from strict_queries import strict_queries as strict_queries  # a fixture of some tests
 
@@ -61,12 +61,11 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """The same order in every worker; in CI, of what goes by turns those of the week."""
+    """The same order in every worker; in CI, of what goes by turns what has its day."""
     longest = {stem: place for place, stem in enumerate(LONGEST)}
     items.sort(key=lambda item: (longest.get(item.path.stem, len(LONGEST)), item.path))
     if "BTQ_CI" in os.environ:
-        by_turns = [item for item in items if item.get_closest_marker("by_turns")]
-        left = {*by_turns}.difference(of_the_week(by_turns, 2))
+        left = {item for item in items if item.get_closest_marker("by_turns") and not is_its_day(item.nodeid)}
         config.hook.pytest_deselected(items=[*left])
         items[:] = [item for item in items if item not in left]
 

@@ -103,6 +103,7 @@ def test_what_declares_version_4(xml: str, expected: bool) -> None:
     assert declares_version_4(xml) is expected
 
 
+@pytest.mark.by_turns
 def test_words_of_published_files(shared: Path) -> None:
     """Every word of real trees, as another: what is placed is placed exactly."""
     placed = 0

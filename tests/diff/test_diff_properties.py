@@ -15,6 +15,8 @@ from btq_lang.diff import Change, compare
 from btq_lang.formatter import format_text
 from btq_lang.workspace.workspace import Workspace
 
+pytestmark = pytest.mark.by_turns
+
 INNER = ("->", "?", "R->")
 LEAVES = ("Pick", "Place", "MoveBase")
 

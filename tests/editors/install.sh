@@ -12,7 +12,7 @@ root=$(cd "$here/../.." && pwd)
 store=${BTQ_EDITORS:-$HOME/.cache/btq-editors}
 code_server=4.139.1
 node=24.21.0
-rare="tests|pip|setuptools|pkg_resources|mypyc?|pygments|rich|babel|backrefs|pymdownx"
+playwright="playwright>=1.49,<2"
 quiet="--ignore-scripts --no-audit --no-fund --loglevel=error" # options of npm
 mkdir -p "$store"
 
@@ -106,14 +106,15 @@ driver() {
     cd "$root"
     local python=.venv/bin/python
     [ -x "$python" ] || python3 -m venv .venv
-    # In CI with what the tests need: while apt and npm work, and by one pip, for two would write the same packages.  pip
-    # would compile them on one core, with their tests and what no test of ours imports as a whole; a file of theirs that
-    # is no valid Python does no harm.
-    # pip 23.2 spends half of its time on comparing each file of each package with all of Python's tags.
-    [ -z "${BTQ_CI:-}" ] || "$python" -m pip install -q --no-compile --upgrade pip
-    "$python" -c 'import playwright' 2>/dev/null ||
-        "$python" -m pip install -q ${BTQ_CI:+--no-compile} 'playwright>=1.49,<2' ${BTQ_CI:+'.[test]'}
-    [ -z "${BTQ_CI:-}" ] || "$python" -W ignore -m compileall -q -j 0 -x "/($rare)/" .venv/lib || true
+    if [ -z "${BTQ_CI:-}" ]; then
+        "$python" -c 'import playwright' 2>/dev/null || "$python" -m pip install -q "$playwright"
+        return
+    fi
+    # With what the tests need: while apt and npm work, and by one pip, for two would write the same
+    # packages.  pip 23.2 spends half of its time on comparing each file of each package with all of Python's tags, and
+    # would compile much that no test imports.
+    "$python" -m pip install -q --no-compile --upgrade pip
+    "$python" -m pip install -q --no-compile "$playwright" '.[test]'
 }
 
 neovim() { # suite: its packages are unpacked, and run with the C library that comes with them

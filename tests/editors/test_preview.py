@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 # On a busy machine the first picture may come again between a focus and a key: what fails is tried once more.
-pytestmark = pytest.mark.flaky(reruns=1)
+pytestmark = [pytest.mark.flaky(reruns=1), pytest.mark.by_turns]
 
 MISSION = """\
 QualityReq soon "In time"

@@ -19,6 +19,8 @@ from btq_lang.evidence.model import Session
 from btq_lang.evidence.verdicts import MissionVerdicts
 from btq_lang.util.record import replace
 
+pytestmark = pytest.mark.by_turns
+
 HERE = Path(__file__).parent
 
 

@@ -142,6 +142,7 @@ def test_xml_that_is_not_edited(other: str, reason: str) -> None:
     assert isinstance(prepare_rename(workspace, "trees.xml", workspace.files["trees.xml"].text.index("Dock")), Refusal)
 
 
+@pytest.mark.by_turns
 def test_names_of_published_files(shared: Path) -> None:
     """After a rename in real trees each word that meant the thing means it, nothing new is found, and renaming
     back restores the file."""

@@ -38,6 +38,7 @@ def hospital(tmp_path: Path) -> Path:
     return Path(shutil.copytree(HERE.parents[1] / "examples" / "hospital", tmp_path / "hospital"))
 
 
+@pytest.mark.by_turns
 def test_after_every_key_it_is_what_a_new_server_says(hospital: Path, request: pytest.FixtureRequest) -> None:
     numbers = range(1, KEYS + 1)
     sample = set(numbers if request.config.getoption("--every-key") else of_the_day(numbers, SHARE))

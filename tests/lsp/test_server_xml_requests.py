@@ -130,6 +130,7 @@ def test_written_and_damaged_xml(tmp_path: Path, seed: int) -> None:
     asked.end()
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize("seed", range(2))
 def test_xml_of_others(shared: Path, tmp_path: Path, seed: int) -> None:
     chance = random.Random(seed)

@@ -30,7 +30,10 @@ from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: only a browser can tell")
+pytestmark = [
+    pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: only a browser can tell"),
+    pytest.mark.by_turns,
+]
 
 # Every text inside its outline, and no two outlines over each other.
 MEASURE = """

@@ -123,6 +123,7 @@ def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.by_turns
 def test_what_is_compiled_reads_and_checks_as_the_pure_form(compiled: Path) -> None:
     draw = random.Random(1)
     texts = [path.read_bytes().decode("utf-8") for path in EXAMPLES]

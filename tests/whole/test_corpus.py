@@ -28,6 +28,8 @@ from btq_lang.parser import parse
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
 
+pytestmark = pytest.mark.by_turns
+
 # What does not come back, and why.
 LOST = {
     "BehaviorTree+Groot__test_data__crossdoor_palette.xml": "a stray `/>` between models, which every reader ignores",
@@ -77,7 +79,6 @@ def imported(corpus: dict[str, str]) -> Callable[[bool], dict[str, Imported]]:
     return imported
 
 
-@pytest.mark.by_turns
 def test_an_import_has_no_mistake_and_is_formatted(imported: Callable[[bool], dict[str, Imported]]) -> None:
     texts = {each.text: name for keep_v3 in (True, False) for name, each in imported(keep_v3).items()}
     for text in texts:
@@ -113,7 +114,6 @@ def test_what_was_version_3_can_be_built(imported: Callable[[bool], dict[str, Im
     assert count > 100
 
 
-@pytest.mark.by_turns
 def test_diagnostics_point_at_the_words_of_the_xml(
     corpus: dict[str, str], found: dict[str, tuple[Diagnostic, ...]]
 ) -> None:
@@ -153,7 +153,6 @@ def test_verdicts_as_the_engine_has_them(found: dict[str, tuple[Diagnostic, ...]
 REFUSED_BY_XSD = {"unknown-node", "not-an-engine-node", "xml-ignored"}
 
 
-@pytest.mark.by_turns
 def test_files_without_an_error_are_valid_by_the_xsd_of_their_nodes(
     corpus: dict[str, str], found: dict[str, tuple[Diagnostic, ...]]
 ) -> None:

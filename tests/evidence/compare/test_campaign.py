@@ -12,6 +12,8 @@ from in_process import run_btq
 
 from btq_lang.evidence.store import engine
 
+pytestmark = pytest.mark.by_turns
+
 VARIANTS: dict[str, tuple[dict[str, float], dict[str, float]]] = {
     "base": ({}, {}),
     "same": ({}, {}),

@@ -407,6 +407,7 @@ def test_writers_killed_at_any_moment(tmp_path: Path) -> None:
     assert found == expected
 
 
+@pytest.mark.by_turns
 def test_two_writers_at_once(tmp_path: Path) -> None:
     logs = logs_of(tmp_path, 12)
     assert writer(tmp_path, logs).wait() == 1

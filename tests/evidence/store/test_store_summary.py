@@ -269,12 +269,14 @@ def test_the_question_of_the_page(kept: Path, monkeypatch: pytest.MonkeyPatch) -
     ]
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize("parts", [(), ("label",), ("label", "robot")])
 def test_a_second_engine_says_the_same(parts: tuple[str, ...], kept: Path, polars: str) -> None:
     store = str(kept / "kept")
     assert summary(asked_by(polars, store), store, parts) == summary(engine.asked(store), store, parts)
 
 
+@pytest.mark.by_turns
 def test_a_second_engine_counts_windows_and_odds_alike(tmp_path: Path, polars: str) -> None:
     for seed in of_the_day(range(20), 4):
         store = tmp_path / str(seed)
