@@ -18,6 +18,8 @@ from btq_lang.syntax.tree import Tree
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
 
+pytestmark = pytest.mark.by_turns
+
 VERSIONS = ("4.6", "4.8", "4.10")
 
 

@@ -19,6 +19,8 @@ from btq_lang.parser import parse
 from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT
 from btq_lang.util.text import apply_edits
 
+pytestmark = pytest.mark.by_turns
+
 ROOT = Path(__file__).resolve().parents[2]
 EVERY_FORM = (ROOT / "tests" / "every_form.btq").read_text("utf-8")
 EXAMPLES = sorted(path for path in (ROOT / "examples").rglob("*") if path.suffix in (".btq", ".qualitybtcpp"))

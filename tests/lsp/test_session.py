@@ -19,6 +19,8 @@ from btq_lang.lsp.session import Session
 from btq_lang.workspace.queries import Store, _Answer
 from btq_lang.workspace.workspace import Workspace
 
+pytestmark = pytest.mark.by_turns
+
 MAIN = """include "skills.btq"
 include "requirements.btq"
 Root Main
@@ -366,7 +368,6 @@ def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None
     assert session.close(skills) == (skills,)
 
 
-@pytest.mark.by_turns
 def test_what_edits_replace_goes_when_it_is_swept(folder: Path) -> None:
     main = f"{folder}/main.btq"
     session = session_of(folder, {})

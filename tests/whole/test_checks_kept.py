@@ -24,6 +24,8 @@ from btq_lang.workspace.factories import Factory
 from btq_lang.workspace.resolved import ResolvedTree
 from btq_lang.workspace.workspace import Workspace
 
+pytestmark = pytest.mark.by_turns
+
 EVERY_FORM = (Path(__file__).parents[1] / "every_form.btq").read_text(encoding="utf-8")
 MAIN = """include "skills.btq"
 include "requirements.btq"

@@ -21,6 +21,8 @@ from btq_lang.util.record import replace
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
 
+pytestmark = pytest.mark.by_turns
+
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SUFFIXES = (".btq", ".qualitybtcpp")
 PROJECT = Project(include_paths=("shared",))  # as the hospital's

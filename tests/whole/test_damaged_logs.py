@@ -33,6 +33,8 @@ from btq_lang.evidence.verifying import verify
 from btq_lang.workspace.project_evidence import SignalSource
 from btq_lang.workspace.workspace import Workspace
 
+pytestmark = pytest.mark.by_turns
+
 TWO_RUNS = rows("0 1R 2R 5 2S 3S 1S 2I 3I 1I 20 1R 2R 30 2F 1F 2I 1I")
 CHANGES = tree_log(TWO_RUNS, names_of(MAIN_XML))
 DEMANDS = "QualityReq rq : safety\n    Move needs battery > 1 %\n    Move takes at most 6 ms\n"

@@ -14,6 +14,8 @@ from btq_lang.checks import check
 from btq_lang.render import Finding, Report, render
 from btq_lang.workspace.workspace import Workspace
 
+pytestmark = pytest.mark.by_turns
+
 T = TypeVar("T")
 MAIN = "main.btq"
 FEW, MANY = 100, 200

@@ -27,6 +27,8 @@ from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
+pytestmark = pytest.mark.by_turns
+
 MAIN = """include "skills.btq"
 include "requirements.btq"
 Root Main

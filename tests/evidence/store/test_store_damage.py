@@ -14,6 +14,8 @@ from in_process import run_btq
 from btq_lang.evidence.store.engine import NoEngine, asked
 from btq_lang.evidence.store.summary import summary
 
+pytestmark = pytest.mark.by_turns
+
 MISSION = "QualityReq quick : safety\n    Move takes at most 15 ms\n" + MAIN
 CASES, SHARE = 20_000, 400
 
