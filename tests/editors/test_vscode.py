@@ -155,6 +155,7 @@ def test_renaming_changes_both_files(code: Workbench) -> None:
     code.command("File: Save All")
     code.on_disk("visit.btq", MISSION.replace("soon_there", "punctual"))
     code.on_disk("demands.btq", REQUIREMENTS.replace("soon_there", "punctual"))
+    code.no_more(".tab.dirty")  # a file is on the disk before its tab says so
 
 
 def test_completion_offers_qualities_and_hover_explains_them(code: Workbench, artifacts: Path) -> None:
@@ -422,10 +423,10 @@ def test_logs_are_judged_as_a_bound_is_typed_and_a_run_is_stepped_through_in_the
     code.write("robot/btq.toml", '[evidence]\nlogs = ["run.btlog"]\n')
     log = code.write("robot/run.btlog", "")
     log.write_bytes(btlog(MAIN_XML, rows("0 1R 2R 20 2S 3R 60 3S 1S 1I 100 1R 2R 140 2S 3R 150 3S 1S")))
-    code.write("robot/main.btq", "QualityReq quick : safety\n    Move takes at most 30 ms\n" + MAIN)
-    code.open("robot/main.btq")
+    code.write("robot/judged.btq", "QualityReq quick : safety\n    Move takes at most 30 ms\n" + MAIN)
+    code.open("robot/judged.btq")
     code.see(".codelens-decoration:has-text('violated in 1 of 2 activations · worst 40 ms')")
-    (problem,) = [row for row in code.problems_of("main.btq", 1) if "`quick` is violated" in row]
+    (problem,) = [row for row in code.problems_of("judged.btq", 1) if "`quick` is violated" in row]
     assert "1 of 2 activations, worst 40 ms in run 2 btq requirement-violated [Ln 6, Col 16] Move::2:" in problem
     assert "took 40 ms, bound 30 ms" in problem
     code.focus()
@@ -433,7 +434,7 @@ def test_logs_are_judged_as_a_bound_is_typed_and_a_run_is_stepped_through_in_the
     code.keys("Delete")
     code.type("4")
     code.see(".codelens-decoration:has-text('held in 2 of 2 activations · worst 40 ms')")
-    code.no_problems_of("main.btq")
+    code.no_problems_of("judged.btq")
     code.focus()
     code.cursor(2, 25)
     code.keys("Backspace")
