@@ -12,7 +12,7 @@ from typing import Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import Dimension, Unit
 from btq_lang.diagnostics.model import Place
-from btq_lang.util.fields import values_of
+from btq_lang.util.fields import as_dict
 from btq_lang.util.record import Record
 from btq_lang.workspace.resolved import ResolvedNode
 
@@ -504,7 +504,7 @@ def parts_in(part: object) -> Iterator[object]:
                 contexts.add(part.name)
             yield part
             if not isinstance(part, Signal):
-                waiting += reversed(values_of(part))
+                waiting += reversed(as_dict(part).values())
 
 
 _CLASSES: Final = frozenset([each for each in globals().values() if getattr(each, "__module__", "") == __name__])

@@ -10,11 +10,6 @@ def as_dict(part: object) -> dict[str, Any]:
     return {field: getattr(part, field) for field in fields_of(part)}
 
 
-def values_of(part: object) -> tuple[Any, ...]:
-    """The values of the fields, in order."""
-    return tuple([getattr(part, field) for field in fields_of(part)])
-
-
 def fields_of(part: object) -> tuple[str, ...]:
     """The names of the fields, in order."""
     return type(part).__match_args__  # type: ignore[attr-defined, no-any-return]  # `part` may be of any class

@@ -19,8 +19,6 @@ from btq_lang.lsp.session import Session
 from btq_lang.workspace.queries import Store, _Answer
 from btq_lang.workspace.workspace import Workspace
 
-pytestmark = pytest.mark.by_turns
-
 MAIN = """include "skills.btq"
 include "requirements.btq"
 Root Main
@@ -136,6 +134,7 @@ def session_of(folder: Path, texts: dict[str, str]) -> Session:
     return session
 
 
+@pytest.mark.by_turns
 @pytest.mark.usefixtures("strict_queries")
 @pytest.mark.parametrize("seed", range(4))
 def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -182,6 +181,7 @@ def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monke
                 known[path] = coloured
 
 
+@pytest.mark.by_turns
 @pytest.mark.usefixtures("strict_queries")
 @pytest.mark.parametrize("seed", range(4))
 def test_files_come_and_go_and_the_project_changes(folder: Path, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -368,6 +368,7 @@ def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None
     assert session.close(skills) == (skills,)
 
 
+@pytest.mark.by_turns
 def test_what_edits_replace_goes_when_it_is_swept(folder: Path) -> None:
     main = f"{folder}/main.btq"
     session = session_of(folder, {})

@@ -24,8 +24,6 @@ from btq_lang.cli import main
 from btq_lang.evidence.model import NamedLog
 from btq_lang.evidence.readers import read, unpacking
 
-pytestmark = pytest.mark.by_turns
-
 LIMIT = "QualityReq rq : safety\n    Move takes at most 10 ms\n"
 NAMES = names_of(MAIN_XML)
 TWO_RUNS = "0 1R 2R 8 2S 3S 1S 2I 3I 1I 50 1R 2R 70 2F 1F 2I 1I"
