@@ -227,6 +227,7 @@ TOO_LONG = "its script would be longer than 10000 characters; compute it in a no
             'keeps mode == "größe"',
             "a string in a script cannot contain single quotes, and before 4.9 only ASCII characters",
         ),
+        ("keeps far <= 1 m", "it contains an infinite number"),
         ("leaves large", TOO_LONG),
         ("needs nearly_as_large and nearly_as_large\n    when nearly_as_large", TOO_LONG),
         ("runs every 1 s", "BehaviorTree.CPP has no node that makes another one start in time"),
@@ -238,7 +239,7 @@ def test_reasons(clauses: str, why: str) -> None:
     contexts = "context c0 : on\n" + "".join(f"context c{n} : c{n - 1} or c{n - 1}\n" for n in range(1, 40))
     text = (
         "signal on : bool from {on} initially true\nsignal nowhere : bool\nsignal mode : text from {mode}\n"
-        f"{contexts}context large : c39\ncontext nearly_as_large : c8\n"
+        f"signal far : mm from {{far}} initially 1e308 m\n{contexts}context large : c39\ncontext nearly_as_large : c8\n"
         f"QualityReq r\n    {clauses}\n    on violation fail\napply r to Move\n{TAIL}"
     )
     assert states(Workspace.of({"main.btq": text}), "main.btq") == [f"r: monitored: {why}"]

@@ -13,6 +13,7 @@ from build_command import Btq
 from json_schema import violations
 from missions import mission
 
+from btq_lang.btcpp.as_built import as_built
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
@@ -20,6 +21,7 @@ from btq_lang.btcpp.restoring import Lost, restored
 from btq_lang.btcpp.side_file import Built, is_side_file, side_file, side_path
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.cli import main
+from btq_lang.commands.opening import Disk
 from btq_lang.workspace.workspace import Workspace
 
 Capsys = pytest.CaptureFixture[str]
@@ -255,6 +257,24 @@ def test_of_xml_that_was_edited_the_rest_comes_back() -> None:
     assert "    satisfices safety\n    ->\n" in again.text
     assert "SubTree Part Twice satisfies quick\n" in again.text
     assert "Pick Again (x = 1)\n" in again.text
+
+
+def test_a_mission_is_restored_with_what_it_includes(btq: Btq) -> None:
+    part = "BehaviorTree P\n    Go satisfices safety\n"
+    btq.write(part=part, main='include "part.btq"\nRoot A\nBehaviorTree A\n    SubTree P satisfices safety\n')
+    main_text = btq.read("main.btq")
+    assert btq.build("main.btq", "-o", "out")[0] == 0
+    assert as_built(str(btq.folder / "out" / "part.btq"), Disk()) is None
+    built = as_built(str(btq.folder / "out" / "main.xml"), Disk())
+    assert built is not None
+    texts = {Path(path).relative_to(btq.folder).as_posix(): file.text for path, file in built.workspace.files.items()}
+    assert texts == {"out/main.btq": main_text, "out/part.btq": part}
+    assert built.path == str(btq.folder / "out" / "main.btq")
+    assert {built.shown(path) for path in built.workspace.files} == {
+        "out/main.qreq.json:out/main.btq",
+        "out/part.qreq.json:out/part.btq",
+    }
+    assert built.manual_edits == ()
 
 
 def test_clauses_over_several_lines_come_back_on_one() -> None:

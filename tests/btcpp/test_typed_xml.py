@@ -42,6 +42,7 @@ def read(text: str) -> tuple[str, str, str, str, tuple[str, ...]] | None:
         ('<A x="a < $0b &amp; c"/>', ("value", "a < b &amp; c", "A", "x", ())),
         ("<root><A></$0", ("end", "", "", "", ("root", "A"))),
         ("<root><A></A$0>", ("end", "A", "A", "", ("root", "A"))),
+        ("<root><A></A x$0>", None),
         ("<root><A /$0>", None),
         ("<root>te$0xt", None),
         ("<root>$0", None),

@@ -36,6 +36,22 @@ def test_a_misspelt_word(word: str, meant: str, read: str) -> None:
     assert read_as(word) == read
 
 
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        ("import require use", "include"),
+        ("requirement req qualityrequirement", "QualityReq"),
+        ("mission Mission tree behaviourtree bt def class", "BehaviorTree"),
+        ("sensor variable var measure metric", "signal"),
+        ("mode situation", "context"),
+    ],
+)
+def test_a_word_of_another_language(words: str, meant: str) -> None:
+    for word in words.split():
+        (problem,) = parse(f"{word} M\n").diagnostics
+        assert problem.message == f"unknown word `{word}`; did you mean `{meant}`?"
+
+
 def test_a_word_with_one_slip_is_read_as_include() -> None:
     word, letters = "include", "abcdefghijklmnopqrstuvwxyzä"
     slips = {word[:at] + word[at + 1 :] for at in range(7)}
