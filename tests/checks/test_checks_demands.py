@@ -464,6 +464,16 @@ def test_an_entry_of_a_tree_is_not_that_of_the_root(call: str, port: str, is_ano
     assert findings(text, "signal-never-written") == ([expected] if is_another else [])
 
 
+def test_a_private_entry_of_a_tree_is_not_that_of_the_root_either() -> None:
+    text = (
+        "signal hot : bool from {_heat} initially false\nQualityReq r\n    Rest keeps not hot\n    on violation fail\n"
+        "Root Main\nBehaviorTree Main\n    ->\n        SubTree Part (_autoremap = true)\n        Rest\n"
+        "BehaviorTree Part\n    Look (heat = {_heat})\nAction Look\n    output heat : bool\n"
+    )
+    expected = "1 warning «hot» `hot` reads the root's `_heat`, but the tree `Part` writes its own `_heat`"
+    assert findings(text, "signal-never-written") == [expected]
+
+
 def outbid(*clauses: str) -> str:
     lines = "".join(f"    {clause}\n" for clause in clauses)
     return f'QualityReq rq1 "t"\n{lines}BehaviorTree Main\n    Action X satisfies rq1\n'

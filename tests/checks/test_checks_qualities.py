@@ -29,6 +29,15 @@ def test_good_names(quality: str) -> None:
     assert_clean(node(quality))
 
 
+def test_three_names_are_offered_at_most() -> None:
+    own = [f"reliability{letter}" for letter in "abcd"]
+    assert_problems(
+        "".join(f"quality {name}\n" for name in own) + node("reliabilityx"),
+        "6:18 warning unknown-quality «reliabilityx» unknown quality `reliabilityx`; "
+        "did you mean `reliabilitya`, `reliabilityb` or `reliabilityc`?",
+    )
+
+
 def test_a_name_is_looked_at_wherever_it_stands() -> None:
     assert_problems(
         """
