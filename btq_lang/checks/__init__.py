@@ -161,7 +161,6 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         unread.foreign_error_code,
         moving.moving_on,
         measures.unresolved,
-        demands.demands,
     ),
     syntax.Model: _OF_MODELS,
     syntax.Models: _OF_MODELS,
@@ -170,7 +169,6 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         empty.empty_text,
         requirements.unused_word,
         measures.unresolved,
-        demands.demands,
     ),
     syntax.Context: (
         kinds.duplicate_definition,
@@ -186,9 +184,8 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         prose.prose_constraint,
         measures.unresolved,
         measures.requirement_without_subject,
-        demands.demands,
     ),
-    syntax.Apply: (requirements.unknown_requirement, repeated.named_twice, measures.unresolved, demands.demands),
+    syntax.Apply: (requirements.unknown_requirement, repeated.named_twice, measures.unresolved),
     syntax.Qualities: (qualities.quality_name,),
     syntax.QualityDecl: (kinds.duplicate_definition, empty.empty_text, qualities.quality_name),
 }
@@ -302,15 +299,29 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
     Args:
         is_alone: leave out what is wrong in the files that it includes.
     """
-    items = lookups.items(store, viewpoint)
-    found = [store.ask(_reported, viewpoint, facts, is_alone and type(facts.item) is syntax.Include) for facts in items]
+    # What demands add depends on all files in scope: items to which they add nothing should not depend on that.  In a
+    # target they may add something else.
+    demanded = store.ask(demands.demands_by_item, viewpoint)
+    has_target = View(store, viewpoint).project.moves_to is not None
+    found = [
+        store.ask(
+            _reported,
+            viewpoint,
+            facts,
+            is_alone and type(facts.item) is syntax.Include,
+            has_target or id(facts.item) in demanded,
+        )
+        for facts in lookups.items(store, viewpoint)
+    ]
     return tuple([each for each in found if each is not None])
 
 
-def _reported(store: Store[Workspace], viewpoint: str, facts: Facts, is_alone: bool) -> Reported | None:
+def _reported(
+    store: Store[Workspace], viewpoint: str, facts: Facts, is_alone: bool, is_demanded: bool
+) -> Reported | None:
     view = View(store, viewpoint, facts)
     entry = view.entry
-    checks = checks_of(entry)
+    checks = (*checks_of(entry), demands.demands) if is_demanded else checks_of(entry)
     found: Iterable[Diagnostic] = [diagnostic for each in checks for diagnostic in each(view)]
     if view.project.moves_to is not None:
         from btq_lang.checks.moved_engine import new_in_target  # few checks have a target

@@ -27,16 +27,13 @@ ByItem: TypeAlias = "dict[int, list[Diagnostic]]"
 
 def demands(view: View) -> Iterator[Diagnostic]:
     """All findings of these rules in an entry."""
-    if view.ask(is_measured):
-        yield from view.ask(_in_item, view.facts)
+    yield from view.ask(_in_item, view.facts)
 
 
-def _in_item(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[Diagnostic]:
-    return store.ask(_by_item, viewpoint).get(id(facts.item), ())
-
-
-def _by_item(store: Store[Workspace], viewpoint: str) -> ByItem:
-    """The findings in the file, by item."""
+def demands_by_item(store: Store[Workspace], viewpoint: str) -> ByItem:
+    """The findings in the file, by the `id` of the item."""
+    if not store.ask(is_measured, viewpoint):
+        return {}
     found: list[Found] = []
     for tree in inputs.trees(store, viewpoint):
         found += store.ask(_of_tree, viewpoint, *tree)[0]
@@ -54,6 +51,10 @@ def _by_item(store: Store[Workspace], viewpoint: str) -> ByItem:
     for (item, *_), same in known.items():
         by_item.setdefault(item, []).extend(same)
     return by_item
+
+
+def _in_item(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[Diagnostic]:
+    return store.ask(demands_by_item, viewpoint).get(id(facts.item), ())
 
 
 def _of_tree(
