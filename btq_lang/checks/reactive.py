@@ -81,10 +81,10 @@ def explicit_in_reactive(view: View) -> Iterator[Diagnostic]:
 
 def condition_without_recheck(view: View) -> Iterator[Diagnostic]:
     """A Fallback at the top of a mission that chooses by a condition and then keeps its choice."""
-    choices = [seen for seen in view.seen.of_flow("fallback") if not _begins_again(seen)]
+    choices = [seen for seen in view.seen.of_flow("fallback") if _is_at_the_top(seen) and not _begins_again(seen)]
     if not choices or not view.is_main:
         return
-    for seen in filter(_is_at_the_top, choices):
+    for seen in choices:
         guard: ResolvedNode | None = None
         for child in seen.children:
             if guard is not None and result(view, child.node).usual & RUNNING:
