@@ -255,15 +255,13 @@ def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:
 
 
 def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]:
-    is_complete = view.is_complete and not view.project.hides_nodes
-    has_palette = view.look_up(lookups.has_palette) and is_complete
+    has_palette = view.look_up(lookups.has_palette) and _is_all_known(view)
+    if not has_palette and seen.node.category is not None:
+        return  # written as a declaration: `Action Foo` declares such a node
     likely = view.near(name.text, Kind.MODEL)
     if not has_palette:
-        if seen.node.category is not None:
-            return  # written as a declaration: `Action Foo` declares such a node
         likely = tuple(meant for meant in likely if _is_slip(name.text, meant))
-        is_odd = is_complete and view.look_up(lookups.most_have_models)
-        if not (likely or is_odd):
+        if not likely and not (_is_all_known(view) and view.look_up(lookups.most_have_models)):
             return
     if not likely and not view.is_first_use(seen.node, name.text):
         return  # one model is missing, however many nodes would need it
@@ -280,6 +278,11 @@ def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]
     severity = None if likely or has_palette else Severity.HINT
     message = f"unknown node `{name.text}`{did_you_mean(likely)}"
     yield Diagnostic("unknown-node", name.span, message, notes=notes, fixes=fixes, severity=severity)
+
+
+def _is_all_known(view: View) -> bool:
+    """Whether every model that the program may have is in scope."""
+    return view.is_complete and not view.project.hides_nodes
 
 
 def _declared(view: View, seen: ResolvedNode, model: str, ports: tuple[LikelyPort, ...]) -> Fix:
@@ -333,8 +336,7 @@ def _tree_as_node(view: View, seen: ResolvedNode, name: Word) -> Diagnostic:
 
 def _is_refused(view: View, seen: ResolvedNode, name: Word) -> bool:
     """Whether the name itself is the mistake, which is reported."""
-    target = view.target
-    return seen.node.category is None and model_name_problem(name.text, target) is not None
+    return seen.node.category is None and model_name_problem(name.text, view.target) is not None
 
 
 def _is_clause(seen: ResolvedNode) -> bool:

@@ -81,7 +81,7 @@ def _of_node(view: View, seen: ResolvedNode, known: dict[int, Results]) -> Resul
         children = tuple([known.get(id(child), UNKNOWN) for child in seen.node.children])
         found = _of_known(seen.behavior, seen.node, children)
     elif not seen.node.children:
-        name = seen.id.text if seen.id is not None and seen.stated_category == "Action" else None
+        name = seen.id.text if seen.id is not None and seen.is_defined and seen.stated_category == "Action" else None
         at_once = name is not None and view.look_up(lookups.ends_at_once, Kind.MODEL, name)
         found = _AT_ONCE if at_once else _CUSTOM.get(seen.stated_category or "", _UNKNOWN_LEAF)
     added = 0

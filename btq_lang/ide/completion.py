@@ -181,7 +181,8 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
     line = text[line_start(text, 0, offset) : offset]
     begun = re.search(rf"(?:^|[^\w.])\d+(?:\.\d+)?(?:[eE][+-]?\d+)?([ \t]*)({_BEGUN_UNIT}|)$", line)
     if begun is not None:
-        place = _before_unit(place_at(workspace, path, offset - len(begun[2])))  # `/` in a unit is not a division
+        # Without its unit, in which `/` is not a division.
+        place = _before_unit(place_at(workspace, path, offset - len(begun[2])) if begun[2] else place)
     if begun is None or place.inside != "code" or not place.words:
         return None
     is_of_item = place.words[0].text in ("QualityReq", "signal", "context", "apply")
