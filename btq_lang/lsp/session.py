@@ -106,9 +106,9 @@ class Session:
                 advance(workspace, self._workspaces[index])
                 lacking = [_lacking(each, self.open) for each in (workspace, self._workspaces[index])]
                 is_pool_same = is_pool_same and lacking[0] == lacking[1]
-        if old.included_paths != new.included_paths or not is_pool_same:
-            return (path, *self.reload())
         after = self._workspaces[home]
+        if old.included_paths != after.files[path].included_paths or not is_pool_same:
+            return (path, *self.reload())
         linked: set[str] = set()  # uses are known in both directions
         for each in self._workspaces:
             if path in each.files:

@@ -369,6 +369,18 @@ def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None
 
 
 @pytest.mark.by_turns
+@pytest.mark.parametrize("name", sorted(FILES))
+def test_an_edit_parses_no_file_as_a_whole(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = f"{folder}/{name}"
+    session = session_of(folder, {path: FILES[name]})
+    for each in session.paths():
+        session.diagnostics(each)
+    monkeypatch.setattr("btq_lang.workspace.file.parse", lambda text: pytest.fail(text))
+    for end in ("# a", "# a comment", "BehaviorTree More\n    Pick\n"):
+        for changed in session.edit(path, f"{FILES[name]}{end}"):
+            session.diagnostics(changed)
+
+
 def test_what_edits_replace_goes_when_it_is_swept(folder: Path) -> None:
     main = f"{folder}/main.btq"
     session = session_of(folder, {})
