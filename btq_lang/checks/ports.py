@@ -170,7 +170,7 @@ def misspelt_type(view: View) -> Iterator[Diagnostic]:
             name = port.type.text if port.type is not None else ""
             if not name.islower() or len(name) < 4 or is_known_type(plain_type(name)):
                 continue
-            likely = [known for known in _TYPES if abs(len(known) - len(name)) < 2 and distance(name, known) == 1]
+            likely = [known for known in _TYPES if distance(name, known, 1) == 1]
             if port.type is None or not likely:
                 continue
             fix = replace_fix(f"Replace `{name}` with `{likely[0]}`", port.type.span, likely[0])

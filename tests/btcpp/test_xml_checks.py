@@ -225,7 +225,7 @@ def test_what_only_newer_engines_refuse_says_how_to_name_an_older_one() -> None:
             </Sequence>
           </BehaviorTree>
           <BehaviorTree ID="Dock">
-            <ReactiveSequence><Action ID="Go"/></ReactiveSequence>
+            <ReactiveSequence><Action ID="Go" name="&#127;"/></ReactiveSequence>
           </BehaviorTree>
         </root>"""
     workspace = workspace_of({"main.xml": text.strip()})
@@ -235,6 +235,7 @@ def test_what_only_newer_engines_refuse_says_how_to_name_an_older_one() -> None:
         ("duplicate-instance-name", True),
         ("forbidden-name", True),
         ("explicit-in-reactive", True),
+        ("forbidden-name", True),
     ]
     pinned = workspace.with_project(Project(engines=("4.6",)))
     assert [(each.rule, each.effective_severity) for each in check(pinned, "main.xml")] == [
