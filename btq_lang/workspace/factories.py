@@ -73,7 +73,7 @@ def read_factories(tables: object) -> tuple[tuple[Factory, ...], list[Complaint]
         for key in table:
             if key not in KEYS:
                 complaints.append((f"unknown key `factory.{key}`{did_you_mean(near(key, KEYS, 1))}", (*at, key), None))
-        values = {key: _strings(table.get(key, []), key) for key in KEYS}
+        values = {key: _strings(table[key], key) if key in table else () for key in KEYS}
         for key, value in values.items():
             if value is None:
                 form = _FORMS.get(key, "a list of strings")
@@ -130,8 +130,8 @@ def _is_name(source: str) -> bool:
 def _strings(value: object, key: str) -> tuple[str, ...] | None:
     """The strings of a value; None if it is anything else."""
     if isinstance(value, str) and key in _FORMS:
-        return (value,) if value or key != "nav2" else None
-    if not isinstance(value, list) or (key in ("name", "nav2") and value):
+        return (value,) if value or key == "name" else None  # that it needs one is reported
+    if not isinstance(value, list) or key in ("name", "nav2"):
         return None
     return tuple(value) if all(isinstance(each, str) and each for each in value) else None
 
