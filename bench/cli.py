@@ -73,7 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         _write_missions(folder, given.spelling)
-        measured = commands(folder, _btq())
+        measured = [each for each in commands(folder, _btq()) if given.many_rounds or not each.many]
         run(measured, given.rounds, given.many_rounds)
     goals = compare(measured)
     if given.json:
@@ -261,7 +261,9 @@ def _data(command: Command) -> dict[str, object]:
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = options(__doc__)
     parser.add_argument("--rounds", type=int, default=40, help="runs of each short command (default 40)")
-    parser.add_argument("--many-rounds", type=int, default=5, help="runs of each long one (default 5)")
+    parser.add_argument(
+        "--many-rounds", type=int, default=5, help="runs of each long one (default 5; 0 leaves them out)"
+    )
     return parser.parse_args(arguments)
 
 
