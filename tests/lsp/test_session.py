@@ -457,6 +457,7 @@ def test_a_check_after_all_was_read_again_asks_nothing_again(folder: Path) -> No
 # ---- XML ----
 
 
+@pytest.mark.by_turns
 @pytest.mark.usefixtures("strict_queries")
 @pytest.mark.parametrize("seed", range(6))
 def test_what_is_told_of_xml_is_what_a_new_session_finds(
