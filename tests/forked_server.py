@@ -107,10 +107,9 @@ def _place() -> str:
 
 def _listen(listening: socket.socket) -> None:
     """Fork a process for each program that is sent with its files, until the standard input ends."""
-    import btq_lang.lsp.session  # noqa: F401  # what is forked finds all of it imported
     from btq_lang.server import make_server
 
-    make_server()  # and the types of messages resolved
+    _ = make_server().session  # what is forked finds all imported, and the types of messages resolved
 
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for those that wait for a server
     while listening in select.select([listening, 0], [], [])[0]:

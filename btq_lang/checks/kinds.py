@@ -255,13 +255,14 @@ def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:
 
 
 def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]:
-    has_palette = view.look_up(lookups.has_palette) and _is_all_known(view)
+    is_complete = view.is_complete and not view.project.hides_nodes
+    has_palette = is_complete and view.look_up(lookups.has_palette)
     if not has_palette and seen.node.category is not None:
         return  # written as a declaration: `Action Foo` declares such a node
     likely = view.near(name.text, Kind.MODEL)
     if not has_palette:
         likely = tuple(meant for meant in likely if _is_slip(name.text, meant))
-        if not likely and not (_is_all_known(view) and view.look_up(lookups.most_have_models)):
+        if not likely and not (is_complete and view.look_up(lookups.most_have_models)):
             return
     if not likely and not view.is_first_use(seen.node, name.text):
         return  # one model is missing, however many nodes would need it
@@ -278,11 +279,6 @@ def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]
     severity = None if likely or has_palette else Severity.HINT
     message = f"unknown node `{name.text}`{did_you_mean(likely)}"
     yield Diagnostic("unknown-node", name.span, message, notes=notes, fixes=fixes, severity=severity)
-
-
-def _is_all_known(view: View) -> bool:
-    """Whether every model that the program may have is in scope."""
-    return view.is_complete and not view.project.hides_nodes
 
 
 def _declared(view: View, seen: ResolvedNode, model: str, ports: tuple[LikelyPort, ...]) -> Fix:

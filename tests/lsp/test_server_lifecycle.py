@@ -15,8 +15,9 @@ from lsp_editor import SERVER, Editor, Message
 
 from btq_lang.lsp import editor as btq_editor
 
-OFTEN = "import btq_lang.lsp.editor as editor; editor.POLL = 0; from btq_lang.server import main"  # as it polls
 NOT_INITIALIZED, INVALID_REQUEST, PARSE_ERROR = -32002, -32600, -32700
+# A server that looks all the time whether its editor's process still runs.
+POLLING = "import btq_lang.lsp.editor as editor; editor.POLL = 0; from btq_lang.server import main; main([])"
 
 
 @pytest.fixture
@@ -147,7 +148,7 @@ def test_it_ends_with_its_standard_input_while_it_reads_folders(tmp_path: Path) 
 def test_it_ends_after_the_process_of_its_editor(tmp_path: Path) -> None:
     """While its standard input stays open, as where another process has inherited it."""
     with subprocess.Popen((sys.executable, "-c", "input()"), stdin=subprocess.PIPE) as crashing:
-        editor = Editor(tmp_path, program=f"{OFTEN}; main([])", processId=crashing.pid)
+        editor = Editor(tmp_path, program=POLLING, processId=crashing.pid)
         editor.open("main.btq", "BehaviorTree Main\n    Pick\n")
         assert editor.diagnostics("main.btq") == []
         crashing.kill()
@@ -161,7 +162,7 @@ def test_it_ends_after_the_process_of_its_editor(tmp_path: Path) -> None:
 
 
 def test_it_lives_as_long_as_the_process_of_its_editor(tmp_path: Path) -> None:
-    editor = Editor(tmp_path, program=f"{OFTEN}; main([])", processId=os.getpid())
+    editor = Editor(tmp_path, program=POLLING, processId=os.getpid())
     for number in range(20):
         editor.open(f"main{number}.btq", "")
         assert editor.diagnostics(f"main{number}.btq") == []

@@ -368,7 +368,6 @@ def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None
     assert session.close(skills) == (skills,)
 
 
-@pytest.mark.by_turns
 @pytest.mark.parametrize("name", sorted(FILES))
 def test_an_edit_parses_no_file_as_a_whole(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = f"{folder}/{name}"
@@ -381,6 +380,7 @@ def test_an_edit_parses_no_file_as_a_whole(name: str, folder: Path, monkeypatch:
             session.diagnostics(changed)
 
 
+@pytest.mark.by_turns
 def test_what_edits_replace_goes_when_it_is_swept(folder: Path) -> None:
     main = f"{folder}/main.btq"
     session = session_of(folder, {})
