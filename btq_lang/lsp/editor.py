@@ -64,8 +64,8 @@ NO_ITEMS = Json("[]")
 EMPTY_REPORT = Json('{"kind": "full", "items": []}')
 REQUEST_WINDOW = 0.01  # seconds, within which an editor sends requests about published diagnostics
 PAUSE = 0.1  # seconds, less than between most keystrokes
-UNNOTICED = 0.05  # seconds, for which an answer may wait for a check
-MAX_REST = 0.5  # seconds, for which the check of a slow file is delayed after a keystroke
+LONG_CHECK = 0.2  # seconds; of a longer check, a single step may delay an answer noticeably
+MAX_REST = 0.5  # seconds, for which a long check is delayed after a keystroke
 POLL = 5  # seconds between checks that the editor's process still runs
 MAX_DETAILS = 500  # a parameter may contain a whole text
 
@@ -113,7 +113,7 @@ class Server(LanguageServer):
         self.on_end: Callable[[], None] = lambda: None  # called when the server ends
         self.protocol.log_failure = self.log_failure
         self._watching: asyncio.Task[None] | None = None
-        self.is_outdated: Callable[[], bool] = lambda: False  # whether an edit waits to be handled
+        self.has_message: Callable[[], bool] = lambda: False  # whether one waits to be handled
 
     @functools.cached_property
     def session(self) -> Session:
@@ -129,7 +129,7 @@ class Server(LanguageServer):
         self._stop_event = Event()
         self.protocol.set_writer(StdoutWriter(stdout or sys.stdout.buffer))
         reader = Messages(stdin or sys.stdin.buffer, self._end_soon)
-        self.is_outdated = lambda: reader.has_pending_edit
+        self.has_message = lambda: reader.has_message
         report = self.report_server_error
         try:
             asyncio.run(run_async(self._stop_event, reader, self.protocol, error_handler=report))
@@ -318,27 +318,27 @@ class Server(LanguageServer):
             self.task = asyncio.ensure_future(self._check())
 
     async def rest(self, path: str) -> None:
-        """Let requests go first: wait after the last keystroke as long as checking a large file takes."""
+        """Let requests go first: wait after the last keystroke as long as a long check takes."""
         clock = asyncio.get_running_loop().time
-        while (check_seconds := self.session.check_seconds.get(path, 0)) > UNNOTICED:
+        while (check_seconds := self.session.check_seconds.get(path, 0)) > LONG_CHECK:
             rest = self.last_keystroke + min(check_seconds, MAX_REST) - clock()
             if rest <= 0:
                 break
             await asyncio.sleep(rest)
 
     async def check(self, path: str) -> None:
-        """Check a file for a request, and start over if it is edited meanwhile."""
+        """Check a file for a request, after handling any message that comes meanwhile."""
         while True:
             await self.rest(path)
             try:
-                self.session.check(path, self.is_outdated)
+                self.session.check(path, self.has_message)
                 return
             except Cancelled:
                 await asyncio.sleep(0)
 
     async def _check(self) -> None:
-        """Check file by file, handling messages between two: an edited file is checked first, and requests are answered
-        before checking files that are not open.
+        """Check file by file: messages are handled first, then the edited file is checked, then the others, and those
+        that are not open only when no request is being answered.
         """
         await asyncio.sleep(0)
         if self.pulls:
@@ -359,7 +359,7 @@ class Server(LanguageServer):
                 continue
             del self.waiting[path]
             try:
-                self.session.check(path, self.is_outdated)
+                self.session.check(path, self.has_message)
                 self.publish(path)
             except Cancelled:
                 self.waiting = {path: None, **self.waiting}

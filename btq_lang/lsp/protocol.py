@@ -159,7 +159,7 @@ class Messages:
         at_end: called in that thread at the end of input, whatever the server is doing.
 
     Attributes:
-        has_pending_edit: whether an edit has arrived that is not yet handled.
+        has_message: whether a message has arrived that is not yet handled.
     """
 
     def __init__(self, stream: BinaryIO, at_end: Callable[[], None] = lambda: None) -> None:
@@ -167,7 +167,7 @@ class Messages:
         self._at_end = at_end
         self._head: list[bytes] = []
         self._body = b""
-        self.has_pending_edit = False
+        self.has_message = False
 
     async def readline(self) -> bytes:
         if not self._head:
@@ -175,7 +175,7 @@ class Messages:
         return self._head.pop(0) if self._head else b""
 
     async def readexactly(self, _: int) -> bytes:
-        self.has_pending_edit = False
+        self.has_message = False
         return self._body
 
     def _read(self) -> None:
@@ -187,7 +187,7 @@ class Messages:
         if length:
             self._head = [b"Content-Length: %d\r\n" % length, b"\r\n"]
             self._body = self._stream.read(length)
-            self.has_pending_edit = _CHANGE in self._body
+            self.has_message = True
         else:
             self._at_end()
 
@@ -204,5 +204,4 @@ _USUAL = (
     types.TEXT_DOCUMENT_DEFINITION,
     types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT,
 )
-_CHANGE = f'"{types.TEXT_DOCUMENT_DID_CHANGE}"'.encode()
 _LENGTH = re.compile(rb"Content-Length: *(\d+)", re.IGNORECASE)

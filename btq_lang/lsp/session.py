@@ -303,18 +303,18 @@ class Session:
                 place = place.rpartition("/")[0]
         return found
 
-    def check(self, path: str, is_outdated: Callable[[], bool]) -> None:
-        """Check an open file, unless it is edited meanwhile.
+    def check(self, path: str, is_cancelled: Callable[[], bool]) -> None:
+        """Check an open file.
 
         Args:
-            is_outdated: returns whether an edit waits to be handled.
+            is_cancelled: whether to end it now; asked before every step.
 
         Raises:
-            Cancelled: one does; results so far are cached.
+            Cancelled: it is; results so far are cached.
         """
         stores = [each.store for each in self.workspaces_of(path)] if path in self.open else []
         for store in stores:
-            store.is_cancelled = is_outdated
+            store.is_cancelled = is_cancelled
         try:
             if stores:
                 self.findings(path)

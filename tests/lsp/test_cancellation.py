@@ -1,4 +1,4 @@
-"""A check ends when a newer edit arrives: the next one uses what it has found out."""
+"""A check ends when a message arrives: the next one uses what it has found out."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from btq_lang.workspace.queries import Cancelled
 
 
 @pytest.mark.parametrize("pulls", [False, True])
-def test_a_check_ends_when_a_newer_edit_waits(pulls: bool) -> None:
+def test_a_check_ends_when_an_edit_waits(pulls: bool) -> None:
     class Checking(Server):
         pulls = False
 
@@ -24,7 +24,7 @@ def test_a_check_ends_when_a_newer_edit_waits(pulls: bool) -> None:
         server.session.edit(path, "BehaviorTree Main\n    Sequnce\n        Dock\n")
         looks = 0
 
-        def is_outdated() -> bool:
+        def has_message() -> bool:
             nonlocal looks
             looks += 1
             if looks == 5:  # in the middle of the check
@@ -32,13 +32,13 @@ def test_a_check_ends_when_a_newer_edit_waits(pulls: bool) -> None:
                 asyncio.get_running_loop().call_soon(lambda: server.session.edit(path, edited))
             return looks == 5
 
-        server.is_outdated = is_outdated
+        server.has_message = has_message
         messages: Counter[str] = Counter()
         check = server.session.check
 
-        def checked(path: str, is_outdated: Callable[[], bool]) -> None:
+        def checked(path: str, is_cancelled: Callable[[], bool]) -> None:
             try:
-                check(path, is_outdated)
+                check(path, is_cancelled)
                 messages.update(each.message for each in server.session.diagnostics(path))
             except Cancelled:
                 messages["cancelled"] += 1
@@ -56,17 +56,17 @@ def test_a_check_ends_when_a_newer_edit_waits(pulls: bool) -> None:
     assert asyncio.run(edit()) == {"cancelled": 1, "unknown node `Fallbck`; did you mean `Fallback`?": 1}
 
 
-def test_messages_tell_of_an_edit_that_is_not_yet_handled() -> None:
+def test_a_message_that_is_not_yet_handled_is_known() -> None:
     async def read() -> list[bool]:
         bodies = [f'{{"method": "textDocument/{method}"}}'.encode() for method in ("hover", "didChange")]
         reader = Messages(BytesIO(b"".join(b"Content-Length: %d\r\n\r\n%s" % (len(each), each) for each in bodies)))
         said = []
         for _ in bodies:
             await reader.readline()
-            said.append(reader.has_pending_edit)
+            said.append(reader.has_message)
             await reader.readline()
             await reader.readexactly(0)
-            said.append(reader.has_pending_edit)
+            said.append(reader.has_message)
         return said
 
-    assert asyncio.run(read()) == [False, False, True, False]
+    assert asyncio.run(read()) == [True, False, True, False]

@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from time import sleep
 
 import pytest
 from lsp_editor import SERVER, Editor, Message, part
@@ -1183,6 +1184,38 @@ def test_nor_does_it_where_the_editor_asks_for_diagnostics(tmp_path: Path) -> No
     said = editor.close().splitlines()
     assert said.count("completion") == 5
     assert {*said} == {"completion", f"check of {len(RIGHT)} characters"}  # of none of the keys
+
+
+# A server in which each step of a check takes long until a completion is asked for.
+STEP_BY_STEP = """
+import sys, time
+from btq_lang.lsp import session
+from btq_lang import ide as features
+check, complete = session.Session.check, features.completion.complete
+seconds = [0.2]
+def stepping(self, path, is_cancelled):
+    def step():
+        time.sleep(seconds[0])
+        return is_cancelled()
+    check(self, path, step)
+    print("checked", file=sys.stderr)
+def say(*place, **wanted):
+    print("completion", file=sys.stderr)
+    seconds[0] = 0
+    return complete(*place, **wanted)
+session.Session.check, features.completion.complete = stepping, say
+from btq_lang.server import main
+main([])
+"""
+
+
+def test_a_request_interrupts_a_check(tmp_path: Path) -> None:
+    editor = Editor(tmp_path, program=STEP_BY_STEP)
+    editor.open("main.btq", RIGHT)
+    sleep(0.5)  # it is being checked, for several seconds
+    assert editor.request("textDocument/completion", **editor.at("main.btq", 3, 16))["items"] != []
+    assert editor.diagnostics("main.btq") == []
+    assert editor.close().splitlines()[:2] == ["completion", "checked"]
 
 
 def test_a_key_ends_a_pause() -> None:
