@@ -62,6 +62,7 @@ class Unknown(Exception):  # not an error: there is nothing to answer
 NOT_JSON = json.JSONDecodeError, UnicodeDecodeError
 NO_ITEMS = Json("[]")
 EMPTY_REPORT = Json('{"kind": "full", "items": []}')
+TOGETHER = 0.001  # seconds, within which a request arrives that an editor sends together with an edit
 REQUEST_WINDOW = 0.01  # seconds, within which an editor sends requests about published diagnostics
 PAUSE = 0.1  # seconds, less than between most keystrokes
 LONG_CHECK = 0.2  # seconds; of a longer check, a single step may delay an answer noticeably
@@ -340,7 +341,7 @@ class Server(LanguageServer):
         """Check file by file: messages are handled first, then the edited file is checked, then the others, and those
         that are not open only when no request is being answered.
         """
-        await asyncio.sleep(0)
+        await asyncio.sleep(TOGETHER)
         if self.pulls:
             self.waiting.clear()
             self.publish_projects()
