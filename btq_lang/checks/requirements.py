@@ -35,7 +35,9 @@ def unknown_requirement(view: View) -> Iterator[Diagnostic]:
         likely = view.near(use.name, Kind.REQUIREMENT)
         fixes += tuple(replace_fix(f"Replace `{use.name}` with `{name}`", use.span, written(name)) for name in likely)
         message = f"unknown requirement `{use.name}`{NOWHERE if elsewhere or not likely else did_you_mean(likely)}"
-        yield Diagnostic("unknown-requirement", use.span, message, fixes=fixes)
+        meant = quality.near if quality is not None and not fixes else ()
+        notes = tuple(f"if the quality `{name}` is meant, write `satisfices {name}`" for name in meant[:1])
+        yield Diagnostic("unknown-requirement", use.span, message, notes=notes, fixes=fixes)
 
 
 def conflicting_requirement(view: View) -> Iterator[Diagnostic]:

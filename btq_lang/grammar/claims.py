@@ -71,11 +71,14 @@ class ClaimParser(ConditionParser):
         if operand == "duration":
             bound = self.bound()
         elif operand == "deadline":
-            bound = self.within() if self.accept_word("within") else None
+            if self.accept_word("within"):
+                bound = self.within()
+            elif self.kind == QUANTITY:
+                self.no_within()
         elif operand == "condition":
             if verb.raw == "never" and self.raw in HAPPENINGS and self.kinds[self.index + 1] == NEWLINE:
                 self.expected("a condition", (_NEVER_FAILS,))
-            else:
+            elif not self.signal_last(verb.raw):
                 condition = self.cond()
         elif operand == "use":
             bound = self.bound()
@@ -119,8 +122,8 @@ class ClaimParser(ConditionParser):
     def no_verb(self, subject: Subject) -> None:
         """Report a subject without a verb, or of a misspelt verb that was read as a subject."""
         first = subject.names[0] if isinstance(subject, Path) and len(subject.names) == 1 else None
-        if isinstance(subject, Path) and self.kind == NAME and self.raw in MODALS:
-            self.expected("a verb: takes, succeeds, needs, keeps, …", (MEANT[self.raw],))
+        if isinstance(subject, Path) and self.kind == NAME and self.raw in NO_VERBS:
+            self.expected(_A_VERB, (NO_VERBS[self.raw],))
         elif isinstance(subject, Path) and self.at("."):
             self.complain(self.here(), "the names of a path are separated by `/`", write_fix("/", self.here()))
             self.recover()
@@ -129,8 +132,9 @@ class ClaimParser(ConditionParser):
             self.expected(_A_VERB, (note,))
         elif first is not None and first.raw == "at" and (fixes := self.takes_before(first)):
             self.expected(f"a verb before `at {self.raw}`", (MEANT["at"],), fixes)
-        elif first is not None and first.kind == NAME and first.raw in MEANT:
-            self.expected(f"a verb after `{first.raw}` (takes, succeeds, needs, keeps, …)", (MEANT[first.raw],))
+        elif first is not None and first.kind == NAME and (first.raw in MEANT or first.raw in NO_VERBS):
+            note = MEANT.get(first.raw) or NO_VERBS[first.raw]
+            self.expected(f"a verb after `{first.raw}` (takes, succeeds, needs, keeps, …)", (note,))
         elif first is not None and self.kind == OPERATOR and self.raw in COMPARISONS:
             at = first.start + self.base
             fix = replace_fix("Put `keeps` before it", Span(at, at), "keeps ")
@@ -171,7 +175,7 @@ class ClaimParser(ConditionParser):
         while self.kinds[index] in (NAME, STRING) and not (self.kinds[index] == NAME and self.raws[index] in follow):
             index += 1
         names = self.raws[self.index : index]
-        is_path = isinstance(path, Path) and path.names[0].raw not in MEANT and not MODALS.intersection(names)
+        is_path = isinstance(path, Path) and path.names[0].raw not in MEANT and NO_VERBS.keys().isdisjoint(names)
         if not names or not is_path or _NO_NAMES.intersection(names) or self.raws[index] not in follow:
             return False
         start = path.span.start + self.base if isinstance(path, Path) else 0
@@ -181,6 +185,27 @@ class ClaimParser(ConditionParser):
         note = f"a name of several words goes in quotes: {quote(self.text[start:end])}"
         self.complain(Span(start, end), message, write_fix(written, Span(start, end)), notes=(note,))
         self.go_to(index)
+        return True
+
+    def no_within(self) -> None:
+        """Report `succeeds 30 s` and `succeeds 98 %`."""
+        is_deadline = is_time(self.raw)
+        note = "a deadline is written `within 30 s`, a probability `in at least 98 % of runs`"
+        self.expected("`within`, or the end of the line", (note,), (self.put_before("within"),) if is_deadline else ())
+
+    def signal_last(self, verb: str) -> bool:
+        """Report `leaves at least 3 % battery`, whose signal goes first."""
+        relation = RELATIONS.get((self.raw, self.raws[self.index + 1])) if self.kind == NAME else None
+        value = self.index + (2 if relation else 0)
+        if self.kinds[value] not in (QUANTITY, NUMBER):
+            return False
+        signal = value + (2 if self.raws[value + 1] == "of" else 1)
+        if self.kinds[signal] != NAME or self.raws[signal] in _NO_NAMES:
+            return False
+        meant = f"{self.raws[signal]} {relation or '>='} {self.raws[value]}"
+        span = Span(self.here().start, self.starts[signal] + len(self.raws[signal]))
+        fixes = (write_fix(meant, span),) if relation else ()
+        self.expected("a condition, which begins with its signal", (f"write `{verb} {meant}`",), fixes)
         return True
 
     def takes_before(self, first: Word) -> tuple[Fix, ...]:
@@ -320,6 +345,11 @@ def is_time(raw: str) -> bool:
 
 QUALITY_IN_HEAD: Final = "a requirement's quality goes after its name: `QualityReq fast : reliability`"
 MODALS: Final = frozenset(("must", "shall", "should", "will", "may"))
+NO_VERBS: Final = {  # what else people write before or as a verb
+    **dict.fromkeys(MODALS, "a clause begins with its verb, without such a word: `takes at most 30 s`"),
+    **dict.fromkeys(("finishes", "ends", "completes"), "write `succeeds within 30 s`, or `takes at most 30 s`"),
+    **dict.fromkeys(("stays", "remains", "is"), "what holds while a node runs is written `keeps battery >= 15 %`"),
+}
 MEANT: Final = {  # by the word that is read as a node before a verb
     "at": "a bound goes after its verb, `takes at most 3 s`; a probability is written `in at least 95 % of runs`",
     "violation": "write `on violation fail`",
@@ -337,7 +367,6 @@ MEANT: Final = {  # by the word that is read as a node before a verb
     **dict.fromkeys(
         ("title", "description", "text"), 'a requirement has one title, after its name: `QualityReq fast "in time"`'
     ),
-    **dict.fromkeys(MODALS, "a clause begins with its verb, without such a word: `takes at most 30 s`"),
 }
 _NO_NAMES: Final = HEADS | {"and", "or", "not", "if", "else", "is", "to", "of", "by", "per", "at", "within", "after"}
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"

@@ -134,7 +134,9 @@ class RequirementParser(ClauseParser):
             return self.take()
         if not (is_word or self.is_prose(following)):
             return None
-        if self.raw in MEANT or (near(self.raw, VERB_WORDS | HEADS, limit=1) and not self.is_long_prose()):
+        if self.raw in MEANT or self.raw in MODALS:
+            return None
+        if near(self.raw, VERB_WORDS | HEADS, limit=1) and not self.is_long_prose():
             return None
         end = following
         while self.kinds[end] != NEWLINE and not self.is_clause(end):

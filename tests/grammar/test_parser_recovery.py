@@ -363,6 +363,7 @@ def test_a_slip_on_the_line_of_a_node(line: str, problem: str, mended: str) -> N
     assert apply_fix(text, fix) == f"BehaviorTree t\n    {mended}\n"
 
 
+SIGNAL = "expected a condition, which begins with its signal, found "
 VERB = "expected a verb: takes, succeeds, needs, keeps, …, found "
 EVENT = "expected starts, succeeds, fails, finishes or halts, found "
 IS_EVENT = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"
@@ -541,10 +542,26 @@ A_PORT = "expected a port (input, output or inout), metadata or xml, found "
         ("QualityReq r\n    MoveBase fails at most 3 times\n",
          "expected a verb: takes, succeeds, needs, keeps, …, found `fails`",
          "`tries at most 3` limits the attempts, `succeeds` demands that the node does not fail", None),
-        ("QualityReq r\n    Dock is fast\n",
-         "expected a verb after `Dock` (takes, succeeds, needs, keeps, …), found `is`",
+        ("QualityReq r\n    Dock docks fast\n",
+         "expected a verb after `Dock` (takes, succeeds, needs, keeps, …), found `docks`",
          "btq reads `Dock` as the subject of a clause; write a verb after it, or begin with a clause word: "
          "in at least, while, on violation, goal, …", None),
+        ("QualityReq r\n    battery stays above 3 %\n", VERB + "`stays`",
+         "what holds while a node runs is written `keeps battery >= 15 %`", None),
+        ("QualityReq r\n    finishes within 30 s\n",
+         "expected a verb after `finishes` (takes, succeeds, needs, keeps, …), found `within`",
+         "write `succeeds within 30 s`, or `takes at most 30 s`", None),
+        ("QualityReq r\n    leaves at least 3 % battery\n", SIGNAL + "`at`",
+         "write `leaves battery >= 3 %`", "QualityReq r\n    leaves battery >= 3 %\n"),
+        ("QualityReq r\n    keeps less than 3 N of force while near\n", SIGNAL + "`less`",
+         "write `keeps force < 3 N`", "QualityReq r\n    keeps force < 3 N while near\n"),
+        ("QualityReq r\n    leaves 3 % battery\n", SIGNAL + "`3 %`", "write `leaves battery >= 3 %`", None),
+        ("QualityReq r\n    leaves 3 % <= battery, 3\n", "expected the end of the line, found `,`", None, None),
+        ("QualityReq r\n    succeeds 98 %\n", "expected `within`, or the end of the line, found `98 %`",
+         "a deadline is written `within 30 s`, a probability `in at least 98 % of runs`", None),
+        ("QualityReq r\n    succeeds 30 s\n", "expected `within`, or the end of the line, found `30 s`",
+         "a deadline is written `within 30 s`, a probability `in at least 98 % of runs`",
+         "QualityReq r\n    succeeds within 30 s\n"),
         ("QualityReq r\n    within 30 s\n",
          "expected a verb after `within` (takes, succeeds, needs, keeps, …), found `30 s`",
          "write `succeeds within 30 s`, or `takes at most 30 s`", None),
