@@ -378,12 +378,12 @@ class Server(LanguageServer):
     async def _use_pause(self) -> None:
         """While the editor is idle, do pending maintenance, and prepare for the first requests about open files,
         handling messages between steps; an edit ends it."""
-        await asyncio.sleep(PAUSE)
-        while self.answering:
-            await asyncio.sleep(PAUSE)
         if self.scanned.is_set() and not self._is_settled:
             gc.freeze()  # the first objects stay alive: scanning them would delay an answer
             self._is_settled = True
+        await asyncio.sleep(PAUSE)
+        while self.answering:
+            await asyncio.sleep(PAUSE)
         self._ready.intersection_update(self.session.open)
         for path in [path for path in self.session.open if path not in self._ready]:
             with suppress(Unknown):
