@@ -10,7 +10,7 @@ from typing import Final
 from btq_lang.catalog.units import dimension_name, parse_unit
 from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
-from btq_lang.grammar.conditions import COMPARISONS, HEADS, ConditionParser
+from btq_lang.grammar.conditions import BOUNDS, COMPARISONS, HEADS, RELATIONS, ConditionParser
 from btq_lang.grammar.cursor import shown
 from btq_lang.syntax.scan import number_end
 from btq_lang.syntax.tokens import NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
@@ -38,7 +38,6 @@ from btq_lang.util.text import Span
 VERB_WORDS: Final = frozenset(VERBS)
 HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
 MAX_CASES: Final = 100  # in one value: each case of a table may be another table
-RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"): "<", ("more", "than"): ">"}
 
 
 class ClaimParser(ConditionParser):
@@ -132,23 +131,18 @@ class ClaimParser(ConditionParser):
             self.expected(_A_VERB, (note,))
         elif first is not None and first.raw == "at" and (fixes := self.takes_before(first)):
             self.expected(f"a verb before `at {self.raw}`", (MEANT["at"],), fixes)
-        elif first is not None and first.kind == NAME and (first.raw in MEANT or first.raw in NO_VERBS):
-            note = MEANT.get(first.raw) or NO_VERBS[first.raw]
-            self.expected(f"a verb after `{first.raw}` (takes, succeeds, needs, keeps, …)", (note,))
+        elif first is not None and first.kind == NAME and (noted := MEANT.get(first.raw) or NO_VERBS.get(first.raw)):
+            self.expected(f"a verb after `{first.raw}` (takes, succeeds, needs, keeps, …)", (noted,))
         elif first is not None and self.kind == OPERATOR and self.raw in COMPARISONS:
             at = first.start + self.base
             fix = replace_fix("Put `keeps` before it", Span(at, at), "keeps ")
-            if first.raw in ("time", "duration") and (bound := _BOUNDS.get((self.raw,))):
+            if first.raw in ("time", "duration") and (bound := BOUNDS.get((self.raw,))):
                 written = f"takes {' '.join(bound)}"
                 fix = write_fix(written, Span(at, self.here().end))
             message = "expected a verb before the condition: `keeps`, `never`, `needs` or `leaves`"
             notes = ("`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",)
             self.complain(Span(at, self.here().end), message, fix, notes=notes)
             self.recover()
-        elif isinstance(subject, Path) and self.at_word("fails"):
-            self.expected(
-                _A_VERB, ("`tries at most 3` limits the attempts, `succeeds` demands that the node does not fail",)
-            )
         elif self.kind == NAME and (likely := near(self.raw, VERB_WORDS, limit=1)):
             self.misspelt(self.here(), self.raw, likely[0])
             self.recover()
@@ -165,6 +159,8 @@ class ClaimParser(ConditionParser):
             )
             if subject.names[0].kind == STRING:
                 note = "a requirement has one title, after its name; reasons are written `because …`"
+            elif self.kind == NAME and self.raw in MEANT:
+                note = MEANT[self.raw]
             elif self.kind == STRING:
                 note = 'a quality goes after `:` and a title in quotes: QualityReq ID : quality "title"'
             self.expected(f"a verb after `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
@@ -267,26 +263,21 @@ class ClaimParser(ConditionParser):
 
     def relation(self) -> str | None:
         """ "at" "most" | "at" "least" | "less" "than" | "more" "than"; other words for it are reported"""
-        if self.kind != NAME and self.kind != OPERATOR:
+        found = self.bound_ahead() if self.kind == NAME or self.kind == OPERATOR else None
+        if found is None:
             return None
-        for length in (5, 4, 3, 2, 1):
-            words = tuple(self.raws[self.index : self.index + length])
-            meant = _BOUNDS.get(words)
-            if meant is not None:
-                if words != meant:
-                    span = Span(self.here().start, self.starts[self.index + length - 1] + len(words[-1]))
-                    written = " ".join(meant)
-                    self.complain(span, f"this bound is written `{written}`", write_fix(written, span, safe=True))
-                self.go_to(self.index + length)
-                return RELATIONS[meant]
-        return None
+        length, meant = found
+        if tuple(self.raws[self.index : self.index + length]) != meant:
+            self.written_otherwise("this bound", length, " ".join(meant))
+        self.go_to(self.index + length)
+        return RELATIONS[meant]
 
     def no_relation(self) -> None:
         """Report a bound without its first words."""
         is_value = self.kind in (QUANTITY, NUMBER)
         note = f"write the kind of bound before the value: `at most {self.raw if is_value else '30 s'}`"
         fixes: tuple[Fix, ...] = ()
-        if is_value and self.raws[self.index + 1] == "-":
+        if is_value and self.raws[self.index + 1] in ("-", "to"):
             note = "a range is written `between 10 s and 20 s`"
         elif self.kind == QUANTITY and self.raws[self.index - 1] in _OF_DURATIONS:
             fixes = (self.put_before("at most"),)
@@ -348,11 +339,12 @@ MODALS: Final = frozenset(("must", "shall", "should", "will", "may"))
 NO_VERBS: Final = {  # what else people write before or as a verb
     **dict.fromkeys(MODALS, "a clause begins with its verb, without such a word: `takes at most 30 s`"),
     **dict.fromkeys(("finishes", "ends", "completes"), "write `succeeds within 30 s`, or `takes at most 30 s`"),
+    "fails": "`tries at most 3` limits the attempts, `succeeds` demands that the node does not fail",
     **dict.fromkeys(("stays", "remains", "is"), "what holds while a node runs is written `keeps battery >= 15 %`"),
 }
 MEANT: Final = {  # by the word that is read as a node before a verb
     "at": "a bound goes after its verb, `takes at most 3 s`; a probability is written `in at least 95 % of runs`",
-    "violation": "write `on violation fail`",
+    **dict.fromkeys(("violation", "otherwise"), "write `on violation fail`"),
     **dict.fromkeys(("max", "maximum"), "an upper bound goes after its verb: `takes at most 30 s`"),
     **dict.fromkeys(("min", "minimum"), "a lower bound goes after its verb: `takes at least 1 s`"),
     "within": "write `succeeds within 30 s`, or `takes at most 30 s`",
@@ -374,26 +366,3 @@ _NEVER_FAILS: Final = (
     "write `succeeds` for a node that must not fail, or `never node Dock` for a node that must not run"
 )
 _OF_DURATIONS: Final = words(operands=("duration",))
-# How a bound begins, and what else people write for that.
-_BOUNDS: Final[dict[tuple[str, ...], tuple[str, str]]] = {
-    **{words: words for words in RELATIONS},
-    **{
-        (word, *than, "or", "equal", *to): (("at", "most") if word in ("less", "smaller", "lower") else ("at", "least"))
-        for word in ("less", "smaller", "lower", "more", "greater", "larger")
-        for than in ((), ("than",))
-        for to in ((), ("to",))
-    },
-    **dict.fromkeys(
-        (("no", "more", "than"), ("not", "more", "than"), ("no", "longer", "than"), ("up", "to"), ("=", "<")),
-        ("at", "most"),
-    ),
-    **dict.fromkeys((("<=",), ("within",), ("max",), ("maximum",), ("maximal",), ("maximally",)), ("at", "most")),
-    **dict.fromkeys(
-        (("no", "less", "than"), ("not", "less", "than"), ("no", "fewer", "than"), ("=", ">")), ("at", "least")
-    ),
-    **dict.fromkeys(((">=",), ("min",), ("minimum",), ("minimal",), ("minimally",)), ("at", "least")),
-    **dict.fromkeys((("longer", "than"), ("greater", "than"), ("larger", "than")), ("more", "than")),
-    **dict.fromkeys(((">",), ("above",), ("over",)), ("more", "than")),
-    **dict.fromkeys((("shorter", "than"), ("smaller", "than"), ("fewer", "than")), ("less", "than")),
-    **dict.fromkeys((("<",), ("under",), ("below",)), ("less", "than")),
-}

@@ -26,6 +26,7 @@ _OTHER_FUNCTIONS: Final = {
     **{"maximum": "max", "minimum": "min", "std": "stddev", "delta": "change", "diff": "change"},
 }
 COMPARISONS: Final = frozenset(("<=", ">=", "<", ">", "==", "!="))
+RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"): "<", ("more", "than"): ">"}
 
 MAX_NESTING: Final = 50  # of brackets in one condition
 MAX_OPERATORS: Final = 100  # in one condition
@@ -119,6 +120,10 @@ class ConditionParser(Cursor):
             return None
         operators: list[str] = []
         operands = [first]
+        if isinstance(first, Operand) and (meant := self.in_words()):
+            operators.append(meant)
+            operand = self.expr()
+            operands += [operand] if operand else []
         while self.kind == OPERATOR and (self.raw in COMPARISONS or self.raw == "="):
             if self.raw == "=":
                 if self.group and self._nesting < 2:  # of the next attribute
@@ -138,6 +143,29 @@ class ConditionParser(Cursor):
         if not operators:
             return first
         return Comparison(first.start, operands[-1].end, tuple(operators), tuple(operands))
+
+    def in_words(self) -> str:
+        """Report `wind below 10 m/s`, and go to the value; the comparison that is meant, or empty."""
+        found = self.bound_ahead() if self.kind == NAME and self.raw not in HEADS else None
+        if found is None or self.kinds[self.index + found[0]] not in (NUMBER, QUANTITY):
+            return ""
+        length, meant = found
+        self.written_otherwise("this comparison", length, RELATIONS[meant])
+        self.go_to(self.index + length)
+        return RELATIONS[meant]
+
+    def bound_ahead(self) -> tuple[int, tuple[str, str]] | None:
+        """How many words from here say how a bound begins, and how that is written."""
+        for length in (5, 4, 3, 2, 1):
+            if (meant := BOUNDS.get(tuple(self.raws[self.index : self.index + length]))) is not None:
+                return length, meant
+        return None
+
+    def written_otherwise(self, what: str, length: int, written: str) -> None:
+        """Report that the next words, so many, are written otherwise."""
+        last = self.index + length - 1
+        span = Span(self.here().start, self.starts[last] + len(self.raws[last]))
+        self.complain(span, f"{what} is written `{written}`", write_fix(written, span, safe=True))
 
     def single_equals(self) -> None:
         """Report `=` in a comparison, where `==` is meant, and `=<` and `=>`."""
@@ -245,4 +273,27 @@ _FOLLOWED_BY: Final = {
     "on": "violation",
     "verified": "by",
     "sum": "of",
+}
+# How a bound begins, and what else people write for that.
+BOUNDS: Final[dict[tuple[str, ...], tuple[str, str]]] = {
+    **{words: words for words in RELATIONS},
+    **{
+        (word, *than, "or", "equal", *to): (("at", "most") if word in ("less", "smaller", "lower") else ("at", "least"))
+        for word in ("less", "smaller", "lower", "more", "greater", "larger")
+        for than in ((), ("than",))
+        for to in ((), ("to",))
+    },
+    **dict.fromkeys(
+        (("no", "more", "than"), ("not", "more", "than"), ("no", "longer", "than"), ("up", "to"), ("=", "<")),
+        ("at", "most"),
+    ),
+    **dict.fromkeys((("<=",), ("within",), ("max",), ("maximum",), ("maximal",), ("maximally",)), ("at", "most")),
+    **dict.fromkeys(
+        (("no", "less", "than"), ("not", "less", "than"), ("no", "fewer", "than"), ("=", ">")), ("at", "least")
+    ),
+    **dict.fromkeys(((">=",), ("min",), ("minimum",), ("minimal",), ("minimally",)), ("at", "least")),
+    **dict.fromkeys((("longer", "than"), ("greater", "than"), ("larger", "than")), ("more", "than")),
+    **dict.fromkeys(((">",), ("above",), ("over",)), ("more", "than")),
+    **dict.fromkeys((("shorter", "than"), ("smaller", "than"), ("fewer", "than")), ("less", "than")),
+    **dict.fromkeys((("<",), ("under",), ("below",)), ("less", "than")),
 }
