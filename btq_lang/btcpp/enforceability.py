@@ -1,4 +1,4 @@
-"""Whether the engine can be made to enforce a clause: what that takes, or why it is not enforced.
+"""Whether the engine is to enforce a clause, and can be made to: what that takes, or why it is not enforced.
 
 One invariant: build, overview, editor and check all use this module, so they agree.  Checks of small files import it,
 so it depends on no export; which nodes of a file get what is for `enforcement`.
@@ -7,7 +7,7 @@ so it depends on no export; which nodes of a file get what is for `enforcement`.
 from __future__ import annotations
 
 from collections.abc import Callable, Container
-from typing import Final
+from typing import Final, Literal, TypeAlias
 
 from btq_lang.btcpp.around import may_be_skipped
 from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
@@ -19,6 +19,16 @@ from btq_lang.requirements.spans import node_of
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
+
+Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
+
+
+def unasked(requirement: Requirement) -> tuple[Way, str] | None:
+    """How the clauses of a requirement are checked that the engine need not enforce, and why; None if it is to enforce
+    them."""
+    if requirement.is_verified_by_people:
+        return "reviewed", f"verified by {requirement.method}"
+    return None if requirement.demands_enforcement else ("monitored", "")
 
 
 class Elsewhere(NotEnforced):
@@ -62,8 +72,8 @@ class Judge:
     def why_not(self, applied: Applied, claim: Claim) -> str | None:
         """Why the engine does not enforce a clause that it should; None if it does, or if the mission's root is
         unknown, which is reported of the mission."""
-        if applied.requirement.is_verified_by_people:
-            return f"verified by {applied.requirement.method}"
+        if (known := unasked(applied.requirement)) is not None:
+            return known[1]
         try:
             self.needs(applied.requirement, claim, self.node(applied, claim), "_", "@_")
         except UnknownMission:

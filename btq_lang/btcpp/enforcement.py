@@ -15,12 +15,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
-from typing import Final, Literal, TypeAlias
+from typing import Final
 
 from btq_lang.btcpp.around import START, Wrapper, first_values, leaf
 from btq_lang.btcpp.conditions import all_of
 from btq_lang.btcpp.document import Comment, Document, Element
-from btq_lang.btcpp.enforceability import Elsewhere, Judge, where_else
+from btq_lang.btcpp.enforceability import Elsewhere, Judge, Way, unasked, where_else
 from btq_lang.btcpp.export import Export, is_mission
 from btq_lang.btcpp.guards import NotEnforced
 from btq_lang.btcpp.keys import Keys
@@ -33,8 +33,6 @@ from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
-
-Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
 
 
 class ClauseEnforcement(Record):
@@ -104,14 +102,6 @@ def clause_enforcements(
         return ()
     found = requirements(workspace, path)
     return _plans(workspace, found, path, _written(workspace, path, bundled))[0].clauses
-
-
-def unasked(requirement: Requirement) -> tuple[Way, str] | None:
-    """How the clauses of a requirement are checked that the engine need not enforce, and why; None if it is to enforce
-    them."""
-    if requirement.is_verified_by_people:
-        return "reviewed", f"verified by {requirement.method}"
-    return None if requirement.demands_enforcement else ("monitored", "")
 
 
 def _has_requirements(workspace: Workspace, path: str) -> bool:

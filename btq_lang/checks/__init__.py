@@ -8,7 +8,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
     kinds.py, names.py, ports.py, children.py, trees.py, includes.py   what the engine would refuse
-    literals.py, strings.py, scripts.py, counts.py, empty.py, outputs.py   values
+    literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
     entries.py, pointers.py, writers.py, misspelt.py, mixed_types.py   blackboard entries
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
@@ -17,7 +17,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     measures.py, clauses.py, bounds.py, limits.py   requirements by themselves
     requirements.py, qualities.py, repeated.py, prose.py   names of requirements and qualities
     demanded.py, demands.py, budgets.py, signals.py, renewals.py, unenforced.py   requirements at their nodes
-    calls.py, origins.py, wording.py, placeholders.py   shared; XML
+    calls.py, origins.py, strings.py, wording.py, placeholders.py   shared; XML
     suppressions.py, silencing.py   silenced rules
 """
 

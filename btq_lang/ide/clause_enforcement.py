@@ -5,7 +5,8 @@ One invariant: it reports the plan of the build itself, in its words.
 
 from __future__ import annotations
 
-from btq_lang.btcpp.enforcement import ClauseEnforcement, clause_enforcements, unasked
+from btq_lang.btcpp.enforceability import unasked
+from btq_lang.btcpp.enforcement import ClauseEnforcement, clause_enforcements
 from btq_lang.requirements.definitions import requirement
 from btq_lang.syntax.tree import Claim, Requirement
 from btq_lang.workspace.file import Definition

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
-from btq_lang.btcpp.enforcement import unasked
+from btq_lang.btcpp.enforceability import unasked
 from btq_lang.graph.missions import clauses_in_words
 from btq_lang.requirements.model import Applied
 from btq_lang.requirements.resolve import Requirements
