@@ -30,7 +30,6 @@ def hunt(request: pytest.FixtureRequest) -> Hunt:
     return made
 
 
-@pytest.mark.by_turns
 def test_both_say_the_same(hunt: Hunt) -> None:
     assert hunt.differences == []
 
