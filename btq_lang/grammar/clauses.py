@@ -96,6 +96,8 @@ class ClauseParser(ClaimParser):
             message = f"a probability is written `in at least {self.raw}`"
             self.complain(self.here(), message, self.put_before("at least"))
             value = self.take()
+        elif self.kind == NUMBER:
+            value = self.percentage("at least 98 %", "at least ")
         elif self.expect_word("at") and self.expect_word("least"):
             value = self.percentage("98 %")
         if value is not None and self.expect_word("of", forgotten=self.raw in EXPERIMENTS):
@@ -190,13 +192,17 @@ class ClauseParser(ClaimParser):
         """ "activations" | "runs" """
         return self.one_of(("activations", "runs"))
 
-    def percentage(self, example: str) -> Word | None:
-        """QUANTITY"""
+    def percentage(self, example: str, before: str = "") -> Word | None:
+        """QUANTITY; `before`: the words that a fix puts before it"""
         fixes: tuple[Fix, ...] = ()
         if self.kind == NUMBER:
-            share = float(self.raw)
+            share, span = float(self.raw), self.here()
             percent = f"{share * 100:.10g} %" if 0 < share <= 1 else f"{self.raw} %"
-            fixes = (write_fix(percent, self.here()),)
+            whole = self.index + 2
+            if self.raws[self.index + 1] == "of" and self.kinds[whole] == NUMBER and float(self.raws[whole]) > 0:
+                percent = f"{share * 100 / float(self.raws[whole]):.10g} % of"
+                span = Span(span.start, self.starts[whole] + len(self.raws[whole]))
+            fixes = (write_fix(before + percent, span),)
         if self.kind == QUANTITY:
             return self.take()
         self.expected(f"a percentage: {example}", (), fixes)
