@@ -30,7 +30,8 @@ class Verb(Record):
         phrases: for each continuation: its words, an example, what it is about, and when a clause is violated.
         said: a measure in a sentence about one activation; `{}` is the measure.
         forms: how a clause begins, each with what an editor inserts, if that is more; empty: with the word alone.
-        limits: which end of an activation a bound is on: any, or only its success.
+        limits: which end of an activation a bound of its duration is on: any, or only its success; empty if it bounds
+            no duration.  Budgets need one; sums of nodes and times between events take those of any end.
         enforced: how the engine enforces it: a Timeout, a condition before the node that refuses its start, one that is
             evaluated while the node runs, one after it.
         why_monitored: why the engine cannot enforce its clauses.
