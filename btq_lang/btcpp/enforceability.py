@@ -20,6 +20,7 @@ from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
+# How a clause is covered: by the tree that `btq build` makes, by tools that read logs, or by people.
 Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
 
 

@@ -191,16 +191,17 @@ class ClaimParser(ConditionParser):
 
     def signal_last(self, verb: str) -> bool:
         """Report `leaves at least 3 % battery`, whose signal goes first."""
-        relation = RELATIONS.get((self.raw, self.raws[self.index + 1])) if self.kind == NAME else None
-        value = self.index + (2 if relation else 0)
+        found = self.bound_ahead() if self.kind == NAME else None
+        length, relation = found or (0, ("at", "least"))
+        value = self.index + length
         if self.kinds[value] not in (QUANTITY, NUMBER):
             return False
         signal = value + (2 if self.raws[value + 1] == "of" else 1)
         if self.kinds[signal] != NAME or self.raws[signal] in _NO_NAMES:
             return False
-        meant = f"{self.raws[signal]} {relation or '>='} {self.raws[value]}"
+        meant = f"{self.raws[signal]} {RELATIONS[relation]} {self.raws[value]}"
         span = Span(self.here().start, self.starts[signal] + len(self.raws[signal]))
-        fixes = (write_fix(meant, span),) if relation else ()
+        fixes = (write_fix(meant, span),) if found else ()
         self.expected("a condition, which begins with its signal", (f"write `{verb} {meant}`",), fixes)
         return True
 

@@ -123,7 +123,9 @@ class ConditionParser(Cursor):
         if isinstance(first, Operand) and (meant := self.in_words()):
             operators.append(meant)
             operand = self.expr()
-            operands += [operand] if operand else []
+            if operand is None:
+                return first
+            operands.append(operand)
         while self.kind == OPERATOR and (self.raw in COMPARISONS or self.raw == "="):
             if self.raw == "=":
                 if self.group and self._nesting < 2:  # of the next attribute
@@ -146,7 +148,7 @@ class ConditionParser(Cursor):
 
     def in_words(self) -> str:
         """Report `wind below 10 m/s`, and go to the value; the comparison that is meant, or empty."""
-        found = self.bound_ahead() if self.kind == NAME and self.raw not in HEADS else None
+        found = self.bound_ahead() if self.kind == NAME and self.raw not in _ENDS_OPERAND else None
         if found is None or self.kinds[self.index + found[0]] not in (NUMBER, QUANTITY):
             return ""
         length, meant = found

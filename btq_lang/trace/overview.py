@@ -12,10 +12,9 @@ from btq_lang.graph.figure import Figure
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
+    from btq_lang.btcpp.enforceability import Way
     from btq_lang.evidence.verdicts import Verdict
 
-    # How a clause is covered: by the tree that `btq build` makes, by tools that read logs, or by people.
-    Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
     # Whether a node carries a quality or a requirement: itself, through a node above it, or not at all.
     Carries: TypeAlias = Literal["own", "above", "none"]
 

@@ -1195,7 +1195,7 @@ check, complete = session.Session.check, features.completion.complete
 seconds = [0.2]
 def stepping(self, path, is_cancelled):
     def step():
-        time.sleep(seconds[0])
+        time.sleep(seconds[0])  # else the check ends before the request comes
         return is_cancelled()
     check(self, path, step)
     print("checked", file=sys.stderr)
