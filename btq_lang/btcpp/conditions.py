@@ -30,6 +30,7 @@ from btq_lang.requirements.model import (
     Number,
     Read,
     Running,
+    Scope,
     Script,
     Signal,
     Table,
@@ -60,7 +61,7 @@ def condition_script(condition: Condition, stored: Stored) -> str:
         return script
     if isinstance(condition, Not):
         return f"(!{condition_script(condition.condition, stored)})"
-    if isinstance(condition, InContext):
+    if isinstance(condition, InContext | Scope):
         return condition_script(condition.condition, stored)
     if isinstance(condition, Compare):
         return _comparison(condition, stored)

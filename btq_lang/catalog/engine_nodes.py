@@ -54,6 +54,7 @@ _CONTROL: Final = (
         "children count as done; if all are skipped, so is the Sequence.",
         symbols=("->", "→"),
         flow="sequence",
+        one_tick="both",
         since=VERSION_3,
     ),
     control(
@@ -64,6 +65,7 @@ _CONTROL: Final = (
         "interrupt it (ReactiveFallback can). It hides the failure of every child but the last.",
         symbols=("?",),
         flow="fallback",
+        one_tick="both",
         since=VERSION_3,
     ),
     control(
@@ -80,6 +82,7 @@ _CONTROL: Final = (
         ),
         symbols=("||", "⇉"),
         flow="parallel",
+        one_tick="unskipped",
         since=VERSION_3,
     ),
     control(
@@ -91,6 +94,7 @@ _CONTROL: Final = (
         ports=(_input("max_failures", "int", "How many failures make it fail; -1 means all", "1", role="failures"),),
         symbols=("All||", "All⇉"),
         flow="parallel-all",
+        one_tick="unskipped",
     ),
     control(
         "ReactiveSequence",
@@ -101,6 +105,7 @@ _CONTROL: Final = (
         "From 4.7 on the engine refuses a child in the explicit form (<Action ID=…>) directly inside it.",
         symbols=("R->", "R→"),
         flow="sequence",
+        one_tick="both",
         reactive=True,
         inspects_children=True,
         since=VERSION_3,
@@ -113,6 +118,7 @@ _CONTROL: Final = (
         "the node halts all others.",
         symbols=("R?",),
         flow="fallback",
+        one_tick="both",
         reactive=True,
         since=VERSION_3,
     ),
@@ -125,6 +131,7 @@ _CONTROL: Final = (
         symbols=("M->", "M→"),
         execution="asynchronous",
         flow="sequence",
+        one_tick="first",
         keeps_place=True,
     ),
     control(
@@ -135,6 +142,7 @@ _CONTROL: Final = (
         symbols=("A->", "A→"),
         execution="asynchronous",
         flow="sequence",
+        one_tick="first",
     ),
     control(
         "AsyncFallback",
@@ -144,6 +152,7 @@ _CONTROL: Final = (
         symbols=("A?",),
         execution="asynchronous",
         flow="fallback",
+        one_tick="first",
     ),
     control(
         "IfThenElse",
@@ -153,6 +162,7 @@ _CONTROL: Final = (
         "node requires two or three children, which the engine checks only at the first tick.",
         children=(2, 3),
         flow="choice",
+        one_tick="both",
         late_count=True,
         since=VERSION_3,
     ),
@@ -164,6 +174,7 @@ _CONTROL: Final = (
         "node requires two or three children, which the engine checks only at the first tick.",
         children=(2, 3),
         flow="choice",
+        one_tick="both",
         reactive=True,
         late_count=True,
         since=VERSION_3,
@@ -183,6 +194,7 @@ _CONTROL: Final = (
             ),
             aliases=("Switch",),
             flow="switch",
+            one_tick="next",
             late_count=True,
             since=VERSION_3,
         )
@@ -197,6 +209,7 @@ _CONTROL: Final = (
         children=(2, None),
         ports=(_input("catch_on_halt", "bool", "Also clean up when the node is halted within the try block", "false"),),
         flow="try",
+        one_tick="both",
         since="4.9",
     ),
 )
@@ -228,6 +241,7 @@ def _loop(suffix: str, type_: str, queue_before: str, aliases: tuple[str, ...] =
         aliases=aliases,
         execution="asynchronous",
         flow="for-each",
+        one_tick="first",
     )
 
 
@@ -249,6 +263,7 @@ _DECORATORS: Final = (
         "Turns success into failure and failure into success.",
         "It passes RUNNING and SKIPPED on.",
         flow="invert",
+        one_tick="first",
         since=VERSION_3,
     ),
     decorator(
@@ -256,6 +271,7 @@ _DECORATORS: Final = (
         "Succeeds whenever its child completes.",
         "It turns a failure of the child into SUCCESS, and passes RUNNING and SKIPPED on.",
         flow="force-success",
+        one_tick="first",
         since=VERSION_3,
     ),
     decorator(
@@ -263,6 +279,7 @@ _DECORATORS: Final = (
         "Fails whenever its child completes.",
         "It turns a success of the child into FAILURE, and passes RUNNING and SKIPPED on.",
         flow="force-failure",
+        one_tick="first",
         since=VERSION_3,
     ),
     decorator(
@@ -283,6 +300,7 @@ _DECORATORS: Final = (
         ports=(_input("num_cycles", "int", "The number of cycles; -1 means forever", required=True, role="count"),),
         execution="asynchronous",
         flow="repeat",
+        one_tick="first",
         since=VERSION_3,
     ),
     decorator(
@@ -299,6 +317,7 @@ _DECORATORS: Final = (
         aliases=("Retry",),
         execution="asynchronous",
         flow="retry",
+        one_tick="first",
         since=VERSION_3,
     ),
     decorator(
@@ -309,6 +328,7 @@ _DECORATORS: Final = (
         "has no effect. 0 means no limit.",
         ports=(_duration("msec", "The time limit; 0 means no limit"),),
         flow="timeout",
+        one_tick="first",
         since=VERSION_3,
     ),
     decorator(
@@ -327,6 +347,7 @@ _DECORATORS: Final = (
         "SKIPPED or, with then_skip=false, the child's result again.",
         ports=(_input("then_skip", "bool", "Afterwards return SKIPPED; false repeats the first result", "true"),),
         flow="once",
+        one_tick="first",
     ),
     decorator(
         "Precondition",
@@ -451,6 +472,7 @@ _LEAVES: Final = (
         "SubTree",
         (0, 0),
         ports=(_input("_autoremap", "bool", "Pass every entry under its own name", "false"),),
+        one_tick="first",
         since=VERSION_3,
     ),
 )

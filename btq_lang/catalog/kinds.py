@@ -76,6 +76,11 @@ Flow: TypeAlias = Literal[
     "notices",  # FAILURE when it starts, then SUCCESS each time that something has happened
 ]
 
+# How far one tick of a node goes, which tells when its children began in a log, where there are no ticks.  first: it
+# writes RUNNING and then ticks its first child; next: when a child has ended, it ticks the next one; both: first and
+# next; unskipped: both, but it ticks a skipped child again at a later tick; empty: neither, or it is unknown.
+OneTick: TypeAlias = Literal["", "first", "next", "both", "unskipped"]
+
 # The role of a port's value in the flow of its node.  count: how often it runs its child at most; -1: without end.
 # time: how long it waits, or lets its child run.  successes, failures: how many of its children must succeed or
 # fail for it to do so; a negative number counts from the end.  otherwise: what it returns without its child.
@@ -131,6 +136,7 @@ class NodeKind(Record):
         keeps_place: whether it stays at its child after a failure or a halt.
         inspects_children: whether the engine looks up the tags of its children at load, and refuses what
             `versions.NO_EXPLICIT_CHILD` and `versions.ONE_ASYNC_SEQUENCE` describe.
+        one_tick: how far one tick of it goes.
         late_count: whether a wrong number of children throws only when the node is ticked, not at load.
         memory: the result after which its parent must not reset it, or it forgets what it waits for; empty: any parent
             may reset it.
@@ -150,6 +156,7 @@ class NodeKind(Record):
     reactive: bool = False
     keeps_place: bool = False
     inspects_children: bool = False
+    one_tick: OneTick = ""
     late_count: bool = False
     memory: Literal["", "success", "failure"] = ""
     since: str = "4.6"

@@ -5,12 +5,13 @@ One invariant: a clause that cannot be judged is unknown with the reason, and ne
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
-from btq_lang.btcpp.around import LIMITING, WATCHING
-from btq_lang.catalog.verbs import VERBS, words
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence import margins
+from btq_lang.evidence.conditions import Measure
 from btq_lang.evidence.edges import WHILE_IT_RUNS, edge_of, key_of
 from btq_lang.evidence.history import History, Nearby, near
 from btq_lang.evidence.margins import Margins
@@ -22,16 +23,19 @@ from btq_lang.evidence.run_verbs import run_judge
 from btq_lang.evidence.scopes import in_scope, within
 from btq_lang.evidence.signals import Signals, Unknown
 from btq_lang.evidence.tally import Run, Tally
-from btq_lang.evidence.verbs import JUDGES, Judgement
+from btq_lang.evidence.verbs import JUDGES, Judgement, agreed
+from btq_lang.evidence.verbs import duration as lasted
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Link, Measures
 from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import Mission, Running, Span, Target, Total, Value, parts_in
 from btq_lang.util.record import Record, replace
+from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
     from btq_lang.evidence.explain import Explainer
     from btq_lang.evidence.guards import Guard, Refusal
     from btq_lang.evidence.identity import Joined
+    from btq_lang.evidence.model import Moment
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
     from btq_lang.evidence.verdicts import Timeline, Verdict
@@ -50,6 +54,10 @@ class _Place(Record):
     others: Nearby
 
 
+# An activation as it may have been, what was observed during it then, and whether it was in scope.
+_Way: TypeAlias = "tuple[Activation, Observed, bool | Unknown]"
+
+
 class ClauseFindings:
     """What was found of a clause in some logs; it refers to no text, so it may go to another process.
 
@@ -57,6 +65,7 @@ class ClauseFindings:
         paths: of its nodes, as an ordered set.
         missing: why it cannot be judged at all its nodes; empty if it can.
         has_run: whether one of its nodes has.
+        missed: how many events happened while its node was not active.
         timeline: the run with the worst violation; None if none is kept.
     """
 
@@ -67,6 +76,7 @@ class ClauseFindings:
         self.paths: Final[dict[str, None]] = {}
         self.missing = ""
         self.has_run = False
+        self.missed = 0
         self.timeline: Timeline | None = None
 
     def add(self, other: ClauseFindings, runs: int) -> None:
@@ -79,6 +89,7 @@ class ClauseFindings:
         self.paths.update(other.paths)
         self.missing = self.missing or other.missing
         self.has_run = self.has_run or other.has_run
+        self.missed += other.missed
 
 
 class JudgedClause:
@@ -117,6 +128,8 @@ class JudgedClause:
         self._signals: Signals
         self._history: History
         self._waiting: Final[list[tuple[Activation, Observed, str]]] = []  # until it is known what else ran meanwhile
+        self._refused: Final[list[Refusal]] = []  # in the open run, of the clause's nodes
+        self._notes: Final[Counter[str]] = Counter()
         self._waits = False
         self._records: Final[list[Callable[[Judgement, int, int, str], None]]] = []
         self.explainer: Explainer
@@ -134,6 +147,7 @@ class JudgedClause:
         self._signals, self._history = signals, history
         self._nodes.clear()
         self._places.clear()
+        self._notes.clear()
         for uids in self._own(joined) if self._is_judged else ():
             others = nearby(uids[0])
             needed = [target_of(each) for each in self._events if each.condition is None]
@@ -159,8 +173,7 @@ class JudgedClause:
         self._waits = self._waits or activation.started[1] != activation.ended[1]
         if guard is not None and self._is_own(guard):
             self._margins.is_exact = False  # with another bound the guard would have done something else
-            sentence = f"stopped by its own guard after {duration(activation.seconds)}"
-            self._count(Judgement(False, activation.end, sentence), activation, path)
+            self._count(self._broken(activation, guard, observed), activation, path)
         elif self._judge is not None and self._running:
             self._waiting.append((activation, observed, path))
         elif self._judge is not None:
@@ -170,12 +183,30 @@ class JudgedClause:
         """Count a start that a guard refused: it violates the demand that the guard enforces, and for `succeeds` it is
         a failure.
         """
-        own = self.claim.verb == refusal.verb and self.requirement.name == refusal.requirement
-        if own or (VERBS[self.claim.verb].limits == "success" and VERBS[refusal.verb].operand == "condition"):
-            self.found.has_run = True
-            self._margins.is_exact = False
-            judgement = Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}")
-            self._add(judgement, path, refusal.time, refusal.time, self.explainer.chain(self.claim, judgement, path))
+        is_own = self._is_own(refusal.guard)
+        if not is_own and VERBS[self.claim.verb].limits != "success":
+            return
+        self.found.has_run = True
+        self._margins.is_exact = False
+        if is_own and VERBS[self.claim.verb].operand == "count":
+            self._refused.append(refusal)
+            return
+        by = f"its guard at {refusal.guard.path}" if is_own else refusal.guard.requirement
+        time = refusal.at[0]
+        judgement = Judgement(False, time, f"its start was refused by {by}")
+        self._add(judgement, path, time, time, self.explainer.chain(self.claim, judgement, path))
+
+    def _broken(self, activation: Activation, guard: Guard, observed: Observed) -> Judgement:
+        """The judgement of an activation that its own guard stopped, or whose success it did not accept."""
+        assert self._judge is not None, "a guard is about one activation"
+        judged = self._judge(self.judged, activation, observed)
+        measure = judged.measure if judged is not None and judged.holds is False else None
+        stopped = f"stopped by its own guard after {duration(activation.seconds)}"
+        if VERBS[self.claim.verb].limits and measure is None:
+            ran = lasted(self.judged, activation, observed)
+            measure = ran.beyond() if isinstance(ran, Measure) else None
+        sentence = f"its guard at {guard.path} did not accept its success" if guard.checks else stopped
+        return Judgement(False, activation.end, sentence, measure)
 
     def end_run(self, run: Run, root: Activation) -> None:
         """Judge the open run, which has ended; `root`: the activation of its root."""
@@ -188,7 +219,8 @@ class JudgedClause:
         if root.timing in CUT_BY_GAP and self._nodes:
             lost = Judgement(None, root.end, ROWS_LOST)
             self._add(lost, next(iter(self.found.paths)), root.end, root.end, ())
-            self._margins.add(margins.UNKNOWN, margins.UNKNOWN, None)
+            self._margins.add(margins.UNKNOWN, margins.UNKNOWN, ())
+        self._refused.clear()
         self._tally.end_run(run)
         self._margins.end_run(run.number)
 
@@ -201,8 +233,11 @@ class JudgedClause:
         for place in self._places:
             observed = Observed(self._signals, place.others, root.started, root.ended)
             own = self._history.of(place.uids)
-            over = OverRun(self.claim.verb, self.requirement.scopes, root, own, observed)
+            refused = [each for each in self._refused if each.uid in place.uids]
+            missed: list[Moment] = []
+            over = OverRun(self.claim.verb, self.requirement.scopes, root, own, observed, refused, missed)
             judged += [(_clocked(each, root), place, over) for each in self._judge_run(self.judged, over)]
+            self.found.missed += len(missed)
             if self._extremes:
                 self._measure(
                     [[_clocked(one, root) for one in self._judge_run(each, over)] for each in self._extremes], root
@@ -213,26 +248,35 @@ class JudgedClause:
             if found is not None and found.holds is False:
                 chain = self.explainer.over_run.chain(self.judged, found, over, place.others)
                 since = found.since if found.since is not None else root.begin
-                found = Judgement(False, found.at, found.sentence, found.measure)
+                found = Judgement(False, found.at, found.sentence, found.measure, most=found.most)
                 self._add(found, place.path, since, root.end, chain)
             else:
                 self._count(found, root, place.path)
 
     def _judge_one(self, activation: Activation, observed: Observed, path: str, root: Activation | None = None) -> None:
         """Count an activation; `root`: of the run, if the judgement depends on the order of events."""
-        counts = in_scope(self.requirement.scopes, self.claim.verb, observed)
-        if counts is False:
+        ways: list[_Way] = [(activation, observed, in_scope(self.requirement.scopes, self.claim.verb, observed))]
+        if not activation.is_begin_known:
+            early = activation.from_earliest()
+            earlier = observed.during(early)
+            ways.append((early, earlier, in_scope(self.requirement.scopes, self.claim.verb, earlier)))
+        if all(counts is False for *_, counts in ways):
             return
-        judgement = self._judged_as(self.judged, activation, observed, counts)
-        self._count(_clocked(judgement, root), activation, path)
+        self._count(_clocked(self._judged_by(self.judged, ways), root), activation, path)
         if self._extremes:
-            found = [self._judged_as(each, activation, observed, counts) for each in self._extremes]
-            self._measure([[_clocked(one, root)] for one in found], activation)
+            self._measure([[_clocked(self._judged_by(each, ways), root)] for each in self._extremes], activation)
+
+    def _judged_by(self, claim: Claim, ways: Sequence[_Way]) -> Judgement | None:
+        """The judgement of an activation by a claim; None: it does not count."""
+        judgements = [self._judged_as(claim, *way) for way in ways]
+        return judgements[0] if len(ways) == 1 else agreed(judgements[0], judgements[1], ways[0][0])
 
     def _judged_as(
         self, claim: Claim, activation: Activation, observed: Observed, counts: bool | Unknown
     ) -> Judgement | None:
-        """The judgement of an activation that counts, or may count, by a claim."""
+        """The same, of one that began when it says, and is in scope or not."""
+        if counts is False:
+            return None
         assert self._judge is not None, "the clause is judged by its activations"
         judgement = self._judge(claim, activation, observed)
         if activation.outcome == "O" and judgement is not None and judgement.holds:
@@ -256,17 +300,19 @@ class JudgedClause:
             self._margins.is_exact = False
             return
         for kept, broken in zip(within, beyond, strict=True):
-            measures = [each.measure if each is not None else None for each in (kept, broken)]
-            if is_first_decisive:
-                del measures[1]
-            si = next((each.si for each in measures if each is not None), None)
-            value = self._edge.across(si) if si is not None else None
-            self._margins.add(_kind(kept, of), _kind(broken, of), value)
+            judgements = [each for each in (kept, broken) if each is not None and each.measure is not None]
+            if is_first_decisive and (kept is None or kept.measure is None):
+                judgements.clear()
+            limits = [judgements[0].measure, judgements[0].most] if judgements else []
+            values = [self._edge.across(measure.si) for measure in limits if measure is not None]
+            self._margins.add(_kind(kept, of), _kind(broken, of), values)
 
     def _count(self, judgement: Judgement | None, of: Activation, path: str) -> None:
         if judgement is None:
             self._tally.cut_off += of.outcome == "O"
         else:
+            if judgement.note:
+                self._notes[judgement.note] += 1
             chain = self.explainer.chain(self.claim, judgement, path) if judgement.holds is False else ()
             since = judgement.since if judgement.since is not None else of.begin
             self._add(judgement, path, since, of.end, chain)
@@ -290,7 +336,10 @@ class JudgedClause:
         if isinstance(subject, Total):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
             return [tuple(uids)] if uids and not self.found.missing else []
-        return [(uid,) for uid in self._instances(joined, _known(subject))]
+        uids = self._instances(joined, _known(subject))
+        # Whether a mission succeeds is what its root returns, whatever is around the written one.
+        is_result = isinstance(subject, Mission) and VERBS[self.claim.verb].limits == "success"
+        return [(ROOT if is_result else uid,) for uid in uids]
 
     def _instances(self, joined: Joined, target: Target | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""
@@ -307,7 +356,7 @@ class JudgedClause:
         """Whether a guard enforces this clause; spans and sums have no guards."""
         if isinstance(self._subject, Span | Total):
             return False
-        return guard.requirement == self.requirement.name and self.claim.verb in _STOPPED_BY.get(guard.kind, ())
+        return guard.requirement == self.requirement.name and self.claim.verb in guard.verbs
 
     def _why_not(self) -> str:
         """Why it cannot be judged from logs; empty where it can."""
@@ -324,15 +373,15 @@ class JudgedClause:
             return f"`{self.claim.verb}` cannot be judged of {of}"
         return ""
 
-    def remark(self, tree: LoggedTree, keeping: Collection[int]) -> str | None:
-        """A remark on a count of starts: a node that completes at once and is not reset leaves a row in the log only
-        when its result changes.
-        """
+    def remarks(self, tree: LoggedTree, keeping: Collection[int]) -> Iterator[str]:
+        """Remarks on the current log, which has been read."""
+        yield from (f"{self.requirement.name}: {note} ({number} times)" for note, number in self._notes.items())
         for uid in self._nodes:
+            # A node that completes at once and is not reset leaves a row only when its result changes.
             if VERBS[self.claim.verb].operand in ("count", "rate") and not self._waits and tree.parent[uid] in keeping:
                 path = tree.nodes[uid].path
-                return f"{path} is not reset between its starts, so {self.requirement.name} may count too few of them"
-        return None
+                yield f"{path} is not reset between its starts, so {self.requirement.name} may count too few of them"
+                break
 
     @property
     def is_over_run(self) -> bool:
@@ -344,6 +393,9 @@ class JudgedClause:
         found = self.found
         tally = self._tally.result() if open_run is None else self._tally.so_far(open_run)
         verdict, why = verdict_of(tally, found.missing, found.has_run)
+        if verdict == NEVER and found.missed and self.claim.event is not None:
+            after = self.claim.text.partition(" after ")[2]
+            why = f"it was not running when {after} ({counted(found.missed, 'time')})"
         goal = self.requirement.goal
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
         is_once_a_run = isinstance(self._subject, Total) or (is_of_run and len(found.paths) == 1)
@@ -425,10 +477,3 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
     if judgement is None or root is None or root.timing != "broken":
         return judgement
     return Judgement(None, judgement.at, CLOCK_SET_BACK)
-
-
-# The kinds of guards that halt a node for each verb; other guards around it belong to other clauses.
-_STOPPED_BY: Final = {
-    LIMITING: words(enforced="limit"),
-    WATCHING: words(limits=("success",), enforced="guard"),
-}

@@ -25,6 +25,7 @@ from btq_lang.requirements.model import (
     Parameter,
     Read,
     Running,
+    Scope,
     Script,
     Table,
     Text,
@@ -62,6 +63,11 @@ class Measure:
         if self.excess == 0 and relation in ("<", ">"):
             self.excess = _JUST
 
+    def beyond(self) -> Measure:
+        """The same, on the wrong side of the bound: the engine stopped what it measures because of the bound."""
+        self.excess = max(self.excess, _JUST)
+        return self
+
     @property
     def holds(self) -> bool:
         """Whether the bound is kept."""
@@ -93,6 +99,8 @@ def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
         return found if isinstance(found, Unknown) else not found
     if isinstance(condition, InContext):
         return observed.holds(condition, moment, lambda: truth(condition.condition, observed, moment))
+    if isinstance(condition, Scope):
+        return truth(condition.condition, observed.in_scope, moment)
     if isinstance(condition, Flag):
         return condition.value
     if isinstance(condition, Read):
@@ -106,6 +114,7 @@ def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
 def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Value | Unknown:
     """The value of a bound at a moment; for a table, that of the first case that holds then."""
     if isinstance(bounded, Table):
+        observed = observed.in_scope
         for case in bounded.cases:
             holds = case.condition is None or truth(case.condition, observed, moment)
             if isinstance(holds, Unknown):

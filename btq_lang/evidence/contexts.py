@@ -39,7 +39,7 @@ class Contexts:
 
     def end_run(self, root: Activation) -> None:
         """Count the open run, which has ended; `root`: the activation of its root."""
-        observed = Observed(self._signals, self._nodes, root.started, root.ended, root.timing != "latest")
+        observed = Observed(self._signals, self._nodes, root.started, root.ended, root.timing != "latest").in_scope
         held, unknown = self.counts
         for context in self._contexts:
             is_unknown = False

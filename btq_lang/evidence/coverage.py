@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from array import array
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.catalog.nodes import tags_of
-from btq_lang.evidence.model import FAILURE, RUNNING, SUCCESS, Activation, LoggedTree, Outcome, Session, Transition
+from btq_lang.evidence.model import Activation, LoggedTree, Outcome
 from btq_lang.evidence.verdicts import NodeSummary, Repeats
 
 if TYPE_CHECKING:
@@ -53,7 +53,14 @@ class Coverage:
         node = self._now[uid]
         node.outcomes[outcome] += 1
         if activation.timing == "exact" and outcome in "SF":
-            node.times.append(activation.end - activation.begin)
+            if activation.is_duration_known:
+                node.times.append(activation.end - activation.begin)
+            else:
+                node.bounded += 1
+                node.longest = max(node.longest, activation.end - activation.earliest)
+                node.has_longest = node.has_longest and activation.earliest > 0
+        if activation.tick is not None:
+            node.ticks.append(activation.tick)
         if node.run != self._runs:
             node.run = self._runs
             node.runs += 1
@@ -67,34 +74,6 @@ class Coverage:
             self._now[began].began += 1
         for repeated in (self.retries, self.recoveries):
             repeated.end_run(run)
-
-    def timed(self, session: Session) -> Session:
-        """The session, with transitions that count how long the `tick()` of a leaf takes, which blocks the whole tree.
-
-        Only rows of one tick are compared: when a leaf writes its first row right after its parent has begun, or after
-        a sibling before it has completed, nothing else ran in between.
-        """
-        return Session(session.tree, self._timed(session), session.samples, session.remarks)
-
-    def _timed(self, session: Session) -> Iterator[Transition]:
-        tree = session.tree
-        parent = tree.parent
-        running: set[int] = set()
-        before, uid_before, status_before = 0, 0, RUNNING
-        for row in session.transitions:
-            time, uid, status = row
-            if uid in tree.leaves:
-                if uid not in running and status in _ANSWERS and time >= before:
-                    above = parent[uid]
-                    is_sibling = parent.get(uid_before) == above and uid_before < uid
-                    if (is_sibling and status_before in _RESULTS) or (uid_before == above and status_before == RUNNING):
-                        self._now[uid].ticks.append(time - before)
-                if status == RUNNING:
-                    running.add(uid)
-                else:
-                    running.discard(uid)
-            before, uid_before, status_before = row
-            yield row
 
     def add_all(self, other: Coverage, runs: int) -> None:
         """Add the statistics of later logs; `runs`: how many runs were before them."""
@@ -114,12 +93,15 @@ class _Node:
     """The counts of one node.
 
     Attributes:
-        times: of activations that succeeded or failed, in µs.
+        times: of activations that succeeded or failed, in µs, if known.
+        bounded: how many of these have a time that is not known.
+        longest: how long any of those took at most, in µs, if `has_longest`.
         run: the last one in which it was active.
     """
 
     def __init__(self, path: str, kind: str, is_leaf: bool, written: int | None) -> None:
-        self.began = 0
+        self.began = self.bounded = self.longest = 0
+        self.has_longest = True
         self.ticks: Final = array("q")
         self._path: Final = path
         self._kind: Final = kind
@@ -131,6 +113,9 @@ class _Node:
 
     def add_all(self, other: _Node) -> None:
         self.began += other.began
+        self.bounded += other.bounded
+        self.longest = max(self.longest, other.longest)
+        self.has_longest = self.has_longest and other.has_longest
         self.runs += other.runs
         self.times.extend(other.times)
         self.ticks.extend(other.ticks)
@@ -150,6 +135,8 @@ class _Node:
             failures_began=self.began,
             p50=_percentile(times, 50),
             p95=_percentile(times, 95),
+            bounded=self.bounded,
+            longest=self.longest / 1e6 if self.bounded and self.has_longest else None,
             tick_p95=_percentile(ticks, 95),
             tick_worst=_percentile(ticks, 100),
             written=written[self._written] if self._written is not None else None,
@@ -183,7 +170,5 @@ def _percentile(ordered: list[int], percent: int) -> float | None:
     return ordered[-(-len(ordered) * percent // 100) - 1] / 1e6 if ordered else None
 
 
-_RESULTS: Final = (SUCCESS, FAILURE)
-_ANSWERS: Final = (RUNNING, SUCCESS, FAILURE)
 _RECOVERING: Final = frozenset([kind.tag for kind in NODES.values() if kind.flow == "recover"])
 _RETRYING: Final = tags_of("retry") | _RECOVERING

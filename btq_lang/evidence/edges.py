@@ -48,6 +48,8 @@ def edge_of(claim: Claim, subject: Subject | None, requirement: Requirement) -> 
     if claim.limit is not None:
         if VERBS[claim.verb].operand == "count" and requirement.scopes:
             return None  # starts may be unknown
+        if claim.signal is not None and claim.signal.behaviour == "level":
+            return None  # what is a recharge depends on the bound
         return _edge_of_limit(claim, claim.limit)
     return _edge_of_condition(claim)
 

@@ -157,8 +157,7 @@ class MissionEvaluation:
         begin: int | None = None
         end = 0
         runs = 0
-        log = coverage.timed(session)
-        for activation in activations(log):
+        for activation in activations(session):
             coverage.count(activation)
             origin = explainer.see(activation)
             history.add(activation)
@@ -167,11 +166,12 @@ class MissionEvaluation:
             for listener in self.listeners:
                 listener.see(activation)
             if activation.uid in guards.concerned:  # few nodes are
-                for refusal in guards.refused(activation):
+                settled, refusal = guards.see(activation)
+                if refusal is not None:
                     clauses, path, _ = judged[refusal.uid]
                     for clause in clauses:
                         clause.refuse(refusal, path)
-                for ended, guard in guards.settled(activation):
+                for ended, guard in settled:
                     clauses, path, others = judged[ended.uid]
                     observed = Observed(signals, others, ended.started, ended.ended, ended.timing != "latest")
                     for clause in clauses:
@@ -196,7 +196,7 @@ class MissionEvaluation:
                     self._open_run.end(run, tree, self.found.clauses)
                 signals.forget_before(end)
                 self._ran(run.number)
-        session.remarks.extend([found for each in self._clauses if (found := each.remark(tree, log.keeping))])
+        session.remarks.extend(remark for each in self._clauses for remark in each.remarks(tree, session.keeping))
         self.found.add_source(
             Source(
                 file=source,

@@ -1,7 +1,8 @@
-"""What the guards, nodes that a build adds around others, did: which nodes they stopped, and whose start they refused.
+"""What the guards, nodes that a build adds around others, did: which nodes they stopped, whose start they refused, and
+whose success they did not accept.
 
-One invariant: a halted activation is passed on only when it is known what halted it: its nearest ancestor that was not
-halted itself.
+One invariant: an activation is passed on only when it is known what the guards around it did: a halted one when its
+nearest ancestor has ended that was not halted itself, one that succeeded when its success has been checked.
 """
 
 from __future__ import annotations
@@ -10,30 +11,33 @@ from collections.abc import Collection, Mapping
 from itertools import takewhile
 from typing import Final
 
-from btq_lang.btcpp.around import EVALUATING
+from btq_lang.btcpp.around import EVALUATING, LIMITING, WATCHING
 from btq_lang.catalog.verbs import words
-from btq_lang.evidence.model import ROOT, Activation, LoggedTree
+from btq_lang.evidence.model import ROOT, Activation, LoggedTree, Moment
 from btq_lang.util.record import Record
 
 
 class Guard(Record):
-    """A node that a build added around others to enforce a requirement.
+    """A node that a build added around another one to enforce a requirement.
 
     Attributes:
-        kind: `Timeout`, `ReactiveSequence`, `Sequence` or `ScriptCondition`.
+        path: of the node that decides: itself, or the condition that it evaluates.
+        verbs: of the clauses that it enforces.
+        checks: whether it evaluates a condition when the node has succeeded.
     """
 
-    kind: str
+    path: str
     requirement: str
+    verbs: frozenset[str]
+    checks: bool = False
 
 
 class Refusal(Record):
-    """A start that a guard refused because it would have violated a clause with this verb."""
+    """A start that a guard refused because it would have violated a clause."""
 
     uid: int
-    time: int
-    requirement: str
-    verb: str
+    at: Moment
+    guard: Guard
 
 
 class Guards:
@@ -45,49 +49,82 @@ class Guards:
 
     def __init__(self, tree: LoggedTree, enforcing: Mapping[int, str], judged: Collection[int]) -> None:
         """Wait for activations; `enforcing`: guards, each with its requirement; `judged`: the nodes with clauses."""
-        self._guards: Final = {uid: Guard(tree.nodes[uid].kind, name) for uid, name in enforcing.items()}
-        self._around: Final[dict[int, tuple[int, ...]]] = {}  # innermost first
-        self._refuse: Final[dict[int, tuple[str, list[int]]]] = {}
+        self._around: Final = {uid: tuple(takewhile(enforcing.__contains__, tree.above(uid))) for uid in judged}
+        conditions = {tree.parent[uid]: uid for uid in enforcing if tree.nodes[uid].kind == EVALUATING}
+        self._guards: Final = {
+            uid: _guard(tree, uid, conditions.get(uid, uid), name) for uid, name in enforcing.items()
+        }
+        self._holders: Final = {condition: guard for guard, condition in conditions.items()}
+        self._inside: Final = {guard: uid for uid, around in self._around.items() for guard in around}
         self._waiting: list[tuple[Activation, tuple[int, ...]]] = []
+        self._failed: Final[dict[int, Moment]] = {}  # when the condition of a guard failed, until the guard ends
         self.concerned: Final = {*judged, *enforcing, ROOT}
-        for uid in judged:
-            around = self._around[uid] = tuple(takewhile(self._guards.__contains__, tree.above(uid)))
-            for guard in self._guards:
-                if self._guards[guard].kind == EVALUATING and tree.parent[guard] in around:
-                    verb = tree.nodes[tree.parent[guard]].path.rpartition("_")[2]
-                    if verb in _REFUSING:
-                        self._refuse.setdefault(guard, (verb, []))[1].append(uid)
 
-    def settled(self, activation: Activation) -> list[tuple[Activation, Guard | None]]:
-        """The activations that can be judged now that this one has ended, each with the guard that stopped it."""
+    def see(self, activation: Activation) -> tuple[list[tuple[Activation, Guard | None]], Refusal | None]:
+        """The activations that can be judged now that this one has ended, each with the guard that stopped it or did
+        not accept its success; and the start that it refused, if it is a guard.
+        """
         uid = activation.uid
+        if activation.outcome == "F" and uid in self._holders:
+            self._failed[self._holders[uid]] = activation.ended
+        refusal = self._refusal(activation)
         around = self._around.get(uid)
-        found: list[tuple[Activation, Guard | None]] = []
+        settled: list[tuple[Activation, Guard | None]] = []
         waiting, self._waiting = self._waiting, []
-        for halted, guards in waiting:
+        for ended, guards in waiting:
             if uid not in guards and uid != ROOT:
-                self._waiting.append((halted, guards))
+                self._waiting.append((ended, guards))
                 continue
             further = guards[guards.index(uid) + 1 :] if uid in guards else ()
-            is_inside = activation.started <= halted.started  # else it left no row, and this one came later
-            if is_inside and activation.outcome == "H" and further:
-                self._waiting.append((halted, further))
+            is_inside = activation.started <= ended.started  # else it left no row, and this one came later
+            guard = self._guards[uid] if uid in guards and is_inside and self._violates(ended, activation) else None
+            if guard is None and is_inside and activation.outcome == "H" and ended.outcome == "H" and further:
+                self._waiting.append((ended, further))
+            elif guard is None and ended.outcome == "S" and (checks := self._checks(further)):
+                self._waiting.append((ended, checks))
             else:
-                is_stopped = is_inside and activation.outcome == "F" and uid in guards
-                found.append((halted, self._guards[uid] if is_stopped else None))
+                settled.append((ended, guard))
         if around and activation.outcome == "H":
             self._waiting.append((activation, around))
+        elif around and activation.outcome == "S" and (checks := self._checks(around)):
+            self._waiting.append((activation, checks))
         elif around is not None:
-            found.append((activation, None))
-        return found
+            settled.append((activation, None))
+        self._failed.pop(uid, None)
+        return settled, refusal
 
-    def refused(self, activation: Activation) -> list[Refusal]:
-        """The starts that the activation which has just ended refused."""
-        if activation.outcome != "F" or activation.uid not in self._refuse:
-            return []
-        requirement = self._guards[activation.uid].requirement
-        verb, refused = self._refuse[activation.uid]
-        return [Refusal(uid, activation.end, requirement, verb) for uid in refused]
+    def _refusal(self, activation: Activation) -> Refusal | None:
+        uid = activation.uid
+        at = self._failed.get(uid)
+        inside = self._inside.get(uid)
+        if activation.outcome != "F" or at is None or inside is None:
+            return None
+        has_started = any(ended.uid == inside and activation.started <= ended.started for ended, _ in self._waiting)
+        return Refusal(inside, at, self._guards[uid]) if not has_started else None
+
+    def _checks(self, guards: tuple[int, ...]) -> tuple[int, ...]:
+        return tuple(guard for guard in guards if self._guards[guard].checks)
+
+    def _violates(self, ended: Activation, by: Activation) -> bool:
+        """Whether a guard that has ended stopped an activation inside of it, or did not accept its success."""
+        if by.outcome != "F":
+            return False
+        return ended.outcome == "H" or (by.uid in self._failed and self._failed[by.uid] >= ended.ended)
 
 
-_REFUSING: Final = words(enforced="refusal")  # the end of the names of Sequences that refuse a start
+def _guard(tree: LoggedTree, uid: int, condition: int, requirement: str) -> Guard:
+    kind = tree.nodes[uid].kind
+    what = tree.nodes[uid].path.rpartition("_")[2]  # a build names it
+    path = tree.nodes[condition].path
+    if kind == LIMITING:
+        return Guard(path, requirement, words(enforced="limit"))
+    if kind == WATCHING:
+        return Guard(path, requirement, words(limits=("success",)) | {what})
+    checked = _CHECKED.get(what)
+    if checked is not None:
+        return Guard(path, requirement, frozenset([checked]), checks=True)
+    return Guard(path, requirement, words(enforced="refusal") & {what})
+
+
+# The ends of the names of Sequences that check a success, and the verbs of their clauses.
+_CHECKED: Final = {"leaves": "leaves", "used": "uses"}

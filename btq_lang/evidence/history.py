@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from operator import attrgetter
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.model import UNKNOWN_END, Activation, LoggedTree, Moment
+from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation, LoggedTree, Moment
 from btq_lang.evidence.signals import Unknown
 from btq_lang.requirements.model import Target
 
@@ -46,7 +46,9 @@ class History:
         kept = self._by_node[uid]
         index = bisect_right(kept, moment, key=_STARTED) - 1
         if index < 0 or moment > kept[index].ended:
-            return False
+            later = kept[index + 1] if index + 1 < len(kept) else None
+            may_have_begun = later is not None and moment >= (later.earliest, later.started[1])
+            return Unknown(UNKNOWN_BEGIN) if may_have_begun else False
         is_known = kept[index].timing != "latest" or moment == kept[index].started
         return True if is_known else Unknown(UNKNOWN_END)
 

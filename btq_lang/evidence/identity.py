@@ -18,7 +18,7 @@ from btq_lang.btcpp.outputs import as_xml
 from btq_lang.btcpp.side_file import Built, RunningTree
 from btq_lang.catalog.versions import VERSIONS
 from btq_lang.evidence.model import LoggedTree
-from btq_lang.evidence.readers.tree import kind_of
+from btq_lang.evidence.readers.tree import delay_of, kind_of
 from btq_lang.requirements.model import Target
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.util.grouping import grouped
@@ -111,7 +111,12 @@ class Build(Record):
                 (each.uid, kind_of(each.element), each.path, each.parent or 0)
                 for each, _ in self.running.all
                 if each.uid is not None
-            ]
+            ],
+            {
+                each.uid: delay
+                for each, _ in self.running.all
+                if each.uid is not None and (delay := delay_of(each.element)) is not None
+            },
         )
 
 

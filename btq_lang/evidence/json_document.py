@@ -80,6 +80,7 @@ def _clause(clause: ClauseVerdict) -> Json:
     return {
         **_fields(clause, but=("of", "histogram", "timeline", "measures")),
         "worst": _fields(clause.worst) if clause.worst is not None else None,
+        "bounded": _fields(clause.bounded) if clause.bounded is not None else None,
         "limits": clause.limits if clause.interval is not None else None,
         "violations": [
             {

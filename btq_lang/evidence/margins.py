@@ -9,12 +9,15 @@ there are too many, neighbours become one, which then begins and ends at differe
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:
     from btq_lang.evidence.edges import Edge
+
+    # What a judgement is with a bound that it keeps, and at which values it becomes what, the largest first.
+    _Judged: TypeAlias = tuple[int, tuple[tuple[float, int], ...]]
 
 
 class Counts(NamedTuple):
@@ -52,36 +55,43 @@ class Margins:
         self._of_runs: Final = of_runs
         self._base = Counts(0, 0, 0, 0)  # with a bound that all keep
         self._steps: list[Step] = []
-        self._open: Final[list[tuple[int, int, float]]] = []  # of the open run: kinds within and beyond, and the value
+        self._open: Final[list[_Judged]] = []  # of the open run
         self._worst: tuple[float, int] | None = None  # of those that keep some bound, with its run
         self._furthest: tuple[float, int] | None = None  # of those that break some bound
 
-    def add(self, within: int, beyond: int, value: float | None) -> None:
+    def add(self, within: int, beyond: int, values: Sequence[float]) -> None:
         """Count a judgement in the open run.
 
         Args:
             within, beyond: what it is with a bound that it keeps, and with one that it breaks: KEPT to NOTHING.
-            value: where it changes; None: unknown.
+            values: where it changes; of two, it is unknown between them; none: that is not known.
         """
-        if value is None and within != beyond:
-            self.is_exact = False
+        if within == beyond and not (beyond == VIOLATED and values):
+            self._open.append((within, ()))
+        elif values:
+            kinds = (beyond,) if len(values) == 1 else (UNKNOWN, beyond)
+            self._open.append((within, tuple(zip(sorted(values, reverse=True), kinds, strict=True))))
         else:
-            self._open.append((within, beyond, value if value is not None else _NEVER))
+            self.is_exact = False
 
     def end_run(self, run: int) -> None:
         """Close the open run, which has this number."""
-        for within, beyond, value in self._open:
-            if value != _NEVER and within == KEPT:
+        for within, changes in self._open:
+            if within == KEPT and len(changes) == 1:
+                value = changes[0][0]
                 self._worst = max(self._worst or (value, run), (value, run), key=itemgetter(0))
-            if value != _NEVER and beyond == VIOLATED:
+            if changes and changes[-1][1] == VIOLATED:
+                value = changes[-1][0]
                 self._furthest = max(self._furthest or (value, run), (value, run), key=itemgetter(0))
         if self._of_runs and self._open:
             self._end_whole_run()
         else:
-            for within, beyond, value in self._open:
+            for within, changes in self._open:
                 self._base = _sum(self._base, _UNITS[within])
-                if within != beyond:
-                    self._steps.append(Step(value, value, _difference(_UNITS[beyond], _UNITS[within])))
+                before = within
+                for value, kind in changes:
+                    self._steps.append(Step(value, value, _difference(_UNITS[kind], _UNITS[before])))
+                    before = kind
         self._open.clear()
         if len(self._steps) > 4 * MOST_STEPS:
             self._steps = _compacted(self._steps)
@@ -89,15 +99,16 @@ class Margins:
     def _end_whole_run(self) -> None:
         """Count the run once, by all its judgements; those that are cut off count by themselves."""
         now = [0] * (len(_UNITS))
-        for within, _, _ in self._open:
+        moves: list[tuple[float, int, int]] = []
+        for within, changes in self._open:
             now[within] += 1
+            kinds = [within, *(kind for _, kind in changes)]
+            moves += [(value, kinds[index], kind) for index, (value, kind) in enumerate(changes)]
         before = _of_run(now)
         self._base = _sum(self._base, before)
-        for within, beyond, value in sorted(self._open, key=itemgetter(2), reverse=True):
-            if value == _NEVER:
-                break
-            now[within] -= 1
-            now[beyond] += 1
+        for value, earlier, later in sorted(moves, key=itemgetter(0), reverse=True):
+            now[earlier] -= 1
+            now[later] += 1
             after = _of_run(now)
             if after != before:
                 self._steps.append(Step(value, value, _difference(after, before)))
@@ -194,4 +205,3 @@ def _difference(one: Counts, other: Counts) -> Counts:
 MOST_STEPS: Final = 1000
 KEPT, VIOLATED, UNKNOWN, CUT_OFF, NOTHING = range(5)  # what judgements are: indices of `Counts`, or not counted
 _UNITS: Final = (Counts(1, 0, 0, 0), Counts(0, 1, 0, 0), Counts(0, 0, 1, 0), Counts(0, 0, 0, 1), Counts(0, 0, 0, 0))
-_NEVER: Final = float("-inf")  # the value of a judgement that no bound changes

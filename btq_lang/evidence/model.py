@@ -29,10 +29,12 @@ SUCCESS: Final = 2
 FAILURE: Final = 3
 SKIPPED: Final = 4
 UNKNOWN_END: Final = "the log does not say when it was halted"
+UNKNOWN_BEGIN: Final = "the log does not say exactly when it began"
 CLOCK_SET_BACK: Final = "the clock was set back meanwhile"
 ROWS_LOST: Final = "transitions were lost meanwhile"
 BEGUN_BEFORE: Final = ("late", "part")  # the timings of activations whose begin was not seen
 CUT_BY_GAP: Final = ("lost", "part")  # those of runs of which later rows were lost
+ENOUGH: Final = 0.01  # of a measure: what is known to this is known well enough for statistics
 ROOT: Final = 1  # the uid of the node whose activations are the runs
 
 
@@ -65,10 +67,12 @@ class LoggedTree:
         nodes: by uid.
         parent: the uid of the parent of each node; 0 for the root.
         last: the largest uid below each node; its own for a leaf.
+        delays: how long a Delay waits before it ticks its child, in µs, where that is a number.
     """
 
-    def __init__(self, nodes: Sequence[tuple[int, str, str, int]]) -> None:
+    def __init__(self, nodes: Sequence[tuple[int, str, str, int]], delays: Mapping[int, int] | None = None) -> None:
         """Build it from uid, kind, path and parent of each node, in the order of the uids."""
+        self.delays: Final = delays or {}
         self.parent: Final = {uid: parent for uid, _, _, parent in nodes}
         self.last: Final = {uid: uid for uid, *_ in nodes}
         for uid, _, _, parent in reversed(nodes):
@@ -76,6 +80,10 @@ class LoggedTree:
                 self.last[parent] = max(self.last[parent], self.last[uid])
         self.leaves: Final = frozenset(uid for uid, last in self.last.items() if uid == last)
         self.nodes: Final = {uid: LoggedNode(uid, kind, path) for uid, kind, path, _ in nodes}
+
+    def has_tree(self, uid: int) -> bool:
+        """Whether a node is a SubTree, by the paths below it; its kind is the name of the tree."""
+        return self.last[uid] > uid and self.nodes[uid + 1].path.startswith(f"{self.nodes[uid].path}/")
 
     def above(self, uid: int) -> Iterator[int]:
         """The ancestors of a node, the nearest first."""
@@ -87,17 +95,28 @@ class Activation:
     """One activation of a node, from its start to its end.
 
     Attributes:
-        started, ended: when it began and ended, with the rows of the log that say so.
+        started, ended: when it began, at the latest, and ended, with the rows of the log that say so.
         begin, end: the times of these moments.
+        earliest: when it began at the earliest: equal to `begin` if that is known, 0 if nothing is.
+        tick: how long the first `tick()` of a leaf took, in µs; None: unknown, or not of a leaf.
         outcome: succeeded, failed, halted, or still open when the log ends.
         timing: `latest`: the log shows only that it had ended by `end`; `broken`: the clock was set back meanwhile;
             `late`: it began before `begin`, where nothing was seen; `lost`: a run of which later rows were lost;
             `part`: both of these.
     """
 
-    __slots__ = ("begin", "end", "ended", "outcome", "started", "timing", "uid")
+    __slots__ = ("begin", "earliest", "end", "ended", "outcome", "started", "tick", "timing", "uid")
 
-    def __init__(self, uid: int, started: Moment, ended: Moment, outcome: Outcome, timing: Timing = "exact") -> None:
+    def __init__(
+        self,
+        uid: int,
+        started: Moment,
+        ended: Moment,
+        outcome: Outcome,
+        timing: Timing = "exact",
+        earliest: int | None = None,
+        tick: int | None = None,
+    ) -> None:
         self.uid: Final = uid
         self.started: Final = started
         self.ended: Final = ended
@@ -105,11 +124,27 @@ class Activation:
         self.end: Final = ended[0]
         self.outcome: Final[Outcome] = outcome
         self.timing: Final[Timing] = timing
+        self.earliest: Final = earliest if earliest is not None else self.begin
+        self.tick: Final = tick
 
     @property
     def seconds(self) -> float:
-        """Its duration."""
+        """Its duration; the least if its begin is not known."""
         return (self.end - self.begin) / 1e6
+
+    @property
+    def is_begin_known(self) -> bool:
+        """Whether the log says when it began."""
+        return self.earliest == self.begin
+
+    @property
+    def is_duration_known(self) -> bool:
+        """Whether the log says how long it lasted, to one percent: enough for statistics."""
+        return self.begin - self.earliest <= (self.end - self.begin) * ENOUGH
+
+    def from_earliest(self) -> Activation:
+        """The activation as if it had begun as early as it may have."""
+        return Activation(self.uid, (self.earliest, self.started[1]), self.ended, self.outcome, self.timing)
 
     def __repr__(self) -> str:
         return f"<{self.uid} {self.begin}..{self.end} {self.outcome} {self.timing}>"

@@ -26,37 +26,58 @@ class Observed:
         is_end_known: otherwise the activation ended at `end` or before.
     """
 
-    __slots__ = ("_contexts", "_signals", "begin", "end", "is_end_known", "nodes")
+    __slots__ = ("_contexts", "_in_scope", "_reads_initial", "begin", "end", "is_end_known", "nodes", "signals")
 
-    def __init__(self, signals: Signals, nodes: Nearby, begin: Moment, end: Moment, is_end_known: bool = True) -> None:
-        self._signals: Final = signals
+    def __init__(
+        self,
+        signals: Signals,
+        nodes: Nearby,
+        begin: Moment,
+        end: Moment,
+        is_end_known: bool = True,
+        reads_initial: bool = False,
+    ) -> None:
+        self.signals: Final = signals
+        self._reads_initial: Final = reads_initial
+        self._in_scope: Observed | None = None
         self.nodes: Final = nodes
         self._contexts: dict[tuple[str, Moment], bool | Unknown] | None = None
         self.begin: Final = begin
         self.end: Final = end
         self.is_end_known: Final = is_end_known
 
+    @property
+    def in_scope(self) -> Observed:
+        """The same, where signals have their values `initially` before their first samples: for conditions that say
+        what a requirement is about, not whether it is satisfied.
+        """
+        if self._reads_initial:
+            return self
+        if self._in_scope is None:
+            self._in_scope = Observed(self.signals, self.nodes, self.begin, self.end, self.is_end_known, True)
+        return self._in_scope
+
     def during(self, activation: Activation) -> Observed:
         """The observations during an activation."""
         is_end_known = activation.timing != "latest"
-        return Observed(self._signals, self.nodes, activation.started, activation.ended, is_end_known)
+        return Observed(self.signals, self.nodes, activation.started, activation.ended, is_end_known)
 
     def between(self, begin: Moment, end: Moment) -> Observed:
         """The observations from one moment to another, within these."""
-        return Observed(self._signals, self.nodes, begin, end)
+        return Observed(self.signals, self.nodes, begin, end)
 
     def reading(self, signal: Signal, moment: Moment) -> SampleValue | Unknown:
         """The value of a signal at a moment."""
-        return self._signals.reading(signal, moment[0])
+        return self.signals.reading(signal, moment[0], self._reads_initial)
 
     def summary(self, function: str, signal: Signal) -> float | Unknown:
         """An aggregate of the samples from beginning to end, including the value at the beginning."""
         begin, end = self.begin[0], self.end[0]
-        if not self.is_end_known and self._signals.changes(signal, begin, end):
+        if not self.is_end_known and self.signals.changes(signal, begin, end):
             return Unknown(UNKNOWN_END)
         if function == "count":
-            return self._signals.number(signal, begin, end)
-        values = self._signals.values(signal, begin, end)
+            return self.signals.number(signal, begin, end)
+        values = self.signals.values(signal, begin, end)
         return values if isinstance(values, Unknown) else _FUNCTIONS[function](values)
 
     def holds(self, context: InContext, moment: Moment, truth: Callable[[], bool | Unknown]) -> bool | Unknown:
@@ -75,12 +96,13 @@ class Observed:
         for part in parts:
             for each in parts_in(part):
                 if isinstance(each, Read):
-                    found.update([(time, 0) for time in self._signals.changes(each.signal, begin[0], end[0])])
+                    found.update([(time, 0) for time in self.signals.changes(each.signal, begin[0], end[0])])
                 elif isinstance(each, Running):
                     for activation in self.nodes.activations(each.target):
                         stopped = activation.end, activation.ended[1] + 1
                         since = activation.begin, activation.started[1] + 1  # unknown from then on if the end is
-                        found.update([at for at in (activation.started, since, stopped) if begin < at <= end])
+                        earliest = activation.earliest, activation.started[1]
+                        found.update([at for at in (earliest, activation.started, since, stopped) if begin < at <= end])
         return sorted(found)
 
 

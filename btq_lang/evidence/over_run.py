@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.conditions import truth
-from btq_lang.evidence.model import UNKNOWN_END, Activation, Moment
+from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.scopes import in_scope
 from btq_lang.evidence.signals import Unknown
 from btq_lang.requirements.model import All, Condition, Event, Mission, Scope, Target
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.guards import Refusal
     from btq_lang.evidence.observed import Observed
 
 
@@ -20,8 +21,8 @@ class Happening(Record):
     """An occurrence of an event.
 
     Attributes:
-        until: equal to `at`; later if the log shows only that it happened by then.
-        why: why the moment is unknown; empty if it is known.
+        until: equal to `at`; later if the log shows only that it happened between them.
+        why: why the moment cannot be judged; empty if what follows from both ends may be.
         is_certain: it did happen, rather than may have.
     """
 
@@ -29,6 +30,11 @@ class Happening(Record):
     until: Moment
     why: str = ""
     is_certain: bool = True
+
+    @property
+    def order(self) -> Moment:
+        """By which it comes before or after other events: if only its time is not known, the row that tells of it."""
+        return self.at if self.why else self.until
 
 
 class Stretch(Record):
@@ -51,6 +57,8 @@ class OverRun(Record):
         root: the activation of its root, which spans the run.
         own: the activations of the clause's nodes, in the order of their starts.
         observed: of the whole run.
+        refused: starts of the clause's nodes that its own guard refused.
+        missed: events that a judge found to concern no activation are appended.
     """
 
     verb: str
@@ -58,6 +66,8 @@ class OverRun(Record):
     root: Activation
     own: Sequence[Activation]
     observed: Observed
+    refused: Sequence[Refusal]
+    missed: list[Moment]
 
     @property
     def is_cut_off(self) -> bool:
@@ -70,7 +80,13 @@ class OverRun(Record):
 
     def counts_one(self, activation: Activation) -> bool | Unknown:
         """Whether the scopes include an activation."""
-        return not self.scopes or in_scope(self.scopes, self.verb, self.observed.during(activation))
+        if not self.scopes:
+            return True
+        late = in_scope(self.scopes, self.verb, self.observed.during(activation))
+        if activation.is_begin_known:
+            return late
+        early = in_scope(self.scopes, self.verb, self.observed.during(activation.from_earliest()))
+        return late if late is early else Unknown(UNKNOWN_BEGIN)
 
     def starts(self) -> list[tuple[Activation, bool | Unknown]]:
         """The activations of the clause's nodes that count or may count."""
@@ -86,15 +102,16 @@ class OverRun(Record):
 
     def with_all_along(self, condition: Condition) -> list[Stretch]:
         """The maximal parts of the run in which a condition holds or is unknown."""
+        observed = self.observed.in_scope
         found: list[Stretch] = []
-        begin = self.observed.begin
+        begin = observed.begin
         before: bool | Unknown = False
-        for moment in (*self.observed.moments(condition), None):
-            now = truth(condition, self.observed, moment) if moment is not None else False
+        for moment in (*observed.moments(condition), None):
+            now = truth(condition, observed, moment) if moment is not None else False
             is_like = now is before or (isinstance(now, Unknown) and isinstance(before, Unknown))
             if moment is not None and is_like:
                 continue
-            end = moment if moment is not None else self.observed.end
+            end = moment if moment is not None else observed.end
             if before is not False:
                 found.append(Stretch(begin, end, before.why if isinstance(before, Unknown) else ""))
             begin, before = end, now
@@ -117,12 +134,12 @@ class OverRun(Record):
         outcomes = _OUTCOMES.get(event.happening)
         for each in of if of is not None else self.observed.nodes.activations(target_of(event)):
             if outcomes is None:
-                found.append(Happening(each.started, each.started))
+                found.append(Happening((each.earliest, each.started[1]), each.started))
             elif each.outcome in outcomes and each.timing == "latest":
                 found.append(Happening(each.started, each.ended, UNKNOWN_END))
             elif each.outcome in outcomes:
                 found.append(Happening(each.ended, each.ended))
-        return sorted(found, key=lambda each: each.at)
+        return sorted(found, key=lambda each: each.order)
 
 
 def target_of(event: Event) -> Target:

@@ -8,18 +8,22 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Sequence
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from math import ceil, floor
-from typing import Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import Measure, compared
-from btq_lang.evidence.model import UNKNOWN_END, Activation, Moment
+from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation
 from btq_lang.evidence.over_run import Happening, OverRun, Stretch
 from btq_lang.evidence.signals import Unknown
-from btq_lang.evidence.verbs import Judgement
+from btq_lang.evidence.verbs import Judgement, between, is_same
 from btq_lang.requirements.model import Claim, Span, Subject, Target, Total, Value
 from btq_lang.util.text import counted
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.guards import Refusal
+    from btq_lang.evidence.observed import Observed
 
 Judgements: TypeAlias = Iterator[Judgement | None]
 RunJudge: TypeAlias = Callable[[Claim, OverRun], Judgements]
@@ -41,9 +45,9 @@ def _starts(claim: Claim, run: OverRun) -> Judgements:
     assert claim.event is not None, "the clause names one"
     moments = [each.started for each in run.own]
     for event in run.happenings(claim.event):
-        index = bisect_left(moments, event.at)
-        answer = Happening(moments[index], moments[index]) if index < len(moments) else None
-        yield from _answered(claim, run, event, answer, "had not started after {}")
+        index = bisect_left(moments, event.until)
+        answer = _start(run.own[index]) if index < len(moments) else None
+        yield from _answered(claim, run, event, answer, "had not started")
 
 
 def _ends(claim: Claim, run: OverRun) -> Judgements:
@@ -51,46 +55,74 @@ def _ends(claim: Claim, run: OverRun) -> Judgements:
     assert claim.event is not None, "the clause names one"
     moments = [each.started for each in run.own]
     for event in run.happenings(claim.event):
-        index = bisect_right(moments, event.at) - 1
+        index = bisect_right(moments, event.until) - 1
         if index < 0 or run.own[index].ended < event.at:
+            run.missed.append(event.at)
             continue
         ended = run.own[index]
         answer = None
         if ended.outcome != "O":
             answer = Happening(ended.ended, ended.ended, UNKNOWN_END if ended.timing == "latest" else "")
-        yield from _answered(claim, run, event, answer, "had not ended after {}")
+        yield from _answered(claim, run, event, answer, "had not ended")
 
 
-def _answered(claim: Claim, run: OverRun, event: Happening, answer: Happening | None, never: str) -> Judgements:
+def _answered(claim: Claim, run: OverRun, event: Happening, answer: Happening | None, missing: str) -> Judgements:
     """The judgement of an event and its answer, if they count; None: the log ends before the deadline.
 
     Args:
         answer: None: there is none in the run.
-        never: the sentence for its absence.
+        missing: what the node had not done, in words, if there is none.
     """
     until = answer.until if answer is not None else run.root.ended
-    found = compared(claim, (until[0] - event.at[0]) / 1e6, run.observed, event.at)
+    times = _between_limits(claim, run.observed, event, answer or Happening(until, until))
     deadline = until
-    if not isinstance(found, Unknown):
-        deadline = min(until, (event.at[0] + round(found.bound.si * 1e6), until[1]))
+    if not isinstance(times, Unknown):
+        deadline = min(until, (event.at[0] + round(times[1].bound.si * 1e6), until[1]))
     counts = run.counts(event.at, deadline)
     if counts is False:
         return
     time = deadline[0]
-    if event.why or isinstance(found, Unknown):
-        yield Judgement(None, time, found.why if isinstance(found, Unknown) else event.why)
-    elif answer is None and found.holds and run.is_cut_off:
+    if event.why or isinstance(times, Unknown):
+        yield Judgement(None, time, times.why if isinstance(times, Unknown) else event.why)
+        return
+    least, most = times
+    if answer is None and least.holds and run.is_cut_off:
         yield None
     elif isinstance(counts, Unknown):
         yield Judgement(None, time, counts.why)
-    elif answer is not None and answer.why and not found.holds:
+    elif answer is None:
+        late = f"{missing} after {{}}" if not least.holds else f"{missing} when the run ended"
+        yield Judgement(False, time, late, least if not least.holds else None, event.at[0])
+    elif answer.why and not most.holds:
         yield Judgement(None, time, answer.why)
-    elif answer is not None:
-        yield Judgement(found.holds, until[0], VERBS[claim.verb].said, found, event.at[0])
-    elif not found.holds:
-        yield Judgement(False, time, never, found, event.at[0])
     else:
-        yield Judgement(None, time, "the run ended before the time was over")
+        yield _timed(claim, times, until[0], event.until[0])
+
+
+def _between_limits(
+    claim: Claim, observed: Observed, first: Happening, last: Happening
+) -> tuple[Measure, Measure] | Unknown:
+    """The shortest and the longest time from one event to another, compared with the bound of a claim."""
+    shortest = compared(claim, max(last.at[0] - first.until[0], 0) / 1e6, observed, first.at)
+    longest = compared(claim, (last.until[0] - first.at[0]) / 1e6, observed, first.at)
+    if isinstance(shortest, Unknown):
+        return shortest
+    return longest if isinstance(longest, Unknown) else (shortest, longest)
+
+
+def _timed(claim: Claim, times: tuple[Measure, Measure], at: int, since: int, said: str = "") -> Judgement:
+    """The judgement of a time that lies between two; unknown unless both come to the same."""
+    least, most = times
+    sentence = said or VERBS[claim.verb].said
+    judgement = Judgement(least.holds, at, sentence, least, since)
+    if not is_same(judgement, Judgement(most.holds, at, "", most)):
+        return Judgement(None, at, UNKNOWN_BEGIN)
+    return between(judgement, least, most)
+
+
+def _start(activation: Activation) -> Happening:
+    """The begin of an activation as an event."""
+    return Happening((activation.earliest, activation.started[1]), activation.started)
 
 
 def _follows(claim: Claim, run: OverRun) -> Judgements:
@@ -101,7 +133,7 @@ def _follows(claim: Claim, run: OverRun) -> Judgements:
     before = (run.root.begin, -1)  # the beginning of the run
     for start in run.own:
         found = [each for each in events if each.until > before and each.at <= start.started]
-        is_sure = any(each.is_certain and before < each.at and each.until <= start.started for each in found)
+        is_sure = any(each.is_certain and before < each.order and each.until <= start.started for each in found)
         since = "since its last start" if before[1] >= 0 else "before it in the run"
         before = start.started
         counts = run.counts_one(start)
@@ -122,12 +154,21 @@ def _follows(claim: Claim, run: OverRun) -> Judgements:
 
 def _tries(claim: Claim, run: OverRun) -> Judgements:
     """`tries at most m per P`: how often a node starts in each activation of another; without `per`, in the run."""
+    assert claim.limit is not None, "a number of tries has a bound"
+    is_upper = claim.limit.relation in ("<=", "<")
     starts = run.starts()
     moments = [each.started for each, _ in starts]
-    for period in run.observed.nodes.activations(claim.per) if isinstance(claim.per, Target) else [run.root]:
+    periods = run.observed.nodes.activations(claim.per) if isinstance(claim.per, Target) else [run.root]
+    for refusal in run.refused:
+        if not any(period.started <= refusal.at <= period.ended for period in periods):
+            yield Judgement(False, refusal.at[0], f"its start was refused by its guard at {refusal.guard.path}")
+    for period in periods:
         inside = starts[bisect_left(moments, period.started) : bisect_right(moments, period.ended)]
-        least = _number(claim, run, period, [each for each, counts in inside if counts is True])
-        most = _number(claim, run, period, [each for each, _ in inside])
+        refused = [each for each in run.refused if period.started <= each.at <= period.ended]
+        if not inside and not refused and is_upper:
+            continue
+        least = _number(claim, run, period, [each for each, counts in inside if counts is True], refused)
+        most = _number(claim, run, period, [each for each, _ in inside], refused)
         may_break = most is not None and most.holds is False
         if (least is None and may_break) or (least is not None and most is not None and least.holds is not most.holds):
             why = next(counts.why for _, counts in inside if isinstance(counts, Unknown))
@@ -136,10 +177,16 @@ def _tries(claim: Claim, run: OverRun) -> Judgements:
             yield least
 
 
-def _number(claim: Claim, run: OverRun, period: Activation, starts: Sequence[Activation]) -> Judgement | None:
-    """The judgement of a number of starts; None: undecided, because there may have been more."""
+def _number(
+    claim: Claim, run: OverRun, period: Activation, starts: Sequence[Activation], refused: Sequence[Refusal]
+) -> Judgement | None:
+    """The judgement of a number of starts; None: undecided, because there may have been more.
+
+    Args:
+        refused: further ones that the clause's own guard refused.
+    """
     assert claim.limit is not None, "a number of tries has a bound"
-    number = len(starts)
+    number = len(starts) + len(refused)
     found = compared(claim, float(number), run.observed.during(period), period.started)
     if isinstance(found, Unknown):
         return Judgement(None, period.end, found.why)
@@ -149,10 +196,13 @@ def _number(claim: Claim, run: OverRun, period: Activation, starts: Sequence[Act
     if holds is False and period.timing == "latest":
         return Judgement(None, period.end, UNKNOWN_END, found)
     at = period.end
-    if holds is False and found.is_upper and starts:
-        bound = found.bound.si
-        at = starts[max(floor(bound) if claim.limit.relation != "<" else ceil(bound) - 1, 0)].begin
-    sentence = VERBS[claim.verb].said.replace("{}", counted(number, "time"))
+    bound = found.bound.si
+    breaking = max(floor(bound) if claim.limit.relation != "<" else ceil(bound) - 1, 0)
+    if holds is False and found.is_upper and breaking < len(starts):
+        at = starts[breaking].begin
+    sentence = VERBS[claim.verb].said.replace("{}", counted(len(starts), "time"))
+    if refused:
+        sentence += f", and its guard at {refused[0].guard.path} refused {len(refused)} more"
     found.unit = None
     return Judgement(holds is not False, at, sentence, found, period.begin, starts)
 
@@ -176,17 +226,18 @@ def _runs(claim: Claim, run: OverRun) -> Judgements:
 def _between(claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool) -> Judgements:
     """Judge the times from each start to the next, and from the last to the end of the stretch."""
     said = VERBS[claim.verb].said.replace("{}", "{} after its last start")
-    for index, start in enumerate(starts):
-        is_last = index + 1 == len(starts)
-        until = stretch.end[0] if is_last else starts[index + 1].begin
-        found = compared(claim, (until - start.begin) / 1e6, run.observed, start.started)
-        if isinstance(found, Unknown):
-            yield Judgement(None, until, found.why)
-        elif is_last and is_open and found.holds:
+    moments = [_start(each) for each in starts]
+    for start, after in pairwise([*moments, Happening(stretch.end, stretch.end)]):
+        is_last = start is moments[-1]
+        until = after.until[0]
+        times = _between_limits(claim, run.observed, start, after)
+        if isinstance(times, Unknown):
+            yield Judgement(None, until, times.why)
+        elif is_last and is_open and times[0].holds:
             yield None
         else:
             sentence = "had not run again after {}" if is_last else said
-            yield Judgement(found.holds, until, sentence, found, start.begin)
+            yield _timed(claim, times, until, start.until[0], sentence)
 
 
 def _in_windows(
@@ -195,10 +246,23 @@ def _in_windows(
     """Judge the windows with the fewest and the most starts; a stretch shorter than a window has none."""
     assert isinstance(claim.per, Value), "the starts are counted in a time"
     length = round(claim.per.si * 1e6)
-    begin, last = stretch.begin[0], stretch.end[0] - length  # when the first and the last window begin
-    if begin > last:
+    if stretch.begin[0] > stretch.end[0] - length:
         return
-    times = [each.begin for each in starts]
+    late = _worst_window(claim, run, stretch, starts, length, [each.begin for each in starts])
+    early = _worst_window(claim, run, stretch, starts, length, sorted(each.earliest for each in starts))
+    if is_open and late.holds:
+        yield None
+    elif late.holds is early.holds:
+        yield late
+    else:
+        yield Judgement(None, stretch.begin[0], UNKNOWN_BEGIN)
+
+
+def _worst_window(
+    claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], length: int, times: Sequence[int]
+) -> Judgement:
+    """The judgement of the window with the fewest, or the most, starts; `times`: when they began."""
+    begin, last = stretch.begin[0], stretch.end[0] - length  # when the first and the last window begin
 
     def inside(window: int) -> slice:
         return slice(bisect_left(times, window), bisect_left(times, window + length))
@@ -213,19 +277,16 @@ def _in_windows(
     for window in (fewest, fullest):
         found = compared(claim, float(number(window)), run.observed, stretch.begin)
         if isinstance(found, Unknown):
-            yield Judgement(None, stretch.begin[0], found.why)
-            return
+            return Judgement(None, stretch.begin[0], found.why)
         measures.append((found, window))
     measure, window = max(measures, key=lambda each: each[0].excess)
     measure.unit = None
     if not measure.holds:
         broken = starts[inside(window)]
+        assert isinstance(claim.per, Value), "the starts are counted in a time"
         sentence = VERBS[claim.verb].said.replace("{}", f"{counted(len(broken), 'time')} in {claim.per.text}")
-        yield Judgement(False, window + length, sentence, measure, window, broken)
-    elif is_open:
-        yield None
-    else:
-        yield Judgement(True, stretch.end[0], "", measure)
+        return Judgement(False, window + length, sentence, measure, window, broken)
+    return Judgement(True, stretch.end[0], "", measure)
 
 
 # ---- the time between events, and sums ----
@@ -238,19 +299,19 @@ def _span(claim: Claim, run: OverRun) -> Judgements:
     first = span.first
     lasts = run.happenings(span.last)
     certain = [each for each in lasts if each.is_certain]
-    moments = [each.at for each in certain]
+    moments = [each.order for each in certain]
     ends = [*accumulate((each.until for each in reversed(certain)), min)][::-1]  # the first end from each index on
-    unsure = [each for each in lasts if each.why]
     next_after = bisect_right if first == span.last else bisect_left  # an event does not follow itself
     for event in run.happenings(first, run.own if first.condition is None else None):
-        index = next_after(moments, event.at)
-        end = ends[index] if index < len(ends) else None
-        until = end if end is not None else run.root.ended
-        unclear = next((each.why for each in unsure if each.until >= event.at and each.at <= until), "")
-        yield from _ended(claim, run, event, end, unclear)
+        index = next_after(moments, event.until)
+        last = Happening(certain[index].at, ends[index]) if index < len(ends) else None
+        until = last.until if last is not None else run.root.ended
+        others = [each for each in lasts if each.until >= event.at and each.at <= until]
+        unclear = next((each.why for each in others if each.why), "")
+        yield from _ended(claim, run, event, last, unclear)
 
 
-def _ended(claim: Claim, run: OverRun, first: Happening, last: Moment | None, unclear: str) -> Judgements:
+def _ended(claim: Claim, run: OverRun, first: Happening, last: Happening | None, unclear: str) -> Judgements:
     """The judgement of a span, if it counts.
 
     Args:
@@ -258,25 +319,28 @@ def _ended(claim: Claim, run: OverRun, first: Happening, last: Moment | None, un
         unclear: why it may have ended before; else empty.
     """
     assert claim.limit is not None, "a time has a bound"
-    until = last if last is not None else run.root.ended
+    end = last or Happening(run.root.ended, run.root.ended)
+    until = end.until
     counts = run.counts(first.at, until)
     if counts is False:
         return
-    found = compared(claim, (until[0] - first.at[0]) / 1e6, run.observed, first.at)
-    if first.why or isinstance(found, Unknown):
-        yield Judgement(None, until[0], found.why if isinstance(found, Unknown) else first.why)
+    times = _between_limits(claim, run.observed, first, end)
+    if first.why or isinstance(times, Unknown):
+        yield Judgement(None, until[0], times.why if isinstance(times, Unknown) else first.why)
         return
-    is_late = found.is_upper and not found.holds
-    if unclear and (is_late or last is None or not (found.is_upper and claim.limit.upper is None)):
+    least, most = times
+    is_late = least.is_upper and not least.holds
+    is_in_time = most.is_upper and most.holds and claim.limit.upper is None
+    if unclear and (last is None or not is_in_time):
         yield Judgement(None, until[0], unclear)
     elif last is None and not is_late and run.is_cut_off:
         yield None
     elif isinstance(counts, Unknown):
         yield Judgement(None, until[0], counts.why)
     elif last is not None:
-        yield Judgement(found.holds, until[0], VERBS[claim.verb].said, found, first.at[0])
+        yield _timed(claim, times, until[0], first.until[0])
     elif is_late:
-        yield Judgement(False, until[0], "had not come to an end after {}", found, first.at[0])
+        yield Judgement(False, until[0], "had not come to an end after {}", least, first.at[0])
     elif claim.limit.relation not in (">=", ">"):
         yield Judgement(False, until[0], "its last event did not happen before the run ended")
 
@@ -284,20 +348,24 @@ def _ended(claim: Claim, run: OverRun, first: Happening, last: Moment | None, un
 def _total(claim: Claim, run: OverRun) -> Judgements:
     """`sum of X, Y takes at most d`: the durations of some nodes in a run, added up."""
     starts = run.starts()
+    if not starts:
+        return
+    every = [each for each, _ in starts]
     sure = [each for each, counts in starts if counts is True and each.timing == "exact"]
-    unclear = next((counts.why for _, counts in starts if isinstance(counts, Unknown)), UNKNOWN_END)
-    least, most = _sum(claim, run, sure), _sum(claim, run, [each for each, _ in starts])
-    if least is not None and most is not None and least.holds is most.holds:
-        yield least
+    reasons = [counts.why for _, counts in starts if isinstance(counts, Unknown)]
+    unclear = reasons[0] if reasons else UNKNOWN_END if sure != every else UNKNOWN_BEGIN
+    least = _sum(claim, run, sure, sum(each.end - each.begin for each in sure))
+    most = _sum(claim, run, every, sum(each.end - each.earliest for each in every))
+    if least is not None and most is not None and is_same(least, most):
+        yield between(least, least.measure, most.measure)
     elif least is None and most is None:
         yield None
     else:
         yield Judgement(None, run.root.end, unclear)
 
 
-def _sum(claim: Claim, run: OverRun, starts: Sequence[Activation]) -> Judgement | None:
-    """The judgement of a sum of durations; None: undecided, because the log ends before the run does."""
-    total = sum(each.end - each.begin for each in starts)
+def _sum(claim: Claim, run: OverRun, starts: Sequence[Activation], total: int) -> Judgement | None:
+    """The judgement of a sum of durations, in µs; None: undecided, because the log ends before the run does."""
     found = compared(claim, total / 1e6, run.observed, run.observed.begin)
     if isinstance(found, Unknown):
         return Judgement(None, run.root.end, found.why)

@@ -7,6 +7,7 @@ How real logs deviate from the plain sequence RUNNING, result, IDLE:
 
 * A node writes IDLE and then its own result (Nav2's RecoveryNode): one row is held back to detect it.
 * A node writes its first row after rows of its children (Nav2's PipelineSequence): it began with the first of those.
+* A node writes its first row after its first tick: `begins.py` says when it began.
 * Nothing is written when a node is halted (logs without rows to IDLE): it had ended by the time a node above it ended,
   or by its next start.
 * Rows before the first one, or between two, were not seen (a running robot): the open run ends there, cut off, and of
@@ -18,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.evidence.begins import Begins
 from btq_lang.evidence.model import FAILURE, GAP, ROOT, RUNNING, SKIPPED, SUCCESS, Activation, LoggedTree, Mark, Session
 from btq_lang.evidence.wording import timestamp
 
@@ -28,8 +30,11 @@ if TYPE_CHECKING:
 def activations(session: Session) -> Iterator[Activation]:
     """The activations of a session, each as it ends; those of the root are the runs."""
     tree = session.tree
-    nodes = _OpenNodes(tree)
+    begins = Begins(tree)
+    nodes = _OpenNodes(tree, begins)
     parent = tree.parent
+    leaves = tree.leaves
+    by_others = begins.others
     begun, running, unseen = nodes.begun, nodes.running, nodes.unseen
     odd = Oddities()
     idle: tuple[int, Moment] | None = None  # a halt that may turn out to be part of the node's own completion
@@ -47,6 +52,7 @@ def activations(session: Session) -> Iterator[Activation]:
                         yield from nodes.end(ROOT, now, "O", "lost", below="O")
                     done.clear()
                     unseen.update(parent)
+                    begins.lose()
             else:
                 odd.count("rows with an unknown node or status, left out", time)
             continue
@@ -54,6 +60,7 @@ def activations(session: Session) -> Iterator[Activation]:
         if time < before[0]:
             odd.count("rows earlier than the row before them, so durations across them are unknown", time)
             nodes.distrust()
+            begins.lose()
         completes = status in _RESULTS
         if idle is not None:
             halted, then = idle
@@ -62,6 +69,8 @@ def activations(session: Session) -> Iterator[Activation]:
                 yield from nodes.end(halted, then, "H")
         if unseen:
             nodes.see(uid, now, status)
+        # Else a thread of its own may have written it.
+        is_of_tick = status == RUNNING or (completes and not (uid in running and uid in leaves))
         if status == RUNNING:
             if uid in running:
                 if uid == ROOT:
@@ -71,12 +80,12 @@ def activations(session: Session) -> Iterator[Activation]:
                     yield from nodes.end(uid, now, "H", "latest")
             running.add(uid)
             if uid not in begun:
-                nodes.begin(uid, now)
+                nodes.begin(uid, now, status)
                 if uid in done:
                     session.keeping.add(parent[uid])
         elif completes:
             if uid not in begun:
-                nodes.begin(uid, now)
+                nodes.begin(uid, now, status)
                 if uid in done:
                     session.keeping.add(parent[uid])
             done.add(uid)
@@ -93,6 +102,10 @@ def activations(session: Session) -> Iterator[Activation]:
                 yield from nodes.end(ROOT, now, "O", below="O")
             elif uid in begun:
                 nodes.forget(uid)
+        if is_of_tick:
+            begins.follow(time, uid, status == RUNNING)
+        else:
+            by_others.append((uid, time, completes))
     if not is_reset_written:
         session.keeping.clear()
     if idle is not None:
@@ -106,23 +119,32 @@ class _OpenNodes:
     """The nodes that are active.
 
     Attributes:
-        begun: when each began: at its own first row, or the first one below it.
+        begun: when each began at the latest.
         running: those that have written RUNNING.
         unseen: those of which it is unknown whether they are active.
     """
 
-    def __init__(self, tree: LoggedTree) -> None:
+    def __init__(self, tree: LoggedTree, begins: Begins) -> None:
         self.begun: Final[dict[int, Moment]] = {}
         self.running: Final[set[int]] = set()
         self.unseen: Final[set[int]] = set()
         self._late: Final[set[int]] = set()  # those that began before their time in `begun`
+        self._earliest: Final[dict[int, int]] = {}  # when they began, where that is not known
+        self._ticks: Final[dict[int, int]] = {}  # how long the first tick of leaves took, where that is known
         self._tree: Final = tree
+        self._begins: Final = begins
         self._distrusted: Final[set[int]] = set()
 
-    def begin(self, uid: int, now: Moment) -> None:
-        """Mark a node and its ancestors as active, whether these have logged it or not."""
+    def begin(self, uid: int, now: Moment, status: int) -> None:
+        """Mark the node that writes a row and its ancestors as active, whether these have logged it or not."""
+        first = uid
         while uid and uid not in self.begun:
-            self.begun[uid] = now
+            earliest, latest = self._begins.of(uid, now, status, first, self.begun)
+            self.begun[uid] = latest, now[1]
+            if earliest != latest:
+                self._earliest[uid] = earliest
+            elif uid == first and uid in self._tree.leaves:
+                self._ticks[uid] = now[0] - latest
             uid = self._tree.parent[uid]
 
     def see(self, uid: int, now: Moment, status: int) -> None:
@@ -163,6 +185,8 @@ class _OpenNodes:
         self.running.discard(uid)
         self._distrusted.discard(uid)
         self._late.discard(uid)
+        self._earliest.pop(uid, None)
+        self._ticks.pop(uid, None)
 
     def distrust(self) -> None:
         """Mark the durations of all active nodes as unknown: the clock was set back."""
@@ -176,7 +200,8 @@ class _OpenNodes:
         if uid in self._late:
             self._late.remove(uid)
             timing = "part" if timing == "lost" else "late"
-        return Activation(uid, self.begun.pop(uid), now, outcome, timing)
+        started, earliest, tick = self.begun.pop(uid), self._earliest.pop(uid, None), self._ticks.pop(uid, None)
+        return Activation(uid, started, now, outcome, timing, earliest, tick)
 
 
 class Oddities:

@@ -24,14 +24,15 @@ def within(claim: Claim, scopes: Sequence[Scope]) -> Claim:
     for scope in scopes:
         condition = claim.condition
         if scope.word == "while" and condition is not None and claim.verb == "keeps":
-            claim = replace(claim, condition=Any((Not(scope.condition), condition)))
+            claim = replace(claim, condition=Any((Not(scope), condition)))
         elif scope.word == "while" and condition is not None and claim.verb == "never":
-            claim = replace(claim, condition=Not(Any((Not(scope.condition), Not(condition)))))
+            claim = replace(claim, condition=Not(Any((Not(scope), Not(condition)))))
     return claim
 
 
 def in_scope(scopes: Sequence[Scope], verb: str, observed: Observed) -> bool | Unknown:
     """Whether an observed activation, or time between two events, is in scope."""
+    observed = observed.in_scope
     result: bool | Unknown = True
     for scope in scopes:
         if scope.word == "while" and VERBS[verb].operand == "rate":  # it is time that counts, not activations

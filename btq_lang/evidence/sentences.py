@@ -17,10 +17,13 @@ def result(clause: ClauseVerdict) -> str:
     parts = [_counted(clause)]
     if clause.worst is not None and clause.interval is None and clause.verdict != UNKNOWN:
         run = clause.worst.run
-        parts.append(f"worst {clause.worst.text} in run {run}" if run is not None else f"worst {clause.worst.text}")
+        worst = f"worst {clause.worst.text} in run {run}" if run is not None else f"worst {clause.worst.text}"
+        known = f"{clause.counted - clause.bounded.number} known, " if clause.bounded is not None else ""
+        parts.append(f"{known}{worst}")
     if clause.cut_off and clause.verdict != NEVER:
         parts.append(f"{clause.cut_off} cut off by the end of a log")
-    return ", ".join(parts)
+    bounded = f"; {clause.bounded.number} bounded by {clause.bounded.text}" if clause.bounded is not None else ""
+    return f"{', '.join(parts)}{bounded}"
 
 
 def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:

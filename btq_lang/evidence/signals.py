@@ -6,6 +6,7 @@ until `fresh within` is over.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from typing import Final
 
@@ -29,13 +30,17 @@ class Signals:
         self.logged: Final = logged
         self._last: Final[dict[str, tuple[SampleValue, SampleValue | Unknown]]] = {}  # of each signal: read, in SI
 
-    def reading(self, signal: Signal, time: int) -> SampleValue | Unknown:
-        """The value of a signal at a time, in SI."""
+    def reading(self, signal: Signal, time: int, with_initial: bool = False) -> SampleValue | Unknown:
+        """The value of a signal at a time, in SI.
+
+        Args:
+            with_initial: before its first sample it has its value `initially`.
+        """
         series = self._series(signal)
-        found = series.at(time)
-        if found is None:
-            return _initially(signal, is_sampled=bool(series.times))
-        sampled, value = found
+        last_sample = series.at(time)
+        if last_sample is None:
+            return _before_samples(signal, bool(series.times), with_initial)
+        sampled, value = last_sample
         if value is None:
             return Unknown(f"`{signal.name}` was not on the blackboard")
         if signal.fresh is not None and time - sampled > round(signal.fresh * 1e6):
@@ -80,6 +85,19 @@ class Signals:
             found.append(float(value))
         return found[: len(times)]
 
+    def sampled_values(self, signal: Signal, begin: int, end: int) -> list[float] | Unknown:
+        """A signal's values at its samples after `begin`, up to `end`; unknown if one is not a number."""
+        series = self._series(signal)
+        at = bisect_right(series.times, begin), bisect_right(series.times, end)
+        converted: list[float] = []
+        for sample in series.values[slice(*at)]:
+            value = _as_declared(signal, sample, series.unit) if sample is not None else None
+            if isinstance(value, Unknown):
+                return value
+            if value is not None:
+                converted.append(float(value))
+        return converted
+
     def number(self, signal: Signal, begin: int, end: int) -> float | Unknown:
         """How many samples of a signal there are from `begin` to `end`."""
         series = self._series(signal)
@@ -94,11 +112,15 @@ class Signals:
         return self._given.get(signal.name) or self.logged.get(signal.entry) or _EMPTY
 
 
-def _initially(signal: Signal, is_sampled: bool) -> SampleValue | Unknown:
-    first = signal.initially
+def _before_samples(signal: Signal, is_sampled: bool, with_initial: bool) -> SampleValue | Unknown:
+    """The value of a signal before its first sample.  What it has `initially` was not measured: that may say which
+    activations a requirement is about, and never that one satisfies it; nor that in a log without any sample.
+    """
+    if not is_sampled:
+        return Unknown(_none_of(signal))
+    first = signal.initially if with_initial else None
     if first is None:
-        late = f"no sample of `{signal.name}` before that time"
-        return Unknown(late if is_sampled else _none_of(signal))
+        return Unknown(f"no sample of `{signal.name}` before that time")
     return first.si if isinstance(first, Value) else first.value
 
 

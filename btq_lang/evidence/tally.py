@@ -10,7 +10,18 @@ from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.distribution import Distribution
 from btq_lang.evidence.odds import Limits, lower_limit, runs_to_decide, upper_limit
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, Link, Verdict, Violation, Worst
+from btq_lang.evidence.verdicts import (
+    NEVER,
+    SATISFIED,
+    UNDECIDED,
+    UNKNOWN,
+    VIOLATED,
+    Bounded,
+    Link,
+    Verdict,
+    Violation,
+    Worst,
+)
 from btq_lang.evidence.wording import measured
 from btq_lang.util.record import Record, replace
 
@@ -33,7 +44,7 @@ class Tally:
     """The counts so far.
 
     Attributes:
-        counted, violated, unknown, cut_off, why, violations, worst: as in `ClauseVerdict`.
+        counted, violated, unknown, cut_off, why, violations, worst, bounded: as in `ClauseVerdict`.
         distribution: of the measures.
         limits: which limits of the probability decide.
     """
@@ -49,6 +60,7 @@ class Tally:
         self.why = ""
         self.violations: Final[list[Violation]] = []
         self.worst: Worst | None = None
+        self.bounded: Bounded | None = None
         self.distribution: Final = Distribution()
         self.counts_runs: Final = odds is not None and odds.experiments == "runs"
         self.limits: Final = limits
@@ -76,11 +88,18 @@ class Tally:
         else:
             self._broken.append((judgement, path, chain))
         measure = judgement.measure
-        if measure is not None:
+        if judgement.most is not None:
+            self._bound(judgement.most)
+        if measure is not None and (judgement.most is None or not judgement.holds):
             self.distribution.add(measure)
             if measure.excess > self._worst_excess:
                 self._worst_excess = measure.excess
                 self._worst_now = measure
+
+    def _bound(self, most: Measure) -> None:
+        before = self.bounded or Bounded(0, most.si, "")
+        si = max(before.si, most.si)
+        self.bounded = Bounded(before.number + 1, si, measured(si, most.unit, most.bound.si))
 
     def end_run(self, run: Run) -> None:
         """Close the open run."""
@@ -127,6 +146,10 @@ class Tally:
             self._worst_excess = other._worst_excess
             self.worst = replace(other.worst, run=(other.worst.run or 0) + runs)
         self.distribution.add_all(other.distribution)
+        if other.bounded is not None:
+            number = other.bounded.number + (self.bounded.number if self.bounded is not None else 0)
+            largest = max(other.bounded, self.bounded or other.bounded, key=lambda bounded: bounded.si)
+            self.bounded = replace(largest, number=number)
 
     def is_worse_than(self, other: Tally, run: int) -> bool:
         """Whether the worst violation of both is the one in a run of this tally; the other's logs were earlier."""
@@ -152,7 +175,7 @@ class Tally:
 
     def fields(self) -> dict[str, Any]:
         """What `ClauseVerdict` has of it, by name."""
-        same = ("counted", "violated", "unknown", "cut_off", "worst", "limits")
+        same = ("counted", "violated", "unknown", "cut_off", "worst", "limits", "bounded")
         found = {name: getattr(self, name) for name in same}
         return {**found, "interval": self.interval(), "more": self.more(), "violations": tuple(self.violations)}
 

@@ -9,11 +9,12 @@ from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.evidence.conditions import Measure, compared, measure_of, truth
-from btq_lang.evidence.model import CLOCK_SET_BACK, UNKNOWN_END, Activation, Moment
+from btq_lang.evidence.conditions import Measure, bound_at, compared, measure_of, truth
+from btq_lang.evidence.model import CLOCK_SET_BACK, ENOUGH, UNKNOWN_BEGIN, UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.signals import Unknown
-from btq_lang.requirements.model import Aggregate, Claim, Condition, Not, Signal, parts_in
+from btq_lang.evidence.use import fallen, risen
+from btq_lang.requirements.model import Aggregate, Claim, Condition, Not, parts_in
 
 Judge: TypeAlias = Callable[[Claim, Activation, Observed], "Judgement | None"]
 
@@ -27,6 +28,8 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
         sentence: what was observed, where `{}` is the measure, unless it holds; if `holds` is None, the reason.
         since: for a clause judged over a run, when the judged time began.
         starts: for such a clause, the activations that it counts or adds up.
+        note: what is unusual about it; each is told once for a log.
+        most: if it is known only between which limits what is measured lies, the upper one; `measure` is the lower one.
     """
 
     holds: bool | None
@@ -35,6 +38,38 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
     measure: Measure | None = None
     since: int | None = None
     starts: Sequence[Activation] = ()
+    note: str = ""
+    most: Measure | None = None
+
+
+def agreed(late: Judgement | None, early: Judgement | None, activation: Activation) -> Judgement | None:
+    """The judgement of an activation whose begin is not known exactly; unknown unless both are the same.
+
+    Args:
+        late, early: the judgements if it had begun as late and as early as it may have; None: it does not count.
+    """
+    if late is None and early is None:
+        return None
+    if late is None or early is None or not is_same(late, early):
+        return Judgement(None, activation.end, UNKNOWN_BEGIN)
+    return between(late, late.measure, early.measure)
+
+
+def between(judgement: Judgement, one: Measure | None, other: Measure | None) -> Judgement:
+    """The judgement with a measure that lies between two; unchanged without both."""
+    if one is None or other is None:
+        return judgement
+    least, most = sorted((one, other), key=lambda measure: measure.si)
+    is_known = most.si - least.si <= abs(least.si) * ENOUGH
+    return judgement._replace(measure=least, most=None if is_known else most)
+
+
+def is_same(one: Judgement, other: Judgement) -> bool:
+    """Whether two judgements come to the same, also for all measures between theirs."""
+    is_on_both_sides = (
+        one.measure is not None and other.measure is not None and one.measure.is_upper is not other.measure.is_upper
+    )
+    return one.holds is other.holds and not (one.holds is False and is_on_both_sides)
 
 
 # ---- durations and results ----
@@ -63,10 +98,12 @@ def succeeds(claim: Claim, activation: Activation, observed: Observed) -> Judgem
 
 def uses(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
     """`uses at most x of k`: how much a level falls, or a counter rises, during an activation."""
-    assert claim.signal is not None, "the clause names what is used"
-    used = _used(claim.signal, activation, observed)
-    found = used if isinstance(used, Unknown) else compared(claim, used, observed, activation.started)
-    return judged(claim, found, activation)
+    used = _used(claim, activation, observed)
+    if isinstance(used, Unknown):
+        return judged(claim, used, activation)
+    amount, note = used
+    judgement = judged(claim, compared(claim, amount, observed, activation.started), activation)
+    return judgement._replace(note=note) if judgement is not None else None
 
 
 def judged(claim: Claim, found: Measure | Unknown, activation: Activation) -> Judgement | None:
@@ -95,19 +132,32 @@ def duration(claim: Claim, activation: Activation, observed: Observed) -> Measur
     return compared(claim, activation.seconds, observed, activation.started)
 
 
-def _used(signal: Signal, activation: Activation, observed: Observed) -> float | Unknown:
+def _used(claim: Claim, activation: Activation, observed: Observed) -> tuple[float, str] | Unknown:
+    """How much was used, and a note if the signal was recharged or restarted meanwhile."""
+    signal, limit = claim.signal, claim.limit
+    assert signal is not None, "the clause names what is used"
+    assert limit is not None, "and how much at most"
     if activation.timing == "broken":
         return Unknown(CLOCK_SET_BACK)
     if signal.behaviour == "gauge":
         return Unknown(f"`{signal.name}` is neither a level nor a counter")
-    levels: list[float] = []
+    ends: list[float] = []
     for moment in (activation.started, activation.ended):
         value = observed.reading(signal, moment)
         if isinstance(value, Unknown):
             return value
-        levels.append(float(value))
-    before, after = levels
-    return before - after if signal.behaviour == "level" else after - before
+        ends.append(float(value))
+    values = observed.signals.sampled_values(signal, activation.begin, activation.end)
+    if isinstance(values, Unknown):
+        return values
+    bound = bound_at(limit.upper or limit.value, observed, activation.started)
+    if isinstance(bound, Unknown):
+        return bound
+    if signal.behaviour == "level":
+        amount, number = fallen([ends[0], *values], bound.si)
+        return amount, f"`{signal.name}` was recharged, which does not count as negative use" if number else ""
+    amount, number = risen([ends[0], *values])
+    return amount, f"`{signal.name}` was restarted, and counts on from there" if number else ""
 
 
 # ---- conditions ----

@@ -83,6 +83,19 @@ class Worst(Record):
     run: int | None
 
 
+class Bounded(Record):
+    """Judgements whose measure is known only to lie between limits, as the log does not say when something began.
+
+    Attributes:
+        number: how many.
+        si, text: the largest upper limit.
+    """
+
+    number: int
+    si: float
+    text: str
+
+
 class Histogram(Record):
     """The distribution of the measured values, in SI.
 
@@ -164,6 +177,8 @@ class ClauseVerdict(Record):
         counted: how many activations (or runs, for odds of runs, sums, and tries in a run) were judged true or false.
         violated, unknown: how many of these are violations, and how many more are unknown.
         cut_off: activations left out because the log ends while they are open.
+        worst: of the measures that are known, and of violations.
+        bounded: judgements that are true or false although their measure is not known; None: there are none.
         interval: the lower and the upper limit of the probability that it holds; None without odds.
         limits: which ones these are, as in `odds.py`.
         confidence: that the requirement names; None if it names none, and each limit has 95 %.
@@ -193,6 +208,7 @@ class ClauseVerdict(Record):
     histogram: Histogram | None
     timeline: Timeline | None = None
     measures: Measures | None = None
+    bounded: Bounded | None = None
 
 
 class RequirementVerdict(Record):
@@ -234,7 +250,9 @@ class NodeSummary(Record):
         runs: in how many runs it was active.
         succeeded, failed, halted, interrupted: how many of its activations.
         failures_began: in how many failed runs the failure began at it.
-        p50, p95: percentiles of the durations of its activations with a result, in seconds; None without any.
+        p50, p95: percentiles of the known durations of its activations with a result, in seconds; None without any.
+        bounded, longest: how many more have a result and no known duration, and how long any of those took at most, in
+            seconds; None if the log does not say.
         tick_p95, tick_worst: durations of its `tick()`, in seconds, if the log shows them; else None.
         written: the written node; None if the mission does not have it.
     """
@@ -250,6 +268,8 @@ class NodeSummary(Record):
     failures_began: int
     p50: float | None
     p95: float | None
+    bounded: int
+    longest: float | None
     tick_p95: float | None
     tick_worst: float | None
     written: ResolvedNode | None

@@ -227,7 +227,8 @@ class Script(Record):
     code: str
 
 
-Condition: TypeAlias = Compare | All | Any | Not | InContext | Running | Script | Read | Flag | Parameter
+# A Scope is part of another condition only where evidence judges what is demanded in that scope.
+Condition: TypeAlias = "Compare | All | Any | Not | InContext | Running | Script | Read | Flag | Parameter | Scope"
 
 
 # ---- Claims ---------------------------------------------------------------------------------------------------------

@@ -161,8 +161,8 @@ LIMITED = MAIN_XML.replace(
     ("runs", "expected", "why"),
     [
         # The engine's timer starts before the node does, so what a Timeout stops has lasted a little less than that.
-        ("0 1R 2R 0.1 3R 20 3I 2F 2I 1F", "violated", "stopped by its own guard after 19.9 ms"),
-        ("0 1R 2R 0.1 3R 20 2F 2I 1F", "violated", "stopped by its own guard after 19.9 ms"),  # no row to IDLE
+        ("0 1R 2R 0.1 3R 20 3I 2F 2I 1F", "violated", "stopped by its own guard after 20 ms"),
+        ("0 1R 2R 0.1 3R 20 2F 2I 1F", "violated", "stopped by its own guard after 20 ms"),  # no row to IDLE
         ("0 1R 2R 0.1 3R 10 3I 2I 1I", "never exercised", ""),  # stopped by something else
         ("0 1R 2R 0.1 3R 10 3F 2F 1F", "satisfied", ""),
         ("0 1R 2R 0.1 3R 10 3S 2S 4S 1S", "satisfied", ""),
@@ -243,20 +243,20 @@ def test_a_refused_start_counts_for_what_is_needed_and_for_success(verify: Verif
         "swift": "satisfied",
     }
     assert verdicts(verify, f"0 1R {around}R {check}F {check}I {around}F 1F") == {
-        "needy": "violated: its start was refused by needy",
+        "needy": "violated: its start was refused by its guard at needy_check",
         "works": "violated: its start was refused by needy",
         "swift": "never exercised",
     }
 
 
-def test_what_the_order_refuses_breaks_the_order_and_does_not_fail(verify: Verify) -> None:
+def test_what_the_order_refuses_breaks_the_order_and_fails(verify: Verify) -> None:
     demands = "QualityReq ordered : safety\n    Pick follows Move succeeds\n    on violation fail\n"
     demands += "QualityReq works : reliability\n    Pick succeeds\n"
     uid = several(verify, demands, SPEED)
     around, check, move = uid["ordered_follows"], uid["ordered_check"], uid["Move"]
     assert verdicts(verify, f"0 1R {move}S {around}R {check}F {around}F 1F") == {
-        "ordered": "violated: its start was refused by ordered",
-        "works": "never exercised",
+        "ordered": "violated: its start was refused by its guard at ordered_check",
+        "works": "violated: its start was refused by ordered",
     }
     assert verdicts(verify, f"0 1R {move}S {around}R {check}S {uid['Pick']}S {around}S 1S") == {
         "ordered": "satisfied",
@@ -270,7 +270,7 @@ def test_a_start_that_is_refused_for_its_number_breaks_the_number(verify: Verify
     once = f"0 1R {around}R {check}S {move}R 5 {move}F {around}F"
     assert verdicts(verify, f"{once} 1F") == {"rare": "satisfied"}
     assert verdicts(verify, f"{once} 9 {around}R {check}F {around}F 1F") == {
-        "rare": "violated: its start was refused by rare"
+        "rare": "violated: started 1 time, and its guard at rare_check refused 1 more"
     }
 
 

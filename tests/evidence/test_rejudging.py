@@ -124,7 +124,7 @@ def test_there_are_no_more_steps_than_are_kept() -> None:
     assert edge is not None
     found = Margins(of_runs=False)
     for number in range(10_000):
-        found.add(KEPT, VIOLATED, number / 1000)
+        found.add(KEPT, VIOLATED, [number / 1000])
         found.end_run(number + 1)
     found = Margins.read(json.loads(json.dumps(found.written())))
     assert len(found.written()["steps"]) <= margins.MOST_STEPS

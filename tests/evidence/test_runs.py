@@ -108,7 +108,7 @@ def made(text: str, folder: Path) -> tuple[list[str], list[str]]:
         pytest.param(
             "0 1R 2R 5 2I 8 2S 1S", ["2 0-5 H", "2 8-8 S", "1 0-8 S"], id="IDLE, and a result of another tick"
         ),
-        pytest.param("0 1R 2S 5 3R 9 3S 1I 1S", ["2 0-0 S", "3 5-9 S", "1 0-9 S"], id="so does the root"),
+        pytest.param("0 1R 2S 5 3R 9 3S 1I 1S", ["2 0-0 S", "3 0-9 S", "1 0-9 S"], id="so does the root"),
         pytest.param("0 2R 1R 5 2S 1S", ["2 0-5 S", "1 0-5 S"], id="children first"),
         pytest.param("0 2S 3R 4 1R 5 3S 1S", ["2 0-0 S", "3 0-5 S", "1 0-5 S"], id="children first, the row later"),
         pytest.param("0 2R 5 2S 1S", ["2 0-5 S", "1 0-5 S"], id="a result alone"),
@@ -194,7 +194,7 @@ def seen(text: str) -> str:
         ("G 5 2S 3R 8 3S 1S 1I", "2S 5..5 late, 3S 5..8 exact, 1S 5..8 late"),
         ("G 5 2I 1I 6 1R 2R 8 2S 1S", "2S 6..8 exact, 1S 6..8 exact"),
         ("G 5 2R 6 1R 8 2S 1S", "2S 5..8 exact, 1S 5..8 exact"),  # children first
-        ("G 5 1R 6 2S 1S", "2S 6..6 exact, 1S 5..6 exact"),
+        ("G 5 1R 6 2S 1S", "2S 5..6 exact, 1S 5..6 exact"),
         ("G 5 1F", "1F 5..5 late"),
         ("G 5 2R", "2O 5..5 exact, 1O 5..5 late"),
         ("1R 2R 3 G 9 3R", "2O 0..0 exact, 1O 0..0 lost, 3O 9..9 exact, 1O 9..9 late"),

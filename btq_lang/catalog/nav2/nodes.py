@@ -24,6 +24,7 @@ _CONTROL: Final = (
         "that then returns RUNNING does not keep the later ones from being ticked. FAILURE of any child halts all and "
         "is its result; SUCCESS of the last one too.",
         flow="pipeline",
+        one_tick="next",
     ),
     control(
         "RecoveryNode",
@@ -44,6 +45,7 @@ _CONTROL: Final = (
             ),
         ),
         flow="recover",
+        one_tick="both",
         late_count=True,
     ),
     control(
@@ -52,6 +54,7 @@ _CONTROL: Final = (
         "Children that have ended are ticked again. FAILURE of any child halts all and is its result; SUCCESS if all "
         "children succeed in one tick. A skipped child throws.",
         flow="together",
+        one_tick="next",
     ),
     control(
         "PersistentSequence",
@@ -69,6 +72,7 @@ _CONTROL: Final = (
             ),
         ),
         flow="resume",
+        one_tick="both",
     ),
     control(
         "PauseResumeController",
@@ -79,6 +83,7 @@ _CONTROL: Final = (
         children=(1, 4),
         execution="asynchronous",
         flow="pause",
+        one_tick="first",
         late_count=True,
     ),
 )
@@ -96,9 +101,14 @@ _ROUND_ROBIN: Final = control(
         PortKind("wrap_around", "input", "bool", "whether the first child follows the last one", "false", role="wraps"),
     ),
     flow="rotate",
+    one_tick="both",
 )
 _OLDER_ROUND_ROBIN: Final = control(
-    "RoundRobin", "Ticks its children in turn.", f"{_TURNS}After the last child follows the first one.", flow="rotate"
+    "RoundRobin",
+    "Ticks its children in turn.",
+    f"{_TURNS}After the last child follows the first one.",
+    flow="rotate",
+    one_tick="both",
 )
 
 
@@ -107,7 +117,7 @@ def _throttle(tag: str, doc: str, again: str, besides: str = "", flow: Flow = "t
         f"It ticks its child when it starts, as long as that runs, and {again}; otherwise it returns RUNNING. "
         f"{besides}When its parent resets it after a success it starts again, and holds nothing back."
     )
-    return decorator(tag, doc, semantics, flow=flow, memory="success")
+    return decorator(tag, doc, semantics, flow=flow, one_tick="first", memory="success")
 
 
 _DECORATORS: Final = (
@@ -130,18 +140,21 @@ _DECORATORS: Final = (
         "Replaces the goal of its child by one that a topic gives.",
         "It writes the goal at every tick, ticks its child and returns what that returns.",
         flow="pass",
+        one_tick="next",
     ),
     decorator(
         "PathLongerOnApproach",
         "Ticks its child if the path became much longer close to the goal.",
         "Otherwise it succeeds, also while its child runs, which is then neither ticked nor halted.",
         flow="pass-or-succeed",
+        one_tick="first",
     ),
     decorator(
         "SingleTrigger",
         "Ticks its child until it ends, once.",
         "Afterwards it fails, until its parent resets it. Most parents do so when it has ended: then it does nothing.",
         flow="pass-once",
+        one_tick="first",
         memory="success",
     ),
 )

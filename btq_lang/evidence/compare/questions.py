@@ -41,10 +41,11 @@ _PLACED: Final = """
     ),
     measures AS (
         SELECT '' AS requirement, '' AS clause, node, log, run, (end_us - start_us) / 1e6 AS value
-        FROM activations WHERE mission = {mission} AND timing = 'exact' AND outcome IN ('succeeded', 'failed')
+        FROM activations WHERE mission = {mission} AND timing = 'exact'
+            AND (start_us - earliest_us) * 100 <= end_us - start_us AND outcome IN ('succeeded', 'failed')
         UNION ALL
         SELECT requirement, {clause} AS clause, node, log, run, measured_si AS value
-        FROM verdicts WHERE mission = {mission} AND measured_si IS NOT NULL
+        FROM verdicts WHERE mission = {mission} AND measured_si IS NOT NULL AND most_si IS NULL
     ),
     measured AS (SELECT measures.*, side, stratum, unit FROM measures JOIN placed USING (log, run))
 """

@@ -13,6 +13,7 @@ from typing import Final
 
 from btq_lang.btcpp.document import Element
 from btq_lang.btcpp.reader import read as read_xml
+from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.evidence.model import ROOT, LoggedTree
 from btq_lang.syntax.tokens import CATEGORIES
 
@@ -38,26 +39,31 @@ def read_tree(xml: bytes | str) -> LoggedTree:
                 tops[_uid(element)] = element, tree.get("_fullpath") or ""
     if ROOT not in tops:
         raise NotALog("its tree has no node with `_uid` 1")
-    nodes = _numbered(tops)
+    nodes, delays = _numbered(tops)
     if [uid for uid, *_ in nodes] != [*range(1, len(nodes) + 1)]:
         raise NotALog("the nodes of its tree are not numbered 1, 2, 3 … as BehaviorTree.CPP numbers them")
-    return LoggedTree(nodes)
+    return LoggedTree(nodes, delays)
 
 
-def _numbered(tops: dict[int, tuple[Element, str]]) -> list[tuple[int, str, str, int]]:
-    """uid, kind, path and parent of each node, in the order of the document with subtrees in their places."""
+def _numbered(tops: dict[int, tuple[Element, str]]) -> tuple[list[tuple[int, str, str, int]], dict[int, int]]:
+    """uid, kind, path and parent of each node, in the order of the document with subtrees in their places; and by uid
+    how long the Delays wait.
+    """
     found: list[tuple[int, str, str, int]] = []
+    delays: dict[int, int] = {}
     waiting = [(*tops.pop(ROOT), 0)]
     while waiting:
         element, prefix, parent = waiting.pop()
         uid = _uid(element)
         found.append((uid, kind_of(element), _path(element, uid, prefix), parent))
+        if (delay := delay_of(element)) is not None:
+            delays[uid] = delay
         if element.tag == "SubTree":
             if uid + 1 in tops:  # popped: no tree is below two nodes, or itself
                 waiting.append((*tops.pop(uid + 1), uid))
         else:
             waiting += [(child, prefix, uid) for child in reversed([*element.elements])]
-    return found
+    return found, delays
 
 
 def _uid(element: Element) -> int:
@@ -70,6 +76,12 @@ def kind_of(element: Element) -> str:
     return element.get("ID") or element.tag if element.tag in CATEGORIES else element.tag
 
 
+def delay_of(element: Element) -> int | None:
+    """How long a Delay waits before it ticks its child, in µs; None: another node, or the value is not in the XML."""
+    time = element.get(_DELAYS.get(kind_of(element), "")) or ""
+    return int(time) * 1000 if time.isascii() and time.isdecimal() and len(time) <= _MOST_TIME else None
+
+
 def _path(element: Element, uid: int, prefix: str) -> str:
     if element.tag == "SubTree":
         return element.get("_fullpath") or ""
@@ -79,4 +91,9 @@ def _path(element: Element, uid: int, prefix: str) -> str:
     return f"{prefix}/{own}" if prefix else own
 
 
+# The nodes that wait before they tick their child, each with the port that says how long, in ms.
+_DELAYS: Final = {
+    kind.tag: port.name for kind in BUILTINS.values() if kind.flow == "delay" and (port := kind.port_for("time"))
+}
+_MOST_TIME: Final = 10  # an unsigned int
 _MOST_DIGITS: Final = 5  # the engine numbers nodes with 16 bits

@@ -57,10 +57,12 @@ QUERIES: Final = {
             SUM(CASE WHEN counted AND verdict = 'violated' THEN 1 ELSE 0 END) AS violated,
             SUM(CASE WHEN counted AND verdict = 'unknown' THEN 1 ELSE 0 END) AS unclear,
             MIN(CASE WHEN verdict = 'unknown' THEN why END) AS why,
-            MIN(CASE WHEN verdict = 'satisfied' THEN measured_si - bound_si END) AS least,
-            MAX(CASE WHEN verdict = 'satisfied' THEN measured_si - bound_si END) AS most,
-            MIN(CASE WHEN verdict = 'satisfied' THEN measured_si END) AS lowest,
-            MAX(CASE WHEN verdict = 'satisfied' THEN measured_si END) AS highest
+            MIN(CASE WHEN verdict = 'satisfied' AND most_si IS NULL THEN measured_si - bound_si END) AS least,
+            MAX(CASE WHEN verdict = 'satisfied' AND most_si IS NULL THEN measured_si - bound_si END) AS most,
+            MIN(CASE WHEN verdict = 'satisfied' AND most_si IS NULL THEN measured_si END) AS lowest,
+            MAX(CASE WHEN verdict = 'satisfied' AND most_si IS NULL THEN measured_si END) AS highest,
+            SUM(CASE WHEN most_si IS NULL THEN 0 ELSE 1 END) AS bounded, MAX(most_si) AS bounded_si,
+            MAX(CASE WHEN most_si IS NOT NULL THEN bound_si END) AS bounded_bound_si
         FROM verdicts
         GROUP BY {by}, requirement, clause, node
     """,
@@ -86,6 +88,7 @@ QUERIES: Final = {
                 verdicts.node AS node, verdicts.log AS log, verdicts.run AS run, verdicts.path AS path,
                 verdicts.end_us AS end_us, verdicts.at_us AS at_us, verdicts.verdict AS verdict,
                 verdicts.measured_si AS measured_si, verdicts.bound_si AS bound_si, verdicts.why AS why,
+                verdicts.most_si AS most_si,
                 runs.source AS source, runs.start_us AS run_start_us, runs.end_us AS run_end_us,
                 windows.last_number AS last_number, windows.last_of AS last_of, windows.last_seconds AS last_seconds,
                 DENSE_RANK() OVER (

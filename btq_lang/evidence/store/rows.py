@@ -85,7 +85,7 @@ class Part:
         self._activations += 1
         each = activation
         of = (*self._whose, self._rows.run, *self._nodes[each.uid])
-        self._rows.write["activations"]((*of, each.begin, each.end, OUTCOMES[each.outcome], each.timing))
+        self._rows.write["activations"]((*of, each.begin, each.end, OUTCOMES[each.outcome], each.timing, each.earliest))
 
     def end_run(self, root: Activation, retries: int, recoveries: int, failure: int | None) -> None:
         """Write the open run, which has ended.
@@ -131,7 +131,8 @@ class Part:
             clause.unit = measure.unit.symbol
         why = None if judgement.holds else judgement.sentence
         at = judgement.at if verdict == VIOLATED else None
-        row = (clause.index, self._rows.run, path, begin, end, verdict, True, at, *numbers, why)
+        most = judgement.most.si if judgement.most is not None else None
+        row = (clause.index, self._rows.run, path, begin, end, verdict, True, at, *numbers, why, most)
         if of_runs:
             clause.open.append(row)
         else:

@@ -23,6 +23,7 @@ from btq_lang.evidence.verdicts import (
     OUTCOMES,
     SATISFIED,
     UNKNOWN,
+    Bounded,
     ClauseVerdict,
     MissionVerdicts,
     Repeats,
@@ -152,6 +153,9 @@ def _counted(row: Row, counts: Row | None, broken: Sequence[Row], unit: Unit) ->
     tally.counted = int(counts["kept"]) + tally.violated
     tally.why = counts["why"] or ""
     tally.violations.extend(_violation(each, unit) for each in broken)
+    if counts["bounded"]:
+        si, bound = counts["bounded_si"], counts["bounded_bound_si"]
+        tally.bounded = Bounded(int(counts["bounded"]), si, measured(si, unit, bound))
     worst = broken[0] if broken else None
     if worst is None:
         tally.worst = _closest(counts, unit)
@@ -177,7 +181,8 @@ def _recent(row: Row, judgements: Sequence[Row], unit: Unit) -> Tally:
         of_run = [*found]
         for each in of_run:
             holds = None if each["verdict"] == UNKNOWN else each["verdict"] == SATISFIED
-            judgement = Judgement(holds, each["at_us"] or 0, each["why"] or "", _measure(each, unit))
+            most = _measure({**each, "measured_si": each["most_si"]}, unit)
+            judgement = Judgement(holds, each["at_us"] or 0, each["why"] or "", _measure(each, unit), most=most)
             tally.add(judgement, each["path"], each["end_us"], ())
         first = of_run[0]
         tally.end_run(Run(number, first["source"], first["run_start_us"], first["run_end_us"]))

@@ -50,6 +50,7 @@ ROWS: Final = {
     # An activation of a node.  `path`: as the engine names it; `node`: as in other trees (`node_names.py`).
     # `timing`: `exact`; `latest`, if it may have ended before; `broken`, if the clock was set
     # back meanwhile; `late`, if it began before; `lost`, if the rest of the run was lost; `part`, if both.
+    # `earliest_us`: when it may have begun before `start_us`, equal to that if it is known when it began.
     "activations": {
         **_WHOSE,
         "run": "INTEGER",
@@ -62,6 +63,7 @@ ROWS: Final = {
         "end_us": "BIGINT",
         "outcome": "VARCHAR",
         "timing": "VARCHAR",
+        "earliest_us": "BIGINT",
     },
     # A clause at a node, whether something was judged or not.  `node`: all nodes at which it is counted together;
     # `counts`: `activations` or `runs`; `unit`: of what is measured; `exercised`: whether its node ran; `cut_off`:
@@ -89,7 +91,8 @@ ROWS: Final = {
     },
     # What was judged: an activation, or a run for clauses about runs.  `verdict`: `satisfied`, `violated` or `unknown`;
     # `counted`: whether it counts: where runs are counted, one judgement of each run does; `at_us`: when it was
-    # violated; `why`: what happened, with `{}` for what was measured, or why it is unknown.
+    # violated; `why`: what happened, with `{}` for what was measured, or why it is unknown; `most_si`: the upper limit
+    # of a measure of which `measured_si` is the lower one, if it is not known exactly.
     "verdicts": {
         "clause_index": "INTEGER",
         "run": "INTEGER",
@@ -102,6 +105,7 @@ ROWS: Final = {
         "measured_si": "DOUBLE",
         "bound_si": "DOUBLE",
         "why": "VARCHAR",
+        "most_si": "DOUBLE",
     },
 }
 # What a verdict has of its clause.

@@ -1,0 +1,143 @@
+"""When nodes began, as far as the rows of a log say.
+
+One invariant: a begin is called known only if nothing but the node's own `tick()` lies between it and the node's first
+row.
+
+The engine does not log when it ticks a node. A node that completes at once leaves one row, its result; an asynchronous
+leaf writes RUNNING after its first tick; and some nodes write RUNNING after their children's rows. When such a node
+began is known where the row before shows that the tick which wrote it went on to the node: it is the RUNNING of a node
+above, or the result of an elder sibling, and all nodes between tick their children at once (`NodeKind.one_tick`).
+Otherwise it began after that row.
+
+A row to IDLE, or the result of a leaf that was running, may come from another thread (of a ThreadedAction, or a
+Timeout's timer) and does not show where the tree is; yet a node began after its own last row, and after an elder
+sibling that it waits for had completed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+from btq_lang.catalog.nav2.nodes import NODES
+from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.evidence.model import RUNNING, LoggedTree
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.model import Moment
+
+    # If the row before may show when a node began: the node, or the one above it, that then began too, and the
+    # Parallels between them, each with its child.
+    Shown: TypeAlias = tuple[int, list[tuple[int, int]]]
+
+
+class Begins:
+    """Follows the rows of a session.
+
+    Attributes:
+        others: the rows since the last one of the thread that ticks the tree: uid, time, and whether it is a result.
+    """
+
+    def __init__(self, tree: LoggedTree) -> None:
+        self._tree: Final = tree
+        one_tick = {uid: _one_tick(tree, uid) for uid in tree.nodes}
+        self._at_once: Final = {uid for uid, how in one_tick.items() if how}
+        self._into: Final = {uid for uid, how in one_tick.items() if how in ("first", "both", "unskipped")}
+        self._onward: Final = {uid for uid, how in one_tick.items() if how in ("next", "both", "unskipped")}
+        self._in_order: Final = {uid for uid, how in one_tick.items() if how in ("first", "both")}
+        built_in = {uid for uid, node in tree.nodes.items() if node.kind in BUILTINS}
+        self._writes_first: Final = (self._into | built_in) - tree.leaves
+        self._parallel: Final = {uid for uid, how in one_tick.items() if how == "unskipped"}
+        self._ticked: Final[dict[int, int]] = {}  # of each Parallel that runs, the last child that has written a row
+        self._before: tuple[int, int, bool] | None = None  # its time, its node, and whether it is RUNNING
+        self.others: Final[list[tuple[int, int, bool]]] = []
+        self._shown: Final[dict[tuple[int, int, bool], Shown | None]] = {}
+
+    def follow(self, time: int, uid: int, is_running: bool) -> None:
+        """Note a row of the thread that ticks the tree."""
+        self._before = time, uid, is_running
+        if self.others:
+            self.others.clear()
+        if self._parallel:
+            self._follow_parallels(uid, is_running)
+
+    def lose(self) -> None:
+        """Forget the rows so far: others were lost, or the clock was set back."""
+        self._before = None
+        self.others.clear()
+
+    def of(self, uid: int, now: Moment, status: int, writes: int, begun: Mapping[int, Moment]) -> tuple[int, int]:
+        """When a node began whose first row is this one, its own or one below it: at the earliest, and at the latest.
+
+        Args:
+            writes: the node that writes it.
+            begun: the nodes that are active, each with its begin.
+        """
+        time = now[0]
+        if uid == writes and status == RUNNING and uid in self._writes_first:
+            return time, time
+        before = self._before
+        if before is not None and self._shows(uid, before, begun):
+            return before[0], before[0]
+        earliest = before[0] if before is not None else 0
+        for other, at, is_result in self.others:
+            if other == uid or (is_result and self._waits_for(uid, other)):
+                earliest = max(earliest, at)
+        above = self._tree.parent[uid]
+        if above in begun and (delay := self._tree.delays.get(above)) is not None:
+            waited = begun[above][0] + delay
+            # Else it did not wait: 4.8.3 and 4.8.4 do not.
+            earliest = max(earliest, waited) if waited <= time else earliest
+        return min(earliest, time), time
+
+    def _shows(self, uid: int, before: tuple[int, int, bool], begun: Mapping[int, Moment]) -> bool:
+        key = uid, before[1], before[2]
+        if key not in self._shown:
+            self._shown[key] = self._shown_by(*key)
+        shown = self._shown[key]
+        if shown is None:
+            return False
+        first, parallels = shown
+        if first != uid and first in begun:  # which may have ticked another node meanwhile
+            return False
+        return all(self._ticked.get(parallel, 0) <= child for parallel, child in parallels)
+
+    def _shown_by(self, uid: int, before: int, is_running: bool) -> Shown | None:
+        tree = self._tree
+        child = uid
+        parallels: list[tuple[int, int]] = []
+        for above in tree.above(uid):
+            is_last = above == before if is_running else above == tree.parent[before] and before < child
+            goes_on = self._at_once if not is_last else self._into if is_running else self._onward
+            if above not in goes_on:
+                return None
+            if above in self._parallel:
+                parallels.append((above, child))
+            if is_last:
+                return child, parallels
+            child = above
+        return None
+
+    def _waits_for(self, uid: int, other: int) -> bool:
+        """Whether a node begins only after another one has completed: an elder sibling of it, or of a node above."""
+        child = uid
+        for above in self._tree.above(uid):
+            if above == self._tree.parent[other]:
+                return above in self._in_order and other < child
+            child = above
+        return False
+
+    def _follow_parallels(self, uid: int, is_running: bool) -> None:
+        if is_running and uid in self._parallel:
+            self._ticked[uid] = 0
+        child = uid
+        for above in self._tree.above(uid):
+            if above in self._parallel:
+                self._ticked[above] = max(child, self._ticked.get(above, 0))
+            child = above
+
+
+def _one_tick(tree: LoggedTree, uid: int) -> str:
+    kind = "SubTree" if tree.has_tree(uid) else tree.nodes[uid].kind
+    known = BUILTINS.get(kind) or NODES.get(kind)
+    return known.one_tick if known is not None else ""
