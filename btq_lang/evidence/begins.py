@@ -17,7 +17,7 @@ sibling that it waits for had completed.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.catalog.nodes import BUILTINS
@@ -48,49 +48,49 @@ class Begins:
         built_in = {uid for uid, node in tree.nodes.items() if node.kind in BUILTINS}
         self._writes_first: Final = (self._into | built_in) - tree.leaves
         self._parallel: Final = {uid for uid, how in one_tick.items() if how == "unskipped"}
-        self._ticked: Final[dict[int, int]] = {}  # of each Parallel that runs, the last child that has written a row
-        self._before: tuple[int, int, bool] | None = None  # its time, its node, and whether it is RUNNING
+        # Of each Parallel the last child that has written a row in the activation that this row showed.
+        self._ticked: Final[dict[int, tuple[Moment, int]]] = {}
+        self._before: tuple[Moment, int, bool] | None = None  # its node, and whether it is RUNNING
         self.others: Final[list[tuple[int, int, bool]]] = []
         self._shown: Final[dict[tuple[int, int, bool], Shown | None]] = {}
 
-    def follow(self, time: int, uid: int, is_running: bool) -> None:
-        """Note a row of the thread that ticks the tree."""
-        self._before = time, uid, is_running
+    def follow(self, now: Moment, uid: int, is_running: bool, begun: Mapping[int, Begin]) -> None:
+        """Note a row of the thread that ticks the tree; `begun`: the nodes that are active."""
+        self._before = now, uid, is_running
         if self.others:
             self.others.clear()
         if self._parallel:
-            self._follow_parallels(uid, is_running)
+            self._follow_parallels(uid, begun)
 
     def lose(self) -> None:
         """Forget the rows so far: others were lost, or the clock was set back."""
         self._before = None
         self.others.clear()
 
-    def of(self, uid: int, now: Moment, status: int, writes: int, begun: Mapping[int, Moment]) -> tuple[int, int]:
-        """When a node began whose first row is this one, its own or one below it: at the earliest, and at the latest.
+    def of(self, uid: int, now: Moment, status: int, writes: int, begun: Mapping[int, Begin]) -> Begin:
+        """When a node began whose first row is this one, its own or one below it.
 
         Args:
             writes: the node that writes it.
-            begun: the nodes that are active, each with its begin.
+            begun: the nodes above it that are active, and others.
         """
-        time = now[0]
         if uid == writes and status == RUNNING and uid in self._writes_first:
-            return time, time
+            return Begin(now, now, now)
         before = self._before
-        if before is not None and self._shows(uid, before, begun):
-            return before[0], before[0]
-        earliest = before[0] if before is not None else 0
+        after = (before[0][0], before[0][1] + 1) if before is not None else (0, 0)  # just after it
+        if before is not None and self._shows(uid, before, now, begun):
+            return Begin(after, after, now)
+        time, earliest = now[0], after[0]
         for other, at, is_result in self.others:
             if other == uid or (is_result and self._waits_for(uid, other)):
                 earliest = max(earliest, at)
-        above = self._tree.parent[uid]
-        if above in begun and (delay := self._tree.delays.get(above)) is not None:
-            waited = begun[above][0] + delay
+        for above in self._tree.above(uid) if self._tree.delays else ():
+            waited = begun[above].earliest[0] + self._tree.delays.get(above, 0)
             # Else it did not wait: 4.8.3 and 4.8.4 do not.
-            earliest = max(earliest, waited) if waited <= time else earliest
-        return min(earliest, time), time
+            earliest = max(earliest, waited) if waited <= time + _CLOCKS else earliest
+        return Begin(min((earliest, after[1]), now), now, now)
 
-    def _shows(self, uid: int, before: tuple[int, int, bool], begun: Mapping[int, Moment]) -> bool:
+    def _shows(self, uid: int, before: tuple[Moment, int, bool], now: Moment, begun: Mapping[int, Begin]) -> bool:
         key = uid, before[1], before[2]
         if key not in self._shown:
             self._shown[key] = self._shown_by(*key)
@@ -98,9 +98,9 @@ class Begins:
         if shown is None:
             return False
         first, parallels = shown
-        if first != uid and first in begun:  # which may have ticked another node meanwhile
+        if first != uid and begun[first].shown != now:  # which may have ticked another node meanwhile
             return False
-        return all(self._ticked.get(parallel, 0) <= child for parallel, child in parallels)
+        return all(self._last_ticked(parallel, begun[parallel].shown) <= child for parallel, child in parallels)
 
     def _shown_by(self, uid: int, before: int, is_running: bool) -> Shown | None:
         tree = self._tree
@@ -127,17 +127,32 @@ class Begins:
             child = above
         return False
 
-    def _follow_parallels(self, uid: int, is_running: bool) -> None:
-        if is_running and uid in self._parallel:
-            self._ticked[uid] = 0
+    def _follow_parallels(self, uid: int, begun: Mapping[int, Begin]) -> None:
         child = uid
         for above in self._tree.above(uid):
-            if above in self._parallel:
-                self._ticked[above] = max(child, self._ticked.get(above, 0))
+            if above in self._parallel and above in begun:
+                shown = begun[above].shown
+                self._ticked[above] = shown, max(child, self._last_ticked(above, shown))
             child = above
+
+    def _last_ticked(self, parallel: int, shown: Moment) -> int:
+        """The last child that has written a row since the Parallel began, which this row shows; 0: none."""
+        of, child = self._ticked.get(parallel, (shown, 0))
+        return child if of == shown else 0
+
+
+class Begin(NamedTuple):
+    """When an activation began, at the earliest and at the latest, and the row that shows it."""
+
+    earliest: Moment
+    latest: Moment
+    shown: Moment
 
 
 def _one_tick(tree: LoggedTree, uid: int) -> str:
     kind = "SubTree" if tree.has_tree(uid) else tree.nodes[uid].kind
     known = BUILTINS.get(kind) or NODES.get(kind)
     return known.one_tick if known is not None else ""
+
+
+_CLOCKS: Final = 1000  # µs by which a timer and the times of rows may differ

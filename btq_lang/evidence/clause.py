@@ -15,7 +15,16 @@ from btq_lang.evidence.conditions import Measure
 from btq_lang.evidence.edges import WHILE_IT_RUNS, edge_of, key_of
 from btq_lang.evidence.history import History, Nearby, near
 from btq_lang.evidence.margins import Margins
-from btq_lang.evidence.model import BEGUN_BEFORE, CLOCK_SET_BACK, CUT_BY_GAP, ROOT, ROWS_LOST, Activation, LoggedTree
+from btq_lang.evidence.model import (
+    BEGUN_BEFORE,
+    CLOCK_SET_BACK,
+    CUT_BY_GAP,
+    ROOT,
+    ROWS_LOST,
+    UNKNOWN_BEGIN,
+    Activation,
+    LoggedTree,
+)
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.over_run import OverRun, target_of
 from btq_lang.evidence.recent import Recent
@@ -35,7 +44,6 @@ if TYPE_CHECKING:
     from btq_lang.evidence.explain import Explainer
     from btq_lang.evidence.guards import Guard, Refusal
     from btq_lang.evidence.identity import Joined
-    from btq_lang.evidence.model import Moment
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
     from btq_lang.evidence.verdicts import Timeline, Verdict
@@ -114,6 +122,8 @@ class JudgedClause:
         self._subject: Final = subject
         self._judge: Final = JUDGES.get(claim.verb) if not isinstance(subject, Span | Total) else None
         self._judge_run: Final = run_judge(claim, subject)
+        # Whether a mission succeeds is what the log's root returns, whatever is around the written one.
+        self._is_result: Final = isinstance(subject, Mission) and VERBS[claim.verb].limits == "success"
         self.judged: Final = replace(within(claim, requirement.scopes), subject=subject)
         self._edge: Final = edge_of(self.judged, subject, requirement) if with_measures else None
         self._extremes: Final = self._edge.extremes if self._edge is not None else ()
@@ -170,7 +180,7 @@ class JudgedClause:
         self.found.has_run = True
         if activation.timing in BEGUN_BEFORE:
             return
-        self._waits = self._waits or activation.started[1] != activation.ended[1]
+        self._waits = self._waits or activation.shown != activation.ended
         if guard is not None and self._is_own(guard):
             self._margins.is_exact = False  # with another bound the guard would have done something else
             self._count(self._broken(activation, guard, observed), activation, path)
@@ -231,17 +241,15 @@ class JudgedClause:
         assert self._judge_run is not None, "the clause is judged by runs"
         judged: list[tuple[Judgement | None, _Place, OverRun]] = []
         for place in self._places:
-            observed = Observed(self._signals, place.others, root.started, root.ended)
-            own = self._history.of(place.uids)
-            refused = [each for each in self._refused if each.uid in place.uids]
-            missed: list[Moment] = []
-            over = OverRun(self.claim.verb, self.requirement.scopes, root, own, observed, refused, missed)
-            judged += [(_clocked(each, root), place, over) for each in self._judge_run(self.judged, over)]
-            self.found.missed += len(missed)
+            over = self._over(place, root)
+            overs = [over]
+            if self._running or not all(each.is_begin_known for each in (root, *over.own)):
+                early = root.from_earliest()
+                overs.append(replace(over, root=early, observed=over.observed.earlier(early.started)))
+            judged += [(each, place, over) for each in self._judged_over(self.judged, overs)]
+            self.found.missed += len(over.missed)
             if self._extremes:
-                self._measure(
-                    [[_clocked(one, root) for one in self._judge_run(each, over)] for each in self._extremes], root
-                )
+                self._measure([self._judged_over(each, overs) for each in self._extremes], root)
         if len(judged) > 1:
             judged.sort(key=lambda each: each[0].at if each[0] is not None else 0)
         for found, place, over in judged:
@@ -253,12 +261,29 @@ class JudgedClause:
             else:
                 self._count(found, root, place.path)
 
+    def _over(self, place: _Place, root: Activation) -> OverRun:
+        observed = Observed(self._signals, place.others, root.started, root.ended)
+        own = self._history.of(place.uids)
+        refused = [each for each in self._refused if each.uid in place.uids]
+        return OverRun(self.claim.verb, self.requirement.scopes, root, own, observed, refused, [])
+
+    def _judged_over(self, claim: Claim, overs: Sequence[OverRun]) -> Sequence[Judgement | None]:
+        """The judgements of a run by a claim; `overs`: the run as it may have been."""
+        assert self._judge_run is not None, "the clause is judged by runs"
+        late, *others = [[*self._judge_run(claim, over)] for over in overs]
+        root = overs[0].root
+        for early in others:
+            if len(early) != len(late):
+                return [Judgement(None, root.end, UNKNOWN_BEGIN)]
+            late = [agreed(one, other, root) for one, other in zip(late, early, strict=True)]
+        return [_clocked(each, root) for each in late]
+
     def _judge_one(self, activation: Activation, observed: Observed, path: str, root: Activation | None = None) -> None:
         """Count an activation; `root`: of the run, if the judgement depends on the order of events."""
         ways: list[_Way] = [(activation, observed, in_scope(self.requirement.scopes, self.claim.verb, observed))]
-        if not activation.is_begin_known:
+        if self._running or not activation.is_begin_known:
             early = activation.from_earliest()
-            earlier = observed.during(early)
+            earlier = observed.earlier(early.started)
             ways.append((early, earlier, in_scope(self.requirement.scopes, self.claim.verb, earlier)))
         if all(counts is False for *_, counts in ways):
             return
@@ -318,6 +343,8 @@ class JudgedClause:
             self._add(judgement, path, since, of.end, chain)
 
     def _add(self, judgement: Judgement, path: str, begin: int, end: int, chain: tuple[Link, ...]) -> None:
+        if self._is_result:  # the log's root may be a wrapper
+            path = next(iter(self.found.paths))
         self._tally.add(judgement, path, end, chain)
         for record in self._records:
             record(judgement, begin, end, path)
@@ -336,10 +363,7 @@ class JudgedClause:
         if isinstance(subject, Total):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
             return [tuple(uids)] if uids and not self.found.missing else []
-        uids = self._instances(joined, _known(subject))
-        # Whether a mission succeeds is what its root returns, whatever is around the written one.
-        is_result = isinstance(subject, Mission) and VERBS[self.claim.verb].limits == "success"
-        return [(ROOT if is_result else uid,) for uid in uids]
+        return [(ROOT if self._is_result else uid,) for uid in self._instances(joined, _known(subject))]
 
     def _instances(self, joined: Joined, target: Target | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""

@@ -107,7 +107,7 @@ def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
         value = observed.reading(condition.signal, moment)
         return value if isinstance(value, bool | Unknown) else Unknown(f"`{condition.signal.name}` is not a bool")
     if isinstance(condition, Running):
-        return observed.nodes.runs(condition.target, moment)
+        return observed.nodes.runs(condition.target, moment, observed.is_early)
     return Unknown(_not_judged(condition))
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.catalog.nodes import tags_of
-from btq_lang.evidence.model import Activation, LoggedTree, Outcome
+from btq_lang.evidence.model import BEGUN_BEFORE, Activation, LoggedTree, Outcome
 from btq_lang.evidence.verdicts import NodeSummary, Repeats
 
 if TYPE_CHECKING:
@@ -59,8 +59,8 @@ class Coverage:
                 node.bounded += 1
                 node.longest = max(node.longest, activation.end - activation.earliest)
                 node.has_longest = node.has_longest and activation.earliest > 0
-        if activation.tick is not None:
-            node.ticks.append(activation.tick)
+        if node.is_leaf and activation.is_begin_known and activation.timing not in BEGUN_BEFORE:
+            node.ticks.append(activation.shown[0] - activation.begin)  # its first tick
         if node.run != self._runs:
             node.run = self._runs
             node.runs += 1
@@ -105,7 +105,7 @@ class _Node:
         self.ticks: Final = array("q")
         self._path: Final = path
         self._kind: Final = kind
-        self._is_leaf: Final = is_leaf
+        self.is_leaf: Final = is_leaf
         self._written: Final = written
         self.outcomes: Final[Counter[Outcome]] = Counter()
         self.times: Final = array("q")
@@ -126,7 +126,7 @@ class _Node:
         return NodeSummary(
             path=self._path,
             kind=self._kind,
-            is_leaf=self._is_leaf,
+            is_leaf=self.is_leaf,
             runs=self.runs,
             succeeded=self.outcomes["S"],
             failed=self.outcomes["F"],

@@ -12,7 +12,7 @@ from itertools import takewhile
 from typing import Final
 
 from btq_lang.btcpp.around import EVALUATING, LIMITING, WATCHING
-from btq_lang.catalog.verbs import words
+from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.evidence.model import ROOT, Activation, LoggedTree, Moment
 from btq_lang.util.record import Record
 
@@ -22,7 +22,7 @@ class Guard(Record):
 
     Attributes:
         path: of the node that decides: itself, or the condition that it evaluates.
-        verbs: of the clauses that it enforces.
+        verbs: of the clauses that it enforces; none: it halts the whole mission.
         checks: whether it evaluates a condition when the node has succeeded.
     """
 
@@ -58,6 +58,7 @@ class Guards:
         self._inside: Final = {guard: uid for uid, around in self._around.items() for guard in around}
         self._waiting: list[tuple[Activation, tuple[int, ...]]] = []
         self._failed: Final[dict[int, Moment]] = {}  # when the condition of a guard failed, until the guard ends
+        self._shown: Final[dict[int, Moment]] = {}  # when a node inside of guards last began
         self.concerned: Final = {*judged, *enforcing, ROOT}
 
     def see(self, activation: Activation) -> tuple[list[tuple[Activation, Guard | None]], Refusal | None]:
@@ -69,6 +70,8 @@ class Guards:
             self._failed[self._holders[uid]] = activation.ended
         refusal = self._refusal(activation)
         around = self._around.get(uid)
+        if around:
+            self._shown[uid] = activation.shown
         settled: list[tuple[Activation, Guard | None]] = []
         waiting, self._waiting = self._waiting, []
         for ended, guards in waiting:
@@ -97,9 +100,9 @@ class Guards:
         uid = activation.uid
         at = self._failed.get(uid)
         inside = self._inside.get(uid)
-        if activation.outcome != "F" or at is None or inside is None:
+        if activation.outcome not in ("F", "O") or at is None or inside is None or not self._guards[uid].verbs:
             return None
-        has_started = any(ended.uid == inside and activation.started <= ended.started for ended, _ in self._waiting)
+        has_started = inside in self._shown and self._shown[inside] >= activation.shown
         return Refusal(inside, at, self._guards[uid]) if not has_started else None
 
     def _checks(self, guards: tuple[int, ...]) -> tuple[int, ...]:
@@ -119,7 +122,7 @@ def _guard(tree: LoggedTree, uid: int, condition: int, requirement: str) -> Guar
     if kind == LIMITING:
         return Guard(path, requirement, words(enforced="limit"))
     if kind == WATCHING:
-        return Guard(path, requirement, words(limits=("success",)) | {what})
+        return Guard(path, requirement, words(limits=("success",)) | {what} if what in VERBS else frozenset())
     checked = _CHECKED.get(what)
     if checked is not None:
         return Guard(path, requirement, frozenset([checked]), checks=True)

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from operator import attrgetter
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation, LoggedTree, Moment
+from btq_lang.evidence.model import UNKNOWN_END, Activation, LoggedTree, Moment
 from btq_lang.evidence.signals import Unknown
 from btq_lang.requirements.model import Target
 
@@ -39,17 +39,19 @@ class History:
     def of(self, uids: Sequence[int]) -> list[Activation]:
         """The activations of nodes, in the order of their starts."""
         found = [activation for uid in uids for activation in self._by_node[uid]]
-        return sorted(found, key=_STARTED) if len(uids) > 1 else found
+        return sorted(found, key=_SHOWN) if len(uids) > 1 else found
 
-    def runs(self, uid: int, moment: Moment) -> bool | Unknown:
-        """Whether a node is active at a moment: from the row of its start to the row of its end."""
+    def runs(self, uid: int, moment: Moment, is_early: bool) -> bool | Unknown:
+        """Whether a node is active at a moment, from its start to the row of its end.
+
+        Args:
+            is_early: it started as early as it may have, not as late.
+        """
         kept = self._by_node[uid]
-        index = bisect_right(kept, moment, key=_STARTED) - 1
+        index = bisect_right(kept, moment, key=lambda activation: activation.begun(is_early)) - 1
         if index < 0 or moment > kept[index].ended:
-            later = kept[index + 1] if index + 1 < len(kept) else None
-            may_have_begun = later is not None and moment >= (later.earliest, later.started[1])
-            return Unknown(UNKNOWN_BEGIN) if may_have_begun else False
-        is_known = kept[index].timing != "latest" or moment == kept[index].started
+            return False
+        is_known = kept[index].timing != "latest" or moment == kept[index].begun(is_early)
         return True if is_known else Unknown(UNKNOWN_END)
 
     def clear(self) -> None:
@@ -86,12 +88,12 @@ class Nearby:
         found = self._found[target]
         return [] if isinstance(found, Unknown) else self._history.of(found)
 
-    def runs(self, target: Target, moment: Moment) -> bool | Unknown:
-        """Whether a node runs."""
+    def runs(self, target: Target, moment: Moment, is_early: bool) -> bool | Unknown:
+        """Whether a node runs; `is_early`: as of `History.runs`."""
         found = self._found[target]
         if isinstance(found, Unknown):
             return found
-        running = [self._history.runs(uid, moment) for uid in found]
+        running = [self._history.runs(uid, moment, is_early) for uid in found]
         return True in running or next((each for each in running if isinstance(each, Unknown)), False)
 
 
@@ -111,4 +113,4 @@ def _use_around(uid: int, tree: LoggedTree) -> int:
     return next((above for above in tree.above(uid) if path.startswith(f"{tree.nodes[above].path}/")), 0)
 
 
-_STARTED: Final = attrgetter("started")
+_SHOWN: Final = attrgetter("shown")

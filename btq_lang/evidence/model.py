@@ -96,16 +96,16 @@ class Activation:
 
     Attributes:
         started, ended: when it began, at the latest, and ended, with the rows of the log that say so.
+        shown: the time of the row that says that it began, and that row: by it, activations and events are in order.
         begin, end: the times of these moments.
         earliest: when it began at the earliest: equal to `begin` if that is known, 0 if nothing is.
-        tick: how long the first `tick()` of a leaf took, in µs; None: unknown, or not of a leaf.
         outcome: succeeded, failed, halted, or still open when the log ends.
         timing: `latest`: the log shows only that it had ended by `end`; `broken`: the clock was set back meanwhile;
             `late`: it began before `begin`, where nothing was seen; `lost`: a run of which later rows were lost;
             `part`: both of these.
     """
 
-    __slots__ = ("begin", "earliest", "end", "ended", "outcome", "started", "tick", "timing", "uid")
+    __slots__ = ("_early", "begin", "earliest", "end", "ended", "outcome", "shown", "started", "timing", "uid")
 
     def __init__(
         self,
@@ -114,8 +114,8 @@ class Activation:
         ended: Moment,
         outcome: Outcome,
         timing: Timing = "exact",
-        earliest: int | None = None,
-        tick: int | None = None,
+        early: Moment | None = None,
+        shown: Moment | None = None,
     ) -> None:
         self.uid: Final = uid
         self.started: Final = started
@@ -124,8 +124,9 @@ class Activation:
         self.end: Final = ended[0]
         self.outcome: Final[Outcome] = outcome
         self.timing: Final[Timing] = timing
-        self.earliest: Final = earliest if earliest is not None else self.begin
-        self.tick: Final = tick
+        self._early: Final = early if early is not None else started
+        self.earliest: Final = self._early[0]
+        self.shown: Final = shown if shown is not None else started
 
     @property
     def seconds(self) -> float:
@@ -142,9 +143,13 @@ class Activation:
         """Whether the log says how long it lasted, to one percent: enough for statistics."""
         return self.begin - self.earliest <= (self.end - self.begin) * ENOUGH
 
+    def begun(self, is_early: bool) -> Moment:
+        """When it began, at the earliest or at the latest."""
+        return self._early if is_early else self.started
+
     def from_earliest(self) -> Activation:
         """The activation as if it had begun as early as it may have."""
-        return Activation(self.uid, (self.earliest, self.started[1]), self.ended, self.outcome, self.timing)
+        return Activation(self.uid, self.begun(True), self.ended, self.outcome, self.timing, shown=self.shown)
 
     def __repr__(self) -> str:
         return f"<{self.uid} {self.begin}..{self.end} {self.outcome} {self.timing}>"

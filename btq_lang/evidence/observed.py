@@ -24,9 +24,21 @@ class Observed:
         nodes: complete only when the run has ended.
         begin, end: of the activation, or of the run.
         is_end_known: otherwise the activation ended at `end` or before.
+        is_early: all nodes began as early as they may have, not as late.
+        reads_initial: signals have their values `initially` before their first samples.
     """
 
-    __slots__ = ("_contexts", "_in_scope", "_reads_initial", "begin", "end", "is_end_known", "nodes", "signals")
+    __slots__ = (
+        "_contexts",
+        "_in_scope",
+        "begin",
+        "end",
+        "is_early",
+        "is_end_known",
+        "nodes",
+        "reads_initial",
+        "signals",
+    )
 
     def __init__(
         self,
@@ -35,10 +47,13 @@ class Observed:
         begin: Moment,
         end: Moment,
         is_end_known: bool = True,
+        *,
+        is_early: bool = False,
         reads_initial: bool = False,
     ) -> None:
         self.signals: Final = signals
-        self._reads_initial: Final = reads_initial
+        self.is_early: Final = is_early
+        self.reads_initial: Final = reads_initial
         self._in_scope: Observed | None = None
         self.nodes: Final = nodes
         self._contexts: dict[tuple[str, Moment], bool | Unknown] | None = None
@@ -51,24 +66,29 @@ class Observed:
         """The same, where signals have their values `initially` before their first samples: for conditions that say
         what a requirement is about, not whether it is satisfied.
         """
-        if self._reads_initial:
+        if self.reads_initial:
             return self
         if self._in_scope is None:
-            self._in_scope = Observed(self.signals, self.nodes, self.begin, self.end, self.is_end_known, True)
+            known = self.signals, self.nodes, self.begin, self.end, self.is_end_known
+            self._in_scope = Observed(*known, is_early=self.is_early, reads_initial=True)
         return self._in_scope
 
     def during(self, activation: Activation) -> Observed:
         """The observations during an activation."""
-        is_end_known = activation.timing != "latest"
-        return Observed(self.signals, self.nodes, activation.started, activation.ended, is_end_known)
+        begin, is_end_known = activation.begun(self.is_early), activation.timing != "latest"
+        return Observed(self.signals, self.nodes, begin, activation.ended, is_end_known, is_early=self.is_early)
+
+    def earlier(self, begin: Moment) -> Observed:
+        """The same from an earlier moment, as if all nodes had begun as early as they may have."""
+        return Observed(self.signals, self.nodes, begin, self.end, self.is_end_known, is_early=True)
 
     def between(self, begin: Moment, end: Moment) -> Observed:
         """The observations from one moment to another, within these."""
-        return Observed(self.signals, self.nodes, begin, end)
+        return Observed(self.signals, self.nodes, begin, end, is_early=self.is_early)
 
     def reading(self, signal: Signal, moment: Moment) -> SampleValue | Unknown:
         """The value of a signal at a moment."""
-        return self.signals.reading(signal, moment[0], self._reads_initial)
+        return self.signals.reading(signal, moment[0], self.reads_initial)
 
     def summary(self, function: str, signal: Signal) -> float | Unknown:
         """An aggregate of the samples from beginning to end, including the value at the beginning."""
@@ -100,9 +120,9 @@ class Observed:
                 elif isinstance(each, Running):
                     for activation in self.nodes.activations(each.target):
                         stopped = activation.end, activation.ended[1] + 1
-                        since = activation.begin, activation.started[1] + 1  # unknown from then on if the end is
-                        earliest = activation.earliest, activation.started[1]
-                        found.update([at for at in (earliest, activation.started, since, stopped) if begin < at <= end])
+                        started = activation.begun(self.is_early)
+                        since = started[0], started[1] + 1  # unknown from then on if the end is
+                        found.update([at for at in (started, since, stopped) if begin < at <= end])
         return sorted(found)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.conditions import truth
-from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation, Moment
+from btq_lang.evidence.model import UNKNOWN_END, Activation, Moment
 from btq_lang.evidence.scopes import in_scope
 from btq_lang.evidence.signals import Unknown
 from btq_lang.requirements.model import All, Condition, Event, Mission, Scope, Target
@@ -24,17 +24,24 @@ class Happening(Record):
         until: equal to `at`; later if the log shows only that it happened between them.
         why: why the moment cannot be judged; empty if what follows from both ends may be.
         is_certain: it did happen, rather than may have.
+        order: what it comes before or after others by; None: its moment.
     """
 
     at: Moment
     until: Moment
     why: str = ""
     is_certain: bool = True
+    order: Moment | None = None
 
     @property
-    def order(self) -> Moment:
-        """By which it comes before or after other events: if only its time is not known, the row that tells of it."""
-        return self.at if self.why else self.until
+    def first(self) -> Moment:
+        """From when on it may have happened, in the order of events."""
+        return self.order or self.at
+
+    @property
+    def last(self) -> Moment:
+        """By when it has happened, in the order of events."""
+        return self.order or self.until
 
 
 class Stretch(Record):
@@ -82,11 +89,12 @@ class OverRun(Record):
         """Whether the scopes include an activation."""
         if not self.scopes:
             return True
-        late = in_scope(self.scopes, self.verb, self.observed.during(activation))
-        if activation.is_begin_known:
-            return late
-        early = in_scope(self.scopes, self.verb, self.observed.during(activation.from_earliest()))
-        return late if late is early else Unknown(UNKNOWN_BEGIN)
+        return in_scope(self.scopes, self.verb, self.observed.during(activation))
+
+    def begins(self, event: Event) -> list[Moment]:
+        """When the clause's nodes began, to be compared with an event: a moment, or the row of another node."""
+        is_by_row = event.condition is None
+        return [each.shown if is_by_row else each.begun(self.observed.is_early) for each in self.own]
 
     def starts(self) -> list[tuple[Activation, bool | Unknown]]:
         """The activations of the clause's nodes that count or may count."""
@@ -117,11 +125,14 @@ class OverRun(Record):
             begin, before = end, now
         return found
 
-    def happenings(self, event: Event, of: Sequence[Activation] | None = None) -> list[Happening]:
-        """The certain and possible occurrences of an event, in order of time.
+    def happenings(
+        self, event: Event, of: Sequence[Activation] | None = None, is_by_row: bool = True
+    ) -> list[Happening]:
+        """The certain and possible occurrences of an event, in order.
 
         Args:
             of: the activations of its node; None: those of the node that the clause names.
+            is_by_row: begins are in the order of their rows, not of their times.
         """
         found: list[Happening] = []
         if event.condition is not None:
@@ -134,12 +145,13 @@ class OverRun(Record):
         outcomes = _OUTCOMES.get(event.happening)
         for each in of if of is not None else self.observed.nodes.activations(target_of(event)):
             if outcomes is None:
-                found.append(Happening((each.earliest, each.started[1]), each.started))
+                order = each.shown if is_by_row else each.begun(self.observed.is_early)
+                found.append(Happening(each.begun(True), each.started, order=order))
             elif each.outcome in outcomes and each.timing == "latest":
                 found.append(Happening(each.started, each.ended, UNKNOWN_END))
             elif each.outcome in outcomes:
                 found.append(Happening(each.ended, each.ended))
-        return sorted(found, key=lambda each: each.order)
+        return sorted(found, key=lambda each: each.first)
 
 
 def target_of(event: Event) -> Target:

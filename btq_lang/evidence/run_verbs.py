@@ -43,19 +43,19 @@ def run_judge(claim: Claim, subject: Subject | None) -> RunJudge | None:
 def _starts(claim: Claim, run: OverRun) -> Judgements:
     """`starts within d after ev`: for each event, whether the next start comes in time."""
     assert claim.event is not None, "the clause names one"
-    moments = [each.started for each in run.own]
+    moments = run.begins(claim.event)
     for event in run.happenings(claim.event):
-        index = bisect_left(moments, event.until)
-        answer = _start(run.own[index]) if index < len(moments) else None
+        index = bisect_left(moments, event.first)
+        answer = _begin(run.own[index]) if index < len(moments) else None
         yield from _answered(claim, run, event, answer, "had not started")
 
 
 def _ends(claim: Claim, run: OverRun) -> Judgements:
     """`ends within d after ev`: for each event that happens while the node is active, whether it ends in time."""
     assert claim.event is not None, "the clause names one"
-    moments = [each.started for each in run.own]
+    moments = run.begins(claim.event)
     for event in run.happenings(claim.event):
-        index = bisect_right(moments, event.until) - 1
+        index = bisect_right(moments, event.first) - 1
         if index < 0 or run.own[index].ended < event.at:
             run.missed.append(event.at)
             continue
@@ -120,9 +120,9 @@ def _timed(claim: Claim, times: tuple[Measure, Measure], at: int, since: int, sa
     return between(judgement, least, most)
 
 
-def _start(activation: Activation) -> Happening:
+def _begin(activation: Activation) -> Happening:
     """The begin of an activation as an event."""
-    return Happening((activation.earliest, activation.started[1]), activation.started)
+    return Happening(activation.begun(True), activation.started)
 
 
 def _follows(claim: Claim, run: OverRun) -> Judgements:
@@ -131,11 +131,11 @@ def _follows(claim: Claim, run: OverRun) -> Judgements:
     events = run.happenings(claim.event)
     name = claim.text.partition(" follows ")[2]
     before = (run.root.begin, -1)  # the beginning of the run
-    for start in run.own:
-        found = [each for each in events if each.until > before and each.at <= start.started]
-        is_sure = any(each.is_certain and before < each.order and each.until <= start.started for each in found)
+    for start, moment in zip(run.own, run.begins(claim.event), strict=True):
+        found = [each for each in events if before < each.last and each.first <= moment]
+        is_sure = any(each.is_certain and before < each.first and each.last <= moment for each in found)
         since = "since its last start" if before[1] >= 0 else "before it in the run"
-        before = start.started
+        before = moment
         counts = run.counts_one(start)
         if counts is False:
             continue
@@ -157,22 +157,24 @@ def _tries(claim: Claim, run: OverRun) -> Judgements:
     assert claim.limit is not None, "a number of tries has a bound"
     is_upper = claim.limit.relation in ("<=", "<")
     starts = run.starts()
-    moments = [each.started for each, _ in starts]
+    moments = [each.shown for each, _ in starts]
     periods = run.observed.nodes.activations(claim.per) if isinstance(claim.per, Target) else [run.root]
     for refusal in run.refused:
-        if not any(period.started <= refusal.at <= period.ended for period in periods):
+        if not any(period.shown <= refusal.at <= period.ended for period in periods):
             yield Judgement(False, refusal.at[0], f"its start was refused by its guard at {refusal.guard.path}")
     for period in periods:
-        inside = starts[bisect_left(moments, period.started) : bisect_right(moments, period.ended)]
-        refused = [each for each in run.refused if period.started <= each.at <= period.ended]
+        inside = starts[bisect_left(moments, period.shown) : bisect_right(moments, period.ended)]
+        refused = [each for each in run.refused if period.shown <= each.at <= period.ended]
         if not inside and not refused and is_upper:
             continue
         least = _number(claim, run, period, [each for each, counts in inside if counts is True], refused)
         most = _number(claim, run, period, [each for each, _ in inside], refused)
         may_break = most is not None and most.holds is False
-        if (least is None and may_break) or (least is not None and most is not None and least.holds is not most.holds):
-            why = next(counts.why for _, counts in inside if isinstance(counts, Unknown))
-            yield Judgement(None, period.end, why)
+        reasons = [counts.why for _, counts in inside if isinstance(counts, Unknown)]
+        has_none = is_upper and not refused and len(reasons) == len(inside)  # perhaps: then the period does not count
+        is_open = least is None or most is None or least.holds is most.holds
+        if has_none or (least is None and may_break) or not is_open:
+            yield Judgement(None, period.end, reasons[0])
         elif least is not None or period.outcome == "O":
             yield least
 
@@ -191,6 +193,8 @@ def _number(
     if isinstance(found, Unknown):
         return Judgement(None, period.end, found.why)
     holds = found.kept(period.outcome in ("S", "F"))
+    if refused:
+        holds, found = False, found.beyond()
     if holds is None and (period.outcome == "O" or not found.holds):
         return None
     if holds is False and period.timing == "latest":
@@ -213,7 +217,8 @@ def _runs(claim: Claim, run: OverRun) -> Judgements:
     """
     starts = run.starts()
     for stretch in run.stretches():
-        inside = [(each, counts) for each, counts in starts if stretch.begin <= each.started <= stretch.end]
+        is_early = run.observed.is_early
+        inside = [(each, counts) for each, counts in starts if stretch.begin <= each.begun(is_early) <= stretch.end]
         unclear = [counts.why for _, counts in inside if isinstance(counts, Unknown)]
         if stretch.why or unclear:
             yield Judgement(None, stretch.begin[0], stretch.why or unclear[0])
@@ -226,7 +231,7 @@ def _runs(claim: Claim, run: OverRun) -> Judgements:
 def _between(claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool) -> Judgements:
     """Judge the times from each start to the next, and from the last to the end of the stretch."""
     said = VERBS[claim.verb].said.replace("{}", "{} after its last start")
-    moments = [_start(each) for each in starts]
+    moments = [_begin(each) for each in starts]
     for start, after in pairwise([*moments, Happening(stretch.end, stretch.end)]):
         is_last = start is moments[-1]
         until = after.until[0]
@@ -246,23 +251,10 @@ def _in_windows(
     """Judge the windows with the fewest and the most starts; a stretch shorter than a window has none."""
     assert isinstance(claim.per, Value), "the starts are counted in a time"
     length = round(claim.per.si * 1e6)
-    if stretch.begin[0] > stretch.end[0] - length:
-        return
-    late = _worst_window(claim, run, stretch, starts, length, [each.begin for each in starts])
-    early = _worst_window(claim, run, stretch, starts, length, sorted(each.earliest for each in starts))
-    if is_open and late.holds:
-        yield None
-    elif late.holds is early.holds:
-        yield late
-    else:
-        yield Judgement(None, stretch.begin[0], UNKNOWN_BEGIN)
-
-
-def _worst_window(
-    claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], length: int, times: Sequence[int]
-) -> Judgement:
-    """The judgement of the window with the fewest, or the most, starts; `times`: when they began."""
     begin, last = stretch.begin[0], stretch.end[0] - length  # when the first and the last window begin
+    if begin > last:
+        return
+    times = [each.begun(run.observed.is_early)[0] for each in starts]
 
     def inside(window: int) -> slice:
         return slice(bisect_left(times, window), bisect_left(times, window + length))
@@ -277,16 +269,19 @@ def _worst_window(
     for window in (fewest, fullest):
         found = compared(claim, float(number(window)), run.observed, stretch.begin)
         if isinstance(found, Unknown):
-            return Judgement(None, stretch.begin[0], found.why)
+            yield Judgement(None, stretch.begin[0], found.why)
+            return
         measures.append((found, window))
     measure, window = max(measures, key=lambda each: each[0].excess)
     measure.unit = None
     if not measure.holds:
         broken = starts[inside(window)]
-        assert isinstance(claim.per, Value), "the starts are counted in a time"
         sentence = VERBS[claim.verb].said.replace("{}", f"{counted(len(broken), 'time')} in {claim.per.text}")
-        return Judgement(False, window + length, sentence, measure, window, broken)
-    return Judgement(True, stretch.end[0], "", measure)
+        yield Judgement(False, window + length, sentence, measure, window, broken)
+    elif is_open:
+        yield None
+    else:
+        yield Judgement(True, stretch.end[0], "", measure)
 
 
 # ---- the time between events, and sums ----
@@ -297,13 +292,14 @@ def _span(claim: Claim, run: OverRun) -> Judgements:
     span = claim.subject
     assert isinstance(span, Span), "the time between two events"
     first = span.first
-    lasts = run.happenings(span.last)
+    is_by_row = first.condition is None and span.last.condition is None
+    lasts = run.happenings(span.last, is_by_row=is_by_row)
     certain = [each for each in lasts if each.is_certain]
-    moments = [each.order for each in certain]
+    moments = [each.first for each in certain]
     ends = [*accumulate((each.until for each in reversed(certain)), min)][::-1]  # the first end from each index on
     next_after = bisect_right if first == span.last else bisect_left  # an event does not follow itself
-    for event in run.happenings(first, run.own if first.condition is None else None):
-        index = next_after(moments, event.until)
+    for event in run.happenings(first, run.own if first.condition is None else None, is_by_row):
+        index = next_after(moments, event.first)
         last = Happening(certain[index].at, ends[index]) if index < len(ends) else None
         until = last.until if last is not None else run.root.ended
         others = [each for each in lasts if each.until >= event.at and each.at <= until]
@@ -353,6 +349,9 @@ def _total(claim: Claim, run: OverRun) -> Judgements:
     every = [each for each, _ in starts]
     sure = [each for each, counts in starts if counts is True and each.timing == "exact"]
     reasons = [counts.why for _, counts in starts if isinstance(counts, Unknown)]
+    if len(reasons) == len(starts):  # perhaps none counts
+        yield Judgement(None, run.root.end, reasons[0])
+        return
     unclear = reasons[0] if reasons else UNKNOWN_END if sure != every else UNKNOWN_BEGIN
     least = _sum(claim, run, sure, sum(each.end - each.begin for each in sure))
     most = _sum(claim, run, every, sum(each.end - each.earliest for each in every))

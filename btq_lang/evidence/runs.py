@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.begins import Begins
+from btq_lang.evidence.begins import Begin, Begins
 from btq_lang.evidence.model import FAILURE, GAP, ROOT, RUNNING, SKIPPED, SUCCESS, Activation, LoggedTree, Mark, Session
 from btq_lang.evidence.wording import timestamp
 
@@ -41,7 +41,8 @@ def activations(session: Session) -> Iterator[Activation]:
     done: set[int] = set()  # the nodes that have completed and have not been reset since
     is_reset_written = False
     row, now = 0, (0, 0)
-    for row, (time, uid, status) in enumerate(session.transitions, 1):
+    for number, (time, uid, status) in enumerate(session.transitions, 1):
+        row = 2 * number  # so that there are moments between rows
         if uid not in parent or status not in _STATUSES:
             if isinstance(uid, Mark):
                 if idle is not None:
@@ -103,7 +104,7 @@ def activations(session: Session) -> Iterator[Activation]:
             elif uid in begun:
                 nodes.forget(uid)
         if is_of_tick:
-            begins.follow(time, uid, status == RUNNING)
+            begins.follow(now, uid, status == RUNNING, begun)
         else:
             by_others.append((uid, time, completes))
     if not is_reset_written:
@@ -125,27 +126,22 @@ class _OpenNodes:
     """
 
     def __init__(self, tree: LoggedTree, begins: Begins) -> None:
-        self.begun: Final[dict[int, Moment]] = {}
+        self.begun: Final[dict[int, Begin]] = {}
         self.running: Final[set[int]] = set()
         self.unseen: Final[set[int]] = set()
         self._late: Final[set[int]] = set()  # those that began before their time in `begun`
-        self._earliest: Final[dict[int, int]] = {}  # when they began, where that is not known
-        self._ticks: Final[dict[int, int]] = {}  # how long the first tick of leaves took, where that is known
         self._tree: Final = tree
         self._begins: Final = begins
         self._distrusted: Final[set[int]] = set()
 
     def begin(self, uid: int, now: Moment, status: int) -> None:
         """Mark the node that writes a row and its ancestors as active, whether these have logged it or not."""
-        first = uid
-        while uid and uid not in self.begun:
-            earliest, latest = self._begins.of(uid, now, status, first, self.begun)
-            self.begun[uid] = latest, now[1]
-            if earliest != latest:
-                self._earliest[uid] = earliest
-            elif uid == first and uid in self._tree.leaves:
-                self._ticks[uid] = now[0] - latest
-            uid = self._tree.parent[uid]
+        begun, parent = self.begun, self._tree.parent
+        beginning = [uid]
+        while (above := parent[beginning[-1]]) and above not in begun:
+            beginning.append(above)
+        for each in reversed(beginning):
+            begun[each] = self._begins.of(each, now, status, uid, begun)
 
     def see(self, uid: int, now: Moment, status: int) -> None:
         """Conclude from a row which nodes were active before it."""
@@ -161,7 +157,7 @@ class _OpenNodes:
 
     def _begin_late(self, uid: int, now: Moment) -> None:
         self.unseen.discard(uid)
-        self.begun[uid] = now
+        self.begun[uid] = Begin(now, now, now)
         self._late.add(uid)
 
     def end(
@@ -185,8 +181,6 @@ class _OpenNodes:
         self.running.discard(uid)
         self._distrusted.discard(uid)
         self._late.discard(uid)
-        self._earliest.pop(uid, None)
-        self._ticks.pop(uid, None)
 
     def distrust(self) -> None:
         """Mark the durations of all active nodes as unknown: the clock was set back."""
@@ -200,8 +194,8 @@ class _OpenNodes:
         if uid in self._late:
             self._late.remove(uid)
             timing = "part" if timing == "lost" else "late"
-        started, earliest, tick = self.begun.pop(uid), self._earliest.pop(uid, None), self._ticks.pop(uid, None)
-        return Activation(uid, started, now, outcome, timing, earliest, tick)
+        begin = self.begun.pop(uid)
+        return Activation(uid, begin.latest, now, outcome, timing, begin.earliest, begin.shown)
 
 
 class Oddities:

@@ -7,17 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from literal_log import micros
+from literal_log import both, micros
 from literal_over_runs import OverRuns, all_of
-from literal_verbs import OPEN, OUT, Judged
+from literal_verbs import OPEN, OUT, Judged, counted
 
+from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.odds import lower_limit, upper_limit
-from btq_lang.requirements.model import Span, Total
+from btq_lang.requirements.model import Mission, Span, Total
 
 if TYPE_CHECKING:
-    from literal_verbs import Verdict
+    from literal_log import Truth
+    from literal_over_runs import Spent
+    from literal_runs import Activation
+    from literal_verbs import Part, Verdict
 
     from btq_lang.requirements.model import Applied, Claim, Requirement
 
@@ -36,25 +40,149 @@ class ClauseResult:
     experiments: tuple[Verdict, ...]
 
 
-class Session(OverRuns):
-    """A session, judged."""
+class World(OverRuns):
+    """A session, judged as if all began at their earliest, or at their latest."""
+
+    def judged(self, applied: Applied, claim: Claim, part: Part = None) -> list[Judged]:
+        """What a claim at a node comes to, with its scopes, and with what its guards did.
+
+        Args:
+            part: the only end of `between` that counts.
+        """
+        requirement = applied.requirement
+        found = []
+        for uid in self.uids(applied.subject):
+            if isinstance(applied.subject, Mission) and claim.verb == "succeeds":
+                found += self.mission_succeeds(uid, claim, requirement)  # of a run whose start was refused, too
+                continue
+            if claim.verb in ("tries", "runs", "follows"):
+                found += self.over_runs(uid, claim, requirement)
+            elif claim.verb not in ("starts", "ends"):
+                found += self.of_activations(uid, claim, requirement, part)
+            found += self.refused(uid, claim, requirement)
+        return found
+
+
+class Session:
+    """A session, judged: what the earliest and the latest begins do not answer alike is unknown.
+
+    Durations are intervals, and so are sums, spans and reactions: from the event's latest moment to its answer's
+    earliest, and the other way round.  Which answer is the next one is told by the order of the rows.
+    """
+
+    def __init__(self, *log: Any) -> None:
+        """As `Log`, but for the end."""
+        self.early, self.late = World(*log, "earliest"), World(*log, "latest")
+        self.worlds = self.early, self.late
+        self.runs = self.late.runs
+        self.activations = self.late.activations
 
     def judged(self, applied: Applied, claim: Claim) -> list[Judged]:
-        """What it comes to, with its scopes, and with what its guards did."""
-        requirement = applied.requirement
-        nodes = [] if isinstance(applied.subject, Span | Total) else self.uids(applied.subject)
-        refused = [each for uid in nodes for each in self.refused(uid, claim, requirement)]
-        return [*self.unguarded(applied, claim), *refused]
-
-    def unguarded(self, applied: Applied, claim: Claim) -> list[Judged]:
-        """What it comes to, but for the starts that a guard refused."""
-        requirement = applied.requirement
+        """What a claim comes to."""
         if isinstance(applied.subject, Span):
-            return self.span(applied.subject, claim, requirement)
+            found = self.spent(
+                claim, [world.spans(applied.subject, claim, applied.requirement) for world in self.worlds]
+            )
+            return [each for each in found if each.verdict != OUT]
         if isinstance(applied.subject, Total):
-            return self.total(applied.subject, claim, requirement)
-        judge = self.over_runs if claim.verb in _OVER_RUNS else self.of_activations
-        return [each for uid in self.uids(applied.subject) for each in judge(uid, claim, requirement)]
+            return self.total(applied.subject, claim, applied.requirement)
+        found = self.at_both_ends(applied, claim)
+        if claim.verb in ("takes", "uses") and claim.limit is not None and claim.limit.relation == "between":
+            upper, lower = (self.at_both_ends(applied, claim, part) for part in ("upper", "lower"))
+            return [both_parts(*each) for each in zip(upper, lower, strict=True)]
+        if claim.verb in ("starts", "ends"):
+            for uid in self.late.uids(applied.subject):
+                found += self.spent(claim, [world.reactions(uid, claim, applied.requirement) for world in self.worlds])
+        return [each for each in found if each.verdict != OUT or claim.verb not in ("starts", "ends", "follows")]
+
+    def at_both_ends(self, applied: Applied, claim: Claim, part: Part = None) -> list[Judged]:
+        """What it comes to, for each instance of the node and run, if the ends of the begins agree."""
+        early, late = (world.judged(applied, claim, part) for world in self.worlds)
+        found = []
+        for run, uid in dict.fromkeys((each.run, each.uid) for each in [*late, *early]):
+            ones, others = ([each for each in judged if (each.run, each.uid) == (run, uid)] for judged in (early, late))
+            if len(ones) == len(others):
+                found += [
+                    replace(other, verdict=alike(one.verdict, other.verdict))
+                    for one, other in zip(ones, others, strict=True)
+                ]
+            else:
+                end = self.runs[run].end
+                found.append(Judged(run, uid, None, end, end))
+        return found
+
+    def spent(self, claim: Claim, found: Sequence[Sequence[Spent]]) -> list[Judged]:
+        """Times between events, of both ends.  What is not answered is violated when the run has ended, and open when
+        the log has."""
+        judged = []
+        for run in self.runs:
+            early, late = ([each for each in of_world if each.at.run == run.run] for of_world in found)
+            if len(early) == len(late):
+                judged += [self.spent_between(claim, *each) for each in zip(early, late, strict=True)]
+            else:
+                judged.append(Judged(run.run, ROOT, None, run.end, run.end))
+        return judged
+
+    def spent_between(self, claim: Claim, one: Spent, other: Spent) -> Judged:
+        """One of them, at the earliest and at the latest begin."""
+        run = self.runs[other.at.run]
+        most = 0 if other.is_itself else other.at.end - one.at.begin
+        kept = self.kept(one.at.end - other.at.begin, most, claim, one.at, other.at)
+        is_answered, unclear = other.is_answered, one.is_unclear or other.is_unclear
+        verdict: Verdict = kept.copy().pop() if len(kept) == 1 else None
+        is_known = one.is_sure and other.is_sure and one.is_answered == is_answered
+        if not is_known or (unclear and not (verdict and is_answered)):
+            verdict = None
+        elif not is_answered and None not in kept and run.outcome != "O":
+            verdict = False
+        elif not is_answered and verdict:
+            verdict = OPEN
+        verdict = counted(alike(one.counts, other.counts), verdict)
+        verdict = False if other.is_stopped else verdict
+        decided = other.at.end if verdict is False and is_answered else other.until
+        return Judged(run.run, other.at.uid, verdict, run.end, decided)
+
+    def total(self, total: Total, claim: Claim, requirement: Requirement) -> list[Judged]:
+        """sum of X, Y: what they did in a run, together."""
+        found = []
+        early, late = (world.parts(total, requirement) for world in self.worlds)
+        for ones, others in zip(early, late, strict=True):
+            run = self.runs[len(found)]
+            one_run = self.early.runs[run.run]
+            parts = [
+                (one, other, counts)
+                for (one, at_earliest), (other, at_latest) in zip(ones, others, strict=True)
+                if (counts := alike(at_earliest, at_latest)) is not False
+            ]
+            most = sum(one.end - one.begin for one, _, _ in parts)
+            least = sum(other.end - other.begin for _, other, counts in parts if counts and other.is_exact)
+            kept: set[Verdict] = {*self.kept(least, most, claim, one_run, run)}
+            if not any(counts for *_, counts in parts):
+                kept = {OUT, *kept} if parts else {OUT}
+            verdict = kept.pop() if len(kept) == 1 else None
+            verdict = OPEN if verdict is True and run.outcome == "O" else verdict
+            found.append(Judged(run.run, run.uid, verdict, run.end))
+        return found
+
+    def kept(self, least: int, most: int, claim: Claim, one: Activation, other: Activation) -> set[Truth]:
+        """Whether durations keep a limit, as it is read at the earliest and at the latest begin."""
+        return {
+            world.within(max(spent, 0) / 1e6, claim.limit, at)[0]
+            for spent in (least, most)
+            for world, at in ((self.early, one), (self.late, other))
+        }
+
+
+def alike(one: Verdict, other: Verdict) -> Verdict:
+    """What both say; unknown if they differ."""
+    return one if one == other else None
+
+
+def both_parts(upper: Judged, lower: Judged) -> Judged:
+    """`between` by what its ends come to: what is cut off, or not counted, is so by the upper one."""
+    if upper.verdict in (OPEN, OUT) or lower.verdict in (OPEN, OUT):
+        return upper
+    return replace(upper, verdict=both(upper.verdict, lower.verdict))
 
 
 class Literal:
@@ -81,7 +209,9 @@ class Literal:
             experiments = [all_of(verdicts) for verdicts in of_runs]
         verdict = self.verdict(requirement, experiments)
         targets = applied.subject.targets if isinstance(applied.subject, Total) else ()
-        nodes = {uid for target in targets for uid in self.sessions[0].uids(target)} or {each.uid for each in judged}
+        nodes = {uid for target in targets for uid in self.sessions[0].late.uids(target)} or {
+            each.uid for each in judged
+        }
         ran = {each.uid for each in self.activations} | {each.uid for each in judged if each.is_refused}
         if verdict == "satisfied" and not nodes & ran:
             verdict = "never exercised"  # where others ran that it might have run in, or after
@@ -124,6 +254,3 @@ class Literal:
         else:
             counted = counted[-(window.count or 0) :]
         return counted + [each for each in judged if each.verdict is OPEN]
-
-
-_OVER_RUNS = ("tries", "runs", "starts", "ends", "follows")

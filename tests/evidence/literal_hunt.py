@@ -101,7 +101,7 @@ def literal_of(made: Case) -> Literal:
     def instances(target: Target) -> list[int]:
         return [uid for _, uid in made.joined.instances(target) if uid is not None]
 
-    of_tree, known = (made.joined.tree, made.subtrees), (samples, signals, instances, made.guards)
+    of_tree, known = (made.joined.tree, made.subtrees, made.delays), (samples, signals, instances, made.guards)
     return Literal([literal.Session(*of_tree, rows, *known) for rows in made.sessions])
 
 

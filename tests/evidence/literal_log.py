@@ -8,8 +8,9 @@ from __future__ import annotations
 import statistics
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
+from literal_begins import set_begins
 from literal_runs import Activation, activations
 
 from btq_lang.evidence.model import ROOT, LoggedTree
@@ -46,10 +47,12 @@ class Log:
 
     Args:
         subtrees: which of the tree's nodes are SubTree nodes.
+        delays: how long each Delay waits, in µs.
         samples: by signal, in SI, in the order of their times.
         signals: all of the mission, by name.
         instances: the uids of the instances of a written node.
         guards: the nodes that a build has put around others, with the requirement of each.
+        end: which end of the interval in which it began is the begin of an activation: all is judged at both.
 
     Attributes:
         changes: the moments at which anything changes: rows, samples, and samples that grow too old.
@@ -59,11 +62,13 @@ class Log:
         self,
         tree: LoggedTree,
         subtrees: frozenset[int],
+        delays: Mapping[int, int],
         rows: Sequence[Transition],
         samples: Samples,
         signals: Mapping[str, Signal],
         instances: Callable[[Target], list[int]],
         guards: Mapping[int, str],
+        end: Literal["earliest", "latest"],
     ) -> None:
         self.tree = tree
         self.subtrees = subtrees
@@ -71,10 +76,13 @@ class Log:
         self.instances = instances
         self.guards = guards
         self.activations = activations(tree, rows)
+        set_begins(tree, subtrees, delays, rows, self.activations)
+        for each in self.activations:
+            each.start = each.earliest if end == "earliest" else each.latest
         self.runs = self.of(ROOT)
         self.changes = {each.start for each in self.activations}
-        self.changes |= {(each.begin, each.first + 1) for each in self.activations}
-        self.changes |= {(each.end, each.last + 1) for each in self.activations}
+        self.changes |= {just_after(each.start) for each in self.activations}
+        self.changes |= {just_after(each.stop) for each in self.activations}
         for name, series in samples.items():
             self.changes.update((time, -1) for time, _ in series)
             if (fresh := signals[name].fresh) is not None:
@@ -84,77 +92,90 @@ class Log:
         """Those of an activation at which something may change: rows, samples, and samples that grow too old."""
         return sorted({a.start, *(each for each in self.changes if a.start < each <= a.stop)})
 
-    def holds(self, condition: Condition | None, moment: Moment, a: Activation) -> Truth:
-        """Whether a condition holds at a time of an activation."""
+    def holds(self, condition: Condition | None, moment: Moment, a: Activation, *, initially: bool = False) -> Truth:
+        """Whether a condition holds at a time of an activation; initially: see `sample`.
+
+        What a clause itself demands never reads `initially`, whatever the names of its contexts: `initially` is no
+        measurement.  What says which time or which activations are asked about does: `while`, `when`, the cases of a
+        value table, and events.
+        """
         match condition:
             case Flag(value):
                 return value
             case Read(signal):
-                value = self.sample(signal, moment[0])
+                value = self.sample(signal, moment[0], initially=initially)
                 return None if value is None else bool(value)
             case InContext(_, inner):
-                return self.holds(inner, moment, a)
+                return self.holds(inner, moment, a, initially=initially)
             case Not(inner):
-                return negated(self.holds(inner, moment, a), True)
+                return negated(self.holds(inner, moment, a, initially=initially), True)
             case All(parts):
-                return both(*(self.holds(part, moment, a) for part in parts))
+                return both(*(self.holds(part, moment, a, initially=initially) for part in parts))
             case Any(parts):
-                return either(*(self.holds(part, moment, a) for part in parts))
+                return either(*(self.holds(part, moment, a, initially=initially) for part in parts))
             case Running(target):
                 near = [each for uid in self.nearest(a.uid, self.uids(target)) for each in self.of(uid)]
                 return either(*(self.is_running(each, moment) for each in near))
             case Compare(operators, operands):
-                values = [self.number(operand, moment, a) for operand in operands]
+                values = [self.number(operand, moment, a, initially=initially) for operand in operands]
                 return both(
                     *(compare(operator, *pair) for operator, pair in zip(operators, pairwise(values), strict=True))
                 )
         raise AssertionError(condition)
 
     def is_running(self, a: Activation, moment: Moment) -> Truth:
-        """Whether an activation is open, from its first row to its last one."""
+        """Whether an activation is open, from its begin to its last row."""
         if not a.start <= moment <= a.stop:
             return False
         return True if a.is_exact or moment == a.start else None
 
-    def number(self, number: Number | Bounded | None, moment: Moment, a: Activation) -> SampleValue | None:
-        """A value in SI, at a time."""
+    def number(
+        self, number: Number | Bounded | None, moment: Moment, a: Activation, *, initially: bool = False
+    ) -> SampleValue | None:
+        """A value in SI, at a time; initially: see `sample`."""
         match number:
             case Value(_, si):
                 return si
             case Flag(value) | Text(value):
                 return value
             case Read(signal):
-                return self.sample(signal, moment[0])
+                return self.sample(signal, moment[0], initially=initially)
             case Minus(operand):
-                value = self.number(operand, moment, a)
+                value = self.number(operand, moment, a, initially=initially)
                 return None if value is None else -value
             case Arithmetic(operator, left, right):
-                one, other = self.number(left, moment, a), self.number(right, moment, a)
+                one, other = (self.number(each, moment, a, initially=initially) for each in (left, right))
                 if one is None or other is None or (operator == "/" and other == 0):
                     return None
                 return {"+": one + other, "-": one - other, "*": one * other, "/": other and one / other}[operator]
             case Table(cases):
                 for case in cases:
-                    holds = True if case.condition is None else self.holds(case.condition, moment, a)
+                    holds = case.condition is None or self.holds(case.condition, moment, a, initially=True)
                     if holds is None:
                         return None
                     if holds:
-                        return self.number(case.value, moment, a)
+                        return self.number(case.value, moment, a, initially=True)
             case Aggregate(function, signal):
                 return self.aggregate(function, signal, a)
         raise AssertionError(number)
 
-    def sample(self, signal: Signal, time: int) -> SampleValue | None:
-        """The last sample up to a time, unless it is too old; before the first `initially`."""
-        earlier = [each for each in self.samples.get(signal.name, ()) if each[0] <= time]
+    def sample(self, signal: Signal, time: int, *, initially: bool = False) -> SampleValue | None:
+        """The last sample up to a time, unless it is too old.
+
+        Args:
+            initially: before the first of the samples, which there are, it is what `initially` says.
+        """
+        series = self.samples.get(signal.name, ())
+        earlier = [each for each in series if each[0] <= time]
         if not earlier:
-            return self.number(signal.initially, (time, 0), self.runs[0]) if signal.initially is not None else None
+            may_read = initially and series and signal.initially is not None
+            return self.number(signal.initially, (time, 0), self.runs[0]) if may_read else None
         at, value = earlier[-1]
         return None if signal.fresh is not None and time - at > micros(signal.fresh) else value
 
     def aggregate(self, function: str, signal: Signal, a: Activation) -> float | None:
-        """Over what a signal was in an activation: as it began, if that is known, and each sample since; `count` of
-        samples alone."""
+        """Over what a signal was in an activation: as it began, if a sample tells that, and each sample since; `count`
+        of samples alone."""
         if function == "count":
             times = {time for time, _ in self.samples.get(signal.name, ()) if a.begin <= time <= a.end}
             is_unclear = not a.is_exact and any(time > a.begin for time in times)
@@ -194,6 +215,11 @@ class Log:
         while uid := self.tree.parent[uid]:
             found |= {uid} & self.subtrees
         return found
+
+
+def just_after(moment: Moment) -> Moment:
+    """A moment with nothing between it and that one."""
+    return moment[0], moment[1] + 0.1
 
 
 def both(*truths: Truth) -> Truth:

@@ -7,15 +7,16 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from literal_log import both, micros
+from literal_log import both, just_after, micros
 from literal_runs import Activation
-from literal_verbs import OPEN, OUT, Judged, OfActivations, counted, judged
+from literal_verbs import OPEN, OUT, Judged, OfActivations, counted
 
 from btq_lang.evidence.model import ROOT
 from btq_lang.requirements.model import Value
 from btq_lang.util import record
 
 if TYPE_CHECKING:
+    from literal_log import Truth
     from literal_runs import Moment
     from literal_verbs import Verdict
 
@@ -26,20 +27,54 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Happening:
-    """An event: from when on and by when it happened, if it did; is_sure: it did, just then."""
+    """An event.
+
+    Attributes:
+        after, by: the rows from which on and by which it happened, if it did.
+        moment: when that was.
+        is_sure: it did, just then.
+        of: what started or ended.
+    """
 
     after: Moment
     by: Moment
+    moment: Moment
     is_sure: bool = True
     has_happened: bool = True
+    of: Activation | None = None
+
+
+@dataclass(frozen=True)
+class Spent:
+    """The time from an event to its answer.
+
+    Attributes:
+        at: from the event to its answer, or to the end of the run.
+        until: when it was decided if it was not answered, or in time.
+        counts: whether its scopes let it count.
+        is_sure: the event happened just then.
+        is_answered: its answer has happened.
+        is_unclear: that may have happened before.
+        is_itself: the event is its own answer.
+        is_stopped: the guard that enforces it has stopped it.
+    """
+
+    at: Activation
+    until: int
+    counts: Truth
+    is_sure: bool
+    is_answered: bool
+    is_unclear: bool
+    is_itself: bool = False
+    is_stopped: bool = False
 
 
 class OverRuns(OfActivations):
     """A session, and what each run of it comes to."""
 
     def over_runs(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
-        """tries, runs, starts, ends, follows at one instance of a node."""
-        judge = {"tries": self.tries, "runs": self.rate, "follows": self.follows}.get(claim.verb, self.reactions)
+        """tries, runs, follows at one instance of a node."""
+        judge = {"tries": self.tries, "runs": self.rate, "follows": self.follows}[claim.verb]
         found = []
         for run in self.runs:
             own = [each for each in self.of(uid) if each.run == run.run]
@@ -52,23 +87,39 @@ class OverRuns(OfActivations):
     ) -> list[Decided]:
         """How many starts that count lie in each activation of the other node, or in the run."""
         around = [ROOT] if claim.per is None else self.nearest(uid, self.uids(claim.per))
+        refused = [
+            check
+            for verb, guard, check in self.refusals(uid)
+            if verb == "tries" and self.guards[guard.uid] == requirement.name and check.run == run.run
+        ]
         found: list[Decided] = []
         for p in (each for other in around for each in self.of(other) if each.run == run.run):
-            inside = [(x, self.counts(x, requirement)) for x in own if p.start <= x.start <= p.stop]
+            inside = [(x, self.counts(x, requirement)) for x in own if p.shown <= x.shown <= p.stop]
             sure = [x for x, counts in inside if counts]
             numbers = {len(sure), sum(counts is not False for _, counts in inside)}
             verdicts = {self.tried(p, number, claim) for number in numbers}
             verdict = verdicts.pop() if len(verdicts) == 1 else None
+            one_more = [each for each in refused if p.first <= each.first <= p.last]
+            if one_more:
+                refused = [each for each in refused if each not in one_more]
+                found.append((False, one_more[0].end))
+                continue
             too_many = [x for number, x in enumerate(sure, 1) if self.within(number, claim.limit, p)[0] is False]
-            found.append((verdict, too_many[0].begin if verdict is False and too_many else p.end))
-        return found
+            found.append((verdict, too_many[0].shown[0] if verdict is False and too_many else p.end))
+        return [*found, *((False, each.end) for each in refused[:1])]  # of those that no activation holds
 
     def tried(self, p: Activation, number: int, claim: Claim) -> Verdict:
+        """What an activation comes to that holds a number of starts that count: without any, no upper bound."""
+        assert claim.limit is not None
+        if number == 0 and claim.limit.relation in ("<", "<="):
+            return OUT
         not_above, not_below = self.within(number, claim.limit, p)
         if p.outcome in ("S", "F"):
             return both(not_above, not_below)
         if p.outcome == "O":
             return not_above if not not_above else OPEN
+        if not_below is False and not_above:  # there might have been more
+            return OUT
         return not_above if not_above is not False or p.is_exact else None
 
     def rate(
@@ -86,17 +137,24 @@ class OverRuns(OfActivations):
                 continue
             times = [x.begin for x, _ in inside]
             is_open = run.outcome == "O" and stretch.stop == run.stop
-            judge = self.evenly if claim.every else self.often
-            found += judge(claim, replace(stretch, outcome="O" if is_open else "S"), times)
+            part = replace(stretch, outcome="O" if is_open else "S")
+            found += self.evenly(claim, part, [x for x, _ in inside]) if claim.every else self.often(claim, part, times)
         return found
 
-    def evenly(self, claim: Claim, stretch: Activation, times: list[int]) -> list[Decided]:
-        """Each time between two starts, and from the last one to the end."""
-        if not times:
+    def evenly(self, claim: Claim, stretch: Activation, starts: list[Activation]) -> list[Decided]:
+        """Each time between two starts, and from the last one to the end: the shortest and the longest it may be."""
+        if not starts:
             return []
-        kept = [self.within((later - before) / 1e6, claim.limit, stretch)[0] for before, later in pairwise(times)]
-        tail: Verdict = self.within((stretch.end - times[-1]) / 1e6, claim.limit, stretch)[0]
-        return [*zip(kept, times[1:], strict=True), (OPEN if tail and stretch.outcome == "O" else tail, stretch.end)]
+        begins = [(each.earliest[0], each.latest[0]) for each in starts]
+        found: list[Decided] = []
+        for (first, last), (next_first, next_last) in pairwise([*begins, (stretch.end, stretch.end)]):
+            times = max(next_first - last, 0), next_last - first
+            kept = [self.within(time / 1e6, claim.limit, stretch)[0] for time in times]
+            found.append((kept[0] if kept[0] is kept[1] else None, next_last))
+        tail, end = found[-1]
+        if stretch.outcome == "O" and tail is not False:
+            found[-1] = (OPEN, end)
+        return found
 
     def often(self, claim: Claim, stretch: Activation, times: list[int]) -> list[Decided]:
         """Each window of the length."""
@@ -117,93 +175,99 @@ class OverRuns(OfActivations):
         worst = numbers.index(max(numbers) if is_above else min(numbers))
         return [(False, inside[worst] + length)]
 
-    def reactions(
-        self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
-    ) -> list[Decided]:
+    def reactions(self, uid: int, claim: Claim, requirement: Requirement) -> list[Spent]:
         """starts within d after ev, ends within d after ev: the next start, or end, after each event."""
         assert claim.event is not None
-        found: list[Decided] = []
-        for event in self.events(claim.event, replace(run, uid=uid)):
-            if claim.verb == "starts":
-                answer = next((Happening(x.start, x.start) for x in own if x.start >= event.after), None)
-            else:  # what does not run has nothing to end
-                running = [x for x in own if x.start <= event.after <= x.stop][-1:]
-                if not running:
-                    continue
-                answer = next((Happening(x.start, x.stop, x.is_exact) for x in running if x.outcome != "O"), None)
-            by = answer.by if answer is not None else run.stop
-            at = between(run, uid, event.after, by)
-            kept = self.within((by[0] - event.after[0]) / 1e6, claim.limit, at)[0]
-            bound = self.number(claim.limit.value, event.after, at) if claim.limit is not None else None
-            until = by if bound is None else min(by, (event.after[0] + micros(bound), by[1]))
-            counts = self.counts(between(run, uid, event.after, until), requirement)
-            verdict: Verdict = kept
-            if not event.is_sure or (kept is False and answer is not None and not answer.is_sure):
-                verdict = None
-            elif kept and answer is None:
-                verdict = OPEN if run.outcome == "O" else None  # an open tail
-            verdict = counted(counts, verdict)
-            found.append((verdict, by[0] if verdict is False and answer is not None else until[0]))
-        return [each for each in found if each[0] != OUT]
+        by_rows = claim.event.condition is None
+        found: list[Spent] = []
+        for run in self.runs:
+            own = [each for each in self.of(uid) if each.run == run.run]
+            for event in self.events(claim.event, replace(run, uid=uid)):
+                if claim.verb == "starts":
+                    answers = [(x, x.start, True) for x in own if x.placed(by_rows) >= event.after][:1]
+                else:  # what does not run has nothing to end
+                    running = [x for x in own if x.placed(by_rows) <= event.after <= x.stop][-1:]
+                    if not running:
+                        continue
+                    answers = [(x, x.stop, x.is_exact) for x in running if x.outcome != "O"]
+                x, by, is_exact = answers[0] if answers else (None, run.stop, True)
+                at = between(run, uid, event.moment, by)
+                bound = self.number(claim.limit.value, at.start, at) if claim.limit is not None else None
+                until = by if bound is None else min(by, (at.begin + micros(bound), by[1]))
+                counts = self.counts(between(run, uid, at.start, until), requirement)
+                is_itself = claim.verb == "starts" and x is not None and x is event.of
+                found.append(Spent(at, until[0], counts, event.is_sure, bool(answers), not is_exact, is_itself))
+        return found
 
     def follows(
         self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
     ) -> list[Decided]:
         """An event since the start before, or since the run began."""
         assert claim.event is not None
+        by_rows = claim.event.condition is None
         events = self.events(claim.event, replace(run, uid=uid))
-        before = (run.begin, -1)
+        before: Moment = (run.begin, -1)
         found: list[Decided] = []
         for x in own:
-            maybe = [each for each in events if before < each.by and each.after <= x.start]
-            is_sure = any(each.has_happened and before < each.after and each.by <= x.start for each in maybe)
+            start = x.placed(by_rows)
+            maybe = [each for each in events if before < each.by and each.after <= start]
+            is_sure = any(each.has_happened and before < each.after and each.by <= start for each in maybe)
             verdict: Verdict = True if is_sure else None if maybe else False
             verdict = OPEN if is_sure and x.outcome == "O" else verdict
-            found.append((counted(self.counts(x, requirement), verdict), x.begin))
-            before = x.start
-        return [each for each in found if each[0] != OUT]
+            found.append((counted(self.counts(x, requirement), verdict), x.shown[0]))
+            before = start
+        return found
 
-    def span(self, span: Span, claim: Claim, requirement: Requirement) -> list[Judged]:
+    def spans(self, span: Span, claim: Claim, requirement: Requirement) -> list[Spent]:
         """from e1 to e2: each e1 opens one, the next e2 closes all that are open."""
         firsts = self.uids(span.first.subject) if span.first.condition is None else [ROOT]
+        by_rows = span.first.condition is None and span.last.condition is None
         found = []
         for run in self.runs:
             for uid in firsts:
-                lasts = self.events(span.last, replace(run, uid=uid))
-                for first in self.events(span.first, replace(run, uid=uid), only=True):
-                    after = first.after if span.first != span.last else (first.after[0], first.after[1] + 1)
-                    closing = [each.by for each in lasts if each.has_happened and each.after >= after]
-                    by = min(closing, default=run.stop)
+                lasts = self.events(span.last, replace(run, uid=uid), by_rows=by_rows)
+                for first in self.events(span.first, replace(run, uid=uid), only=True, by_rows=by_rows):
+                    after = first.after if span.first != span.last else just_after(first.after)
+                    closing = [each for each in lasts if each.has_happened and each.after >= after]
+                    last = min(closing, key=lambda each: each.by, default=None)
+                    by, moment = (last.by, last.moment) if last is not None else (run.stop, run.stop)
                     unclear = any(not each.is_sure and each.by >= first.after and each.after <= by for each in lasts)
-                    at = between(run, uid, first.after, by)
-                    kept = self.within((by[0] - first.after[0]) / 1e6, claim.limit, at)[0]
-                    verdict: Verdict = kept
-                    if not first.is_sure or (unclear and not (kept and closing)):
-                        verdict = None
-                    elif kept and not closing:
-                        verdict = OPEN if run.outcome == "O" else False
-                    verdict = counted(self.counts(at, requirement), verdict)
-                    found.append(Judged(run.run, uid, verdict, run.end, by[0]))
-        return [each for each in found if each.verdict != OUT]
-
-    def total(self, total: Total, claim: Claim, requirement: Requirement) -> list[Judged]:
-        """sum of X, Y: what they did in a run, together."""
-        uids = {uid for target in total.targets for uid in self.uids(target)}
-        found = []
-        for run in self.runs if uids else ():
-            parts = [each for each in self.activations if each.uid in uids and each.run == run.run]
-            may = [(each, counts) for each in parts if (counts := self.counts(each, requirement)) is not False]
-            most = sum(each.end - each.begin for each, _ in may)
-            least = sum(each.end - each.begin for each, counts in may if counts and each.is_exact)
-            kept = {self.within(spent / 1e6, claim.limit, run)[0] for spent in (least, most)}
-            verdict: Verdict = kept.pop() if len(kept) == 1 else None
-            found.append(judged(run, OPEN if verdict and run.outcome == "O" else verdict))
+                    at = between(run, uid, first.moment, moment)
+                    counts = self.counts(at, requirement)
+                    found.append(
+                        Spent(
+                            *(at, at.end, counts, first.is_sure, last is not None, unclear),
+                            is_stopped=any(
+                                each.shown <= first.after <= each.stop <= by
+                                and self.is_stopped(each, claim, requirement)
+                                for each in self.of(self.written_above(uid))
+                            ),
+                        )
+                    )
         return found
+
+    def written_above(self, uid: int) -> int:
+        """The nearest node above another that is no guard: around it stands what enforces a span of its children."""
+        while (uid := self.tree.parent[uid]) in self.guards:
+            pass
+        return uid
+
+    def parts(self, total: Total, requirement: Requirement) -> list[list[tuple[Activation, Truth]]]:
+        """sum of X, Y: in each run their activations, and whether they count."""
+        uids = {uid for target in total.targets for uid in self.uids(target)}
+        return [
+            [
+                (each, self.counts(each, requirement))
+                for each in self.activations
+                if each.uid in uids and each.run == run.run
+            ]
+            for run in (self.runs if uids else ())
+        ]
 
     def stretches(self, conditions: Sequence[Condition], run: Activation) -> list[tuple[Activation, bool]]:
         """The longest parts of a run with conditions, and, not sure, those in which they may hold."""
         moments = self.moments(run)
-        held = [both(*(self.holds(condition, moment, run) for condition in conditions)) for moment in moments]
+        held = [both(*(self.holds(each, moment, run, initially=True) for each in conditions)) for moment in moments]
         found: list[tuple[Activation, bool]] = []
         for index, now in enumerate(held):
             if now is False or (index and held[index - 1] is now):
@@ -213,25 +277,26 @@ class OverRuns(OfActivations):
             found.append((between(run, run.uid, moments[index], end), now is True))
         return found
 
-    def events(self, event: Event, run: Activation, *, only: bool = False) -> list[Happening]:
-        """An event in a run: of its nodes, those in the same use of a subtree as the run's uid; only: of this alone."""
+    def events(self, event: Event, run: Activation, *, only: bool = False, by_rows: bool = True) -> list[Happening]:
+        """An event in a run: of its nodes, those in the same use of a subtree as the run's uid; only: of this alone;
+        by_rows: see `placed`."""
         if event.condition is not None:
             found = []
             end: Moment | None = None
             for part, is_sure in self.stretches([event.condition], run):
                 if not is_sure:
-                    found.append(Happening(part.start, part.stop, False, False))
+                    found.append(Happening(part.start, part.stop, part.stop, False, False))
                 elif part.start != end:
-                    found.append(Happening(part.start, part.start))
+                    found.append(Happening(part.start, part.start, part.start))
                 end = None if is_sure else part.stop
             return found
         uids = [run.uid] if only else self.nearest(run.uid, self.uids(event.subject))
         of = [each for each in self.activations if each.uid in uids and each.run == run.run]
         if event.happening == "starts":
-            return [Happening(each.start, each.start) for each in of]
+            return [Happening(each.placed(by_rows), each.placed(by_rows), each.start, of=each) for each in of]
         outcomes = {"succeeds": "S", "fails": "F", "finishes": "SF", "halts": "H"}[event.happening]
         return [
-            Happening(each.stop if each.is_exact else each.start, each.stop, each.is_exact)
+            Happening(each.stop if each.is_exact else each.placed(by_rows), each.stop, each.stop, each.is_exact)
             for each in of
             if each.outcome in outcomes
         ]
@@ -239,7 +304,7 @@ class OverRuns(OfActivations):
 
 def between(run: Activation, uid: int, start: Moment, stop: Moment) -> Activation:
     """A part of a run, as seen from a node."""
-    return Activation(uid, start[1], stop[1], start[0], stop[0], run.outcome, True, run.run)
+    return Activation(uid, run.first, run.last, start, start, stop, run.outcome, True, run.run)
 
 
 def all_of(verdicts: Sequence[Verdict]) -> Verdict:

@@ -15,7 +15,7 @@ from btq_lang.evidence.model import FAILURE, IDLE, ROOT, RUNNING, SUCCESS, Logge
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Transition
 
-    Moment = tuple[int, int]  # time and row; -1: before all rows of that time
+    Moment = tuple[int, float]  # time and row; -1: before all rows of that time; a half: after the row
 
 
 @dataclass
@@ -24,6 +24,8 @@ class Activation:
 
     Attributes:
         first, last: the rows that it begins and ends with, by their index.
+        shown: its first row.
+        start: when it began, as it is judged: its earliest, or its latest begin.
         outcome: S, F, H, or O for one that is open when its log, or its run, is cut off.
         is_exact: the log says when it ended, and not only by when.
         run: the index of its run.
@@ -32,21 +34,26 @@ class Activation:
     uid: int
     first: int
     last: int
-    begin: int
-    end: int
+    shown: Moment
+    start: Moment
+    stop: Moment
     outcome: str
     is_exact: bool
     run: int = -1
+    earliest: Moment = (0, -1)
+    latest: Moment = (0, -1)
+
+    def placed(self, by_rows: bool) -> Moment:
+        """Its begin where it is asked what came before what: rows tell that of nodes, times tell it of samples."""
+        return self.shown if by_rows else self.start
 
     @property
-    def start(self) -> Moment:
-        """Its first row; rows of one time have an order."""
-        return self.begin, self.first
+    def begin(self) -> int:
+        return self.start[0]
 
     @property
-    def stop(self) -> Moment:
-        """Its last row."""
-        return self.end, self.last
+    def end(self) -> int:
+        return self.stop[0]
 
 
 def activations(tree: LoggedTree, rows: Sequence[Transition]) -> list[Activation]:
@@ -77,7 +84,8 @@ def activations(tree: LoggedTree, rows: Sequence[Transition]) -> list[Activation
                     outcome = "S" if status == SUCCESS else "F"
                 if outcome == "O":
                     is_exact, last, end = True, index - 1, rows[index - 1][0]
-                found.append(Activation(uid, opened, last, rows[opened][0], end, outcome, is_exact))
+                shown = (rows[opened][0], opened)
+                found.append(Activation(uid, opened, last, shown, shown, (end, last), outcome, is_exact))
                 closed.append(since)
                 ends[uid][index] = "O" if outcome == "O" else "H"
                 opened = None
@@ -88,15 +96,15 @@ def activations(tree: LoggedTree, rows: Sequence[Transition]) -> list[Activation
         if opened is None and uid == ROOT:
             opened = len(rows)  # it may have begun with a row below it
         if opened is not None and rows:
-            begin = rows[min(opened, len(rows) - 1)][0]
-            found.append(Activation(uid, opened, len(rows) - 1, begin, rows[-1][0], "O", True))
+            shown = (rows[min(opened, len(rows) - 1)][0], opened)
+            found.append(Activation(uid, opened, len(rows) - 1, shown, shown, (rows[-1][0], len(rows) - 1), "O", True))
             closed.append(since)
     for each, since in zip(found, closed, strict=True):
         below = range(each.uid + 1, tree.last[each.uid] + 1)
         earlier = [index for uid in below for index in starts[uid] if since < index < each.first]
         if earlier:
             each.first = min(earlier)
-            each.begin = rows[each.first][0]
+            each.shown = (rows[each.first][0], each.first)
     found = [each for each in found if each.first < len(rows)]
     runs = sorted((each for each in found if each.uid == ROOT), key=lambda each: each.first)
     for each in found:

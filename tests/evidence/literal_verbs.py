@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal
 
 from literal_log import Log, both, either, negated
 
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     from btq_lang.requirements.model import Claim, Limit, Requirement
 
     Verdict = Truth | str
+    Part = Literal["upper", "lower"] | None
 
 OPEN, OUT = "open", "out"  # cut off by the end of the log before it breaks anything; not counted
 
@@ -39,14 +42,18 @@ class Judged:
 class OfActivations(Log):
     """A session, and what each activation of a node comes to."""
 
-    def of_activations(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
-        """takes, succeeds, needs, keeps, never, leaves, uses at one instance of a node."""
+    def of_activations(self, uid: int, claim: Claim, requirement: Requirement, part: Part = None) -> list[Judged]:
+        """takes, succeeds, needs, keeps, never, leaves, uses at one instance of a node.
+
+        Args:
+            part: the only end of `between` that counts.
+        """
         return [
-            judged(each, False)  # stopped by the requirement's own enforcement is always violated
-            if self.is_stopped(each, claim, requirement)
+            judged(each, False)  # what the requirement's own guard stops, or finds wrong at the end, is violated
+            if self.is_stopped(each, claim, requirement) or self.is_refuted(each, claim, requirement)
             else judged(each, self.keeps(each, claim, requirement))
             if claim.verb in ("keeps", "never")
-            else judged(each, self.scoped(each, self.whole(each, claim), requirement))
+            else judged(each, self.scoped(each, self.whole(each, claim, part), requirement))
             for each in self.of(uid)
         ]
 
@@ -56,7 +63,7 @@ class OfActivations(Log):
         """
         uid, inner = self.tree.parent[a.uid], a
         while uid in self.guards and inner.outcome == "H":
-            inner = next((each for each in reversed(self.of(uid)) if each.start <= inner.start <= each.stop), inner)
+            inner = next((each for each in reversed(self.of(uid)) if each.first <= inner.first <= each.last), inner)
             kinds = {"Timeout": ("takes", "succeeds"), "ReactiveSequence": ("keeps", "never", "uses", "succeeds")}
             if inner.uid == uid and inner.outcome == "F":
                 own = self.guards[uid] == requirement.name
@@ -64,31 +71,75 @@ class OfActivations(Log):
             uid = self.tree.parent[uid]
         return False
 
+    def is_refuted(self, a: Activation, claim: Claim, requirement: Requirement) -> bool:
+        """Whether the guard around the node for this clause has checked it after it succeeded, and failed."""
+        return any(
+            verb == claim.verb
+            and self.guards[guard.uid] == requirement.name
+            and self.held(a.uid, guard, check)[-1:] == [a]
+            for verb, guard, check in self.failed_checks(a.uid)
+        )
+
     def refused(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
-        """The starts that a guard's condition before the node has refused; one that `needs` has counts for needs and
-        succeeds."""
+        """The starts of a node that guards around it have refused: each is a case of the clause that its guard
+        enforces, unless that is judged by the run, and of `succeeds`, whosever guard it is."""
+        return [
+            Judged(check.run, uid, False, check.end, check.end, True)
+            for verb, guard, check in self.refusals(uid)
+            if claim.verb == "succeeds"
+            or (claim.verb == verb != "tries" and self.guards[guard.uid] == requirement.name)
+        ]
+
+    def refusals(self, uid: int) -> list[tuple[str, Activation, Activation]]:
+        """The checks of guards around a node that have failed before the node started; see `failed_checks`."""
+        return [each for each in self.failed_checks(uid) if not self.held(uid, *each[1:])]
+
+    def failed_checks(self, uid: int) -> list[tuple[str, Activation, Activation]]:
+        """The checks of requirements' guards around a node that have failed: the verb that is enforced, the guard, and
+        the check."""
         found = []
-        above = self.tree.parent[uid]
-        while above in self.guards:
-            verb = self.tree.nodes[above].path.rpartition("_")[2]
-            checks = [
-                each
-                for each in self.activations
-                if self.tree.parent[each.uid] == above
-                and self.tree.nodes[each.uid].kind == "ScriptCondition"
-                and each.outcome == "F"
-                and verb in ("needs", "tries", "follows")
-            ]
-            own = claim.verb == verb and self.guards[above] == requirement.name
-            if own or (claim.verb == "succeeds" and verb == "needs"):
-                found += [Judged(each.run, uid, False, each.end, each.end, True) for each in checks]
-            above = self.tree.parent[above]
+        for check in self.activations:
+            above = self.tree.parent[check.uid]
+            if (
+                check.outcome == "F"
+                and self.tree.nodes[check.uid].kind == "ScriptCondition"
+                and check.uid in self.guards
+                and self.guards.get(above, "*") != "*"
+                and self.is_guard_of(above, uid)
+            ):
+                guards = [each for each in self.of(above) if each.first <= check.first]
+                if not guards or guards[-1].last < check.first:  # the log is cut off before the only row of the guard
+                    guards.append(replace(check, uid=above, first=guards[-1].last + 1 if guards else 0))
+                word = self.tree.nodes[above].path.rpartition("_")[2]
+                found.append(("uses" if word == "used" else word, guards[-1], check))
         return found
 
-    def whole(self, a: Activation, claim: Claim) -> Verdict:
+    def held(self, uid: int, guard: Activation, check: Activation) -> list[Activation]:
+        """The activations of a node that a guard let start before a check of it."""
+        return [each for each in self.of(uid) if guard.first <= each.first < check.first]
+
+    def is_guard_of(self, guard: int, uid: int) -> bool:
+        """Whether nothing but guards is between."""
+        while (uid := self.tree.parent[uid]) in self.guards:
+            if uid == guard:
+                return True
+        return False
+
+    def mission_succeeds(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
+        """`mission succeeds`: each run by the result of the root, whatever that is a guard of; from the begin of the
+        written root to its end, where it started."""
+        found = []
+        for run in self.runs:
+            written = [each for each in self.of(uid) if each.run == run.run]
+            a = replace(written[-1] if written else replace(run, uid=uid), outcome=run.outcome, is_exact=run.is_exact)
+            is_stopped = any(self.is_stopped(each, claim, requirement) for each in written)
+            found.append(judged(a, False if is_stopped else self.scoped(a, self.whole(a, claim), requirement)))
+        return found
+
+    def whole(self, a: Activation, claim: Claim, part: Part = None) -> Verdict:
         """What one activation comes to, whatever the scope; not of keeps and never, where that is a matter of time."""
         if claim.verb == "takes":
-            return self.bounded(a, (a.end - a.begin) / 1e6, claim.limit)
+            return self.bounded(a, (a.end - a.begin) / 1e6, claim.limit, part)
         if claim.verb == "succeeds":
             if a.outcome == "F":
                 return False
@@ -102,11 +153,27 @@ class OfActivations(Log):
             holds = self.holds(claim.condition, a.stop, a)
             return {"S": holds, "F": OUT, "H": OUT, "O": OPEN}[a.outcome]
         assert claim.verb == "uses"
+        return self.bounded(a, self.used(claim, a), claim.limit, part)
+
+    def used(self, claim: Claim, a: Activation) -> float | None:
+        """How much of its signal an activation used, in SI, by the samples from the last one before it to its end.
+
+        Of a level: what it fell by, and all that it was recharged by.  A recharge is a rise from a trough to a peak of
+        more than half the bound (of `between` the upper end); a fall from the peak by more than that ends it, and less
+        is jitter, of which nothing counts.  Of a counter: what it rose by; where a sample is below half the one before
+        it, it was restarted at 0, and what it had counted until then is added.
+        """
+        assert claim.signal is not None
+        assert claim.limit is not None
+        bound = self.number(claim.limit.upper or claim.limit.value, a.start, a)
         before, after = self.sample(claim.signal, a.begin), self.sample(claim.signal, a.end)
-        used = None if before is None or after is None else after - before
-        if used is not None and claim.signal.behaviour == "level":
-            used = -used
-        return self.bounded(a, used, claim.limit)
+        if bound is None or before is None or after is None:
+            return None
+        later = {time: value for time, value in self.samples[claim.signal.name] if a.begin < time <= a.end}
+        values = [before, *later.values()]
+        if claim.signal.behaviour == "level":
+            return before - after + recharged(values, bound / 2)
+        return after - before + sum(value for value, following in pairwise(values) if following < value / 2)
 
     def keeps(self, a: Activation, claim: Claim, requirement: Requirement) -> Verdict:
         """keeps, never: a sample in [b, e] with C that breaks it; it counts if C holds at all meanwhile."""
@@ -123,9 +190,10 @@ class OfActivations(Log):
         kept = both(*(either(negated(counts, True), holds) for counts, holds in moments))
         return counted(counts, OPEN if kept and a.outcome == "O" else kept)
 
-    def bounded(self, a: Activation, measured: float | None, limit: Limit | None) -> Verdict:
+    def bounded(self, a: Activation, measured: float | None, limit: Limit | None, part: Part = None) -> Verdict:
         """A measure that grows while the activation lasts, against its bound."""
         not_above, not_below = self.within(measured, limit, a)
+        not_above, not_below = part == "lower" or not_above, part == "upper" or not_below
         if a.outcome in ("S", "F"):
             return both(not_above, not_below)
         if not_above is True:
@@ -159,12 +227,29 @@ class OfActivations(Log):
 
     def holds_all(self, word: str, requirement: Requirement, moment: Moment, a: Activation) -> Truth:
         """The conditions of `while`, or of `when`, at a moment."""
-        return both(*(self.holds(each.condition, moment, a) for each in requirement.scopes if each.word == word))
+        conditions = [each.condition for each in requirement.scopes if each.word == word]
+        return both(*(self.holds(each, moment, a, initially=True) for each in conditions))
 
 
 def judged(a: Activation, verdict: Verdict) -> Judged:
     """What an activation came to."""
     return Judged(a.run, a.uid, verdict, a.end)
+
+
+def recharged(values: Sequence[float], least: float) -> float:
+    """The sum of all rises of a level, each from its trough to its peak, that are larger than the least."""
+    total = 0.0
+    trough, peak = values[0], None
+    for value in values:
+        if peak is None:
+            trough = min(trough, value)
+            peak = value if value - trough > least else None
+        elif peak - value > least:
+            total += peak - trough
+            trough, peak = value, None
+        else:
+            peak = max(peak, value)
+    return total if peak is None else total + peak - trough
 
 
 def counted(counts: Truth, verdict: Verdict) -> Verdict:

@@ -5,7 +5,7 @@ or refuses its start is drawn, whatever their conditions say.
 from __future__ import annotations
 
 import random
-from collections.abc import Collection, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from btq_lang.evidence.model import FAILURE, IDLE, RUNNING, SUCCESS, LoggedTree
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 class Guarded:
     """The rows of a tree with guards, made of those of the tree as it is written."""
 
-    def __init__(self, tree: LoggedTree, guards: Collection[int], chance: random.Random) -> None:
+    def __init__(self, tree: LoggedTree, guards: Mapping[int, str], chance: random.Random) -> None:
         """
         Args:
             tree: with guards.
-            guards: the nodes that a build has put there.
+            guards: the nodes that a build has put there, with the requirement of each, `*` if it is of several.
         """
         self.tree = tree
         self.guards = guards
@@ -51,7 +51,7 @@ class Guarded:
         if uid in self.gone or any(self.is_below(uid, each) for each in self.gone):
             return self.row(uid, status)
         around = self.around(uid)
-        if status != IDLE and self.status[uid] != RUNNING and not self.open(around):
+        if status != IDLE and self.status[uid] != RUNNING and not self.open(around, self.begin(uid)):
             if status == RUNNING:
                 self.gone.add(uid)
             return None
@@ -62,14 +62,28 @@ class Guarded:
                 self.close(guard, status)
         return None
 
-    def open(self, around: Sequence[int]) -> bool:
+    def begin(self, uid: int) -> int:
+        """When a node began that writes its first row now: with its parent, if that has begun with the row before."""
+        if not self.rows or self.rows[-1][1] not in self.tree.above(uid) or self.rows[-1][2] != RUNNING:
+            return self.time
+        return self.time if self.tree.nodes[self.rows[-1][1]].kind == "Delay" else self.rows[-1][0]
+
+    def open(self, around: Sequence[int], time: int) -> bool:
         """Start the guards around a node, from outside in; whether none refuses it."""
+        now, self.time = self.time, time
+        try:
+            return self.start(around)
+        finally:
+            self.time = now
+
+    def start(self, around: Sequence[int]) -> bool:
         for index, guard in enumerate(reversed(around)):
             if self.status[guard] == RUNNING:
                 continue
             self.write(guard, RUNNING)
             for leaf in self.leaves(guard, before=True):
-                refuses = self.tree.nodes[leaf].kind == "ScriptCondition" and self.chance.random() < 0.15
+                may_refuse = self.guards[guard] != "*" and self.tree.nodes[leaf].kind == "ScriptCondition"
+                refuses = may_refuse and self.chance.random() < 0.15
                 self.write(leaf, FAILURE if refuses else SUCCESS)
                 if refuses:
                     for each in around[len(around) - 1 - index :]:

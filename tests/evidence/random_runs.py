@@ -1,7 +1,8 @@
 """Random missions with requirements of all kinds, and logs of them: what the model of the engine does, as rows.
 
-A log may be one of control nodes like Nav2's, which do not reset their children and write their rows late, twice or not
-at all; it may lack all rows to IDLE, be cut off, and have runs without an end.
+The first tick of an action may take a while, before which no row tells that it began.  A log may be one of control
+nodes like Nav2's, which do not reset their children and write their rows late, twice or not at all; it may lack all
+rows to IDLE, be cut off, and have runs without an end.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import itertools
 import random
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import engine_simulator as engine
@@ -39,6 +40,7 @@ ACTIONS = ("Move", "Pick", "Look")
 START = 1_795_209_740_000_000  # µs since the epoch
 MOST_NODES = 40
 MOST_ROWS = 300
+EXACT = 6.25  # %: its multiples are sums of powers of two as fractions of one, so it does not matter how they are added
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,7 @@ class Case:
     Attributes:
         subtrees: the uids of SubTree nodes.
         guards: the nodes that a build has put around others, with the requirement of each.
+        delays: how long each Delay waits, in µs.
         sessions: the rows of each, in the order in which they are read.
         samples: by signal, in its own unit.
     """
@@ -57,6 +60,7 @@ class Case:
     joined: Joined
     subtrees: frozenset[int]
     guards: dict[int, str]
+    delays: dict[int, int]
     sessions: list[list[Transition]]
     samples: dict[str, list[tuple[int, SampleValue]]]
 
@@ -84,21 +88,31 @@ def case(seed: int) -> Case:
             break
     root = candidate.requirements.mission
     assert root is not None
-    guards = {uid: name for uid, each in enumerate(elements, 1) if (name := each.get(MARK)) is not None}
-    tree = build.tree()
-    assert len(tree.nodes) == len(elements)
+    made = as_case(text, candidate)
+    tree = made.joined.tree
     now = 0.0
     sessions: list[list[Transition]] = []
     while not sessions or chance.random() < 0.2:
         now, rows = runs(candidate, root, chance, now + 1.0)
-        rows = as_logged(chance, tree, Guarded(tree, guards, chance).of(rows))
+        rows = as_logged(chance, tree, Guarded(tree, made.guards, chance).of(rows))
         sessions.insert(chance.choice([0, len(sessions)]), rows)  # files may be read in any order
-    joined = join([candidate], tree)
+    return replace(made, sessions=sessions, samples=samples(chance, sorted(itertools.chain(*sessions))))
+
+
+def as_case(text: str, mission: Candidate) -> Case:
+    """A mission that has not run yet."""
+    build = next(mission.builds())
+    elements = [each.element for each, _ in build.running.all]
+    joined = join([mission], build.tree())
     assert joined is not None
     assert joined.how == "as built now", text
-    subtrees = frozenset(uid for uid, each in enumerate(elements, 1) if each.tag == "SubTree")
-    sampled = samples(chance, sorted(itertools.chain(*sessions)))
-    return Case(text, candidate, joined, subtrees, guards, sessions, sampled)
+    assert len(joined.tree.nodes) == len(elements)
+    numbered = [*enumerate(elements, 1)]
+    subtrees = frozenset(uid for uid, each in numbered if each.tag == "SubTree")
+    guards = {uid: name for uid, each in numbered if (name := each.get(MARK)) is not None}
+    waits = {uid: each.get("delay_msec") for uid, each in numbered if each.tag == "Delay"}
+    delays = {uid: int(wait) * 1000 for uid, wait in waits.items() if wait is not None}
+    return Case(text, mission, joined, subtrees, guards, delays, [], {})
 
 
 # ---- Missions -------------------------------------------------------------------------------------------------------
@@ -139,7 +153,9 @@ class Trees:
         if kind in ("L", "C"):
             return [f"{blank}{f'Action {chance.choice(ACTIONS)}' if kind == 'L' else 'Condition Seen'} {label}"]
         few, many, port = (_CONTROLS | _DECORATORS)[kind]
-        attributes = f" ({port} = {chance.randint(1, 4) * (500 if port == 'msec' else 1)})" if port else ""
+        attributes = f" ({port} = {chance.randint(1, 4) * (500 if 'msec' in port else 1)})" if port else ""
+        if kind == "Switch2":
+            attributes = ' (variable = "{mode}" case_1 = "near" case_2 = "far")'
         children = [self.node(indent + 1, depth - 1, sub=sub) for _ in range(chance.randint(few, many))]
         return [f"{blank}{kind} {label}{attributes}", *(line for child in children for line in child)]
 
@@ -150,12 +166,16 @@ _CONTROLS = {
     "R->": (2, 2, ""),
     "R?": (2, 2, ""),
     "M->": (2, 2, ""),
-    "||": (2, 2, ""),
+    "A->": (2, 3, ""),
+    "AsyncFallback": (2, 2, ""),
+    "||": (2, 3, ""),
+    "Switch2": (3, 3, ""),
     "IfThenElse": (3, 3, ""),
     "WhileDoElse": (3, 3, ""),
 }
 _DECORATORS = {
     "Timeout": (1, 1, "msec"),
+    "Delay": (1, 1, "delay_msec"),
     "Retry": (1, 1, "num_attempts"),
     "Repeat": (1, 1, "num_cycles"),
     "Inverter": (1, 1, ""),
@@ -223,7 +243,10 @@ def claim(chance: random.Random, labels: list[str]) -> str:
         "takes": lambda: bound(chance, labels, lambda: seconds(chance)),
         "succeeds": lambda: f"within {value(chance, labels, lambda: seconds(chance))}" if chance.random() < 0.6 else "",
         "uses": lambda: uses(chance, labels),
-        "tries": lambda: f"at most {chance.randint(0, 3)}" + chance.choice(["", f" per {chance.choice(labels)}"]),
+        "tries": lambda: (
+            f"{chance.choice(['at most', 'at most', 'at least'])} {chance.randint(0, 3)}"
+            + chance.choice(["", f" per {chance.choice(labels)}"])
+        ),
         "runs": lambda: chance.choice(
             [f"every {seconds(chance)}", f"at least {chance.randint(1, 3)} per {seconds(chance)}"]
         ),
@@ -242,8 +265,8 @@ _VERBS = (
 
 def uses(chance: random.Random, labels: list[str]) -> str:
     """What `uses` is followed by."""
-    name, unit = chance.choice([("battery", "%"), ("energy", "Wh")])
-    return f"{bound(chance, labels, lambda: f'{chance.randint(0, 6) * 5} {unit}')} of {name}"
+    name, unit, step = chance.choice([("battery", "%", EXACT), ("energy", "Wh", 5)])
+    return f"{bound(chance, labels, lambda: f'{chance.randint(0, 6) * step:g} {unit}')} of {name}"
 
 
 def bound(chance: random.Random, labels: list[str], simple: Callable[[], str]) -> str:
@@ -325,6 +348,8 @@ class LoggedRun(engine.Run):
             self.number(child)
 
     def drawn(self, leaf: ResolvedNode) -> float:
+        """A duration; the first tick, which asks for it, takes a while itself."""
+        self.now += self.chance.choice([0.0, 0.0, 0.003, 0.04, 0.25, 1.25])
         return self.chance.choice([0.0, 0.25, 0.5, 1.0, 1.0, 2.0, 3.5])
 
     def change(self, node: engine.Sim, status: str) -> None:
@@ -395,20 +420,35 @@ def as_logged(chance: random.Random, tree: LoggedTree, rows: list[Transition]) -
 
 
 def samples(chance: random.Random, rows: list[Transition]) -> dict[str, list[tuple[int, SampleValue]]]:
-    """Samples of some of the signals: at any time, often just that of a row."""
+    """Samples of some of the signals: at any time, often just that of a row; some begin late."""
     begin, end = (rows[0][0], rows[-1][0]) if rows else (START, START)
     times = [time for time, *_ in rows] or [START]
+    steps = [-2, -1, -1, -0.125, 0.125, -0.125, 0.125, 7]
+    level = itertools.accumulate(iter(lambda: chance.choice(steps) * EXACT, None), charged, initial=10 * EXACT)
+    count = itertools.accumulate(iter(lambda: chance.choice([0, 1, 3, 5, 10, -1, -100]), None), increased, initial=20)
+    walks = chance.random() < 0.5
     values = {
-        "battery": lambda: chance.randint(0, 20) * 5,
-        "energy": lambda: chance.randint(0, 10) * 5,
+        "battery": lambda: next(level) if walks else chance.randint(0, 16) * EXACT,
+        "energy": lambda: next(count) if walks else chance.randint(0, 10) * 5,
         "speed": lambda: chance.randint(-1, 4) / 4,
         "near": lambda: chance.random() < 0.5,
         "state": lambda: chance.choice(["up", "down"]),
     }
     found: dict[str, list[tuple[int, SampleValue]]] = {}
     for name, draw in values.items():
-        if chance.random() < 0.9:
+        if chance.random() < 0.85:
             at = [chance.choice(times) + chance.choice([0, 0, 1, -1]) for _ in range(chance.choice([0, 3, 12]))]
             at += [chance.randint(begin - 1_000_000, end) for _ in range(chance.choice([1, 4, 12]))]
-            found[name] = [(time, draw()) for time in sorted(at)]
+            since = chance.randint(begin, end) if chance.random() < 0.2 else begin - 1_000_000
+            found[name] = [(time, draw()) for time in sorted(at) if time >= since]
     return found
+
+
+def charged(level: float, change: float) -> float:
+    """A level of a battery after one more sample."""
+    return min(max(level + change, 0), 100)
+
+
+def increased(count: int, change: int) -> int:
+    """A counter after one more sample: a large fall is a restart."""
+    return 0 if change < -1 else max(count + change, 0)
