@@ -48,6 +48,7 @@ def _source(source: Source, mission: MissionVerdicts) -> Json:
         "identity": source.identity,
         "joined": source.joined,
         "nodes": source.nodes,
+        **({"left_out": list(source.left_out)} if source.left_out else {}),
         "remarks": list(source.remarks),
     }
 

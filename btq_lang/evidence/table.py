@@ -45,7 +45,7 @@ def _heading(mission: MissionVerdicts) -> Iterator[str]:
         if source.joined < source.nodes:
             identity = f"{found} joined: {source.identity}"
         runs = f"{counted(source.runs, 'run')} in {source.file}"
-        if source.first_run > 1:
+        if source.first_run > 1 and source.runs:
             runs += f", numbered from {source.first_run}"
         if source.begin is not None and source.end is not None:
             runs += f", {period(source.begin, source.end)}"

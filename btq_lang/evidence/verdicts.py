@@ -213,6 +213,7 @@ class Source(Record):
         identity: how the nodes were found in the mission.
         joined, nodes: how many of the log's nodes were found, and how many there are.
         remarks: notes about the file.
+        left_out: the numbers in the file of runs that are counted in another one.
     """
 
     file: str
@@ -224,6 +225,7 @@ class Source(Record):
     joined: int
     nodes: int
     remarks: tuple[str, ...]
+    left_out: tuple[int, ...] = ()
 
 
 class NodeSummary(Record):

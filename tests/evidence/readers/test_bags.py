@@ -122,8 +122,8 @@ def test_files_of_a_bag_are_read_alone_and_as_a_folder(small: Verify) -> None:
         write_bag(small.folder / "logs" / storage, tree_log(rows(TWO_RUNS), NAMES), storage)  # type: ignore[arg-type]  # a name from a list
         assert clause(small.json(f"logs/{storage}/{storage}.{suffix}")) == (2, [2])
     found = small.json("logs")
-    assert [each["file"] for each in found["sources"]] == ["logs/mcap", "logs/sqlite3"]
-    assert clause(found) == (4, [2, 4])
+    assert [(each["file"], each["runs"]) for each in found["sources"]] == [("logs/mcap", 2), ("logs/sqlite3", 0)]
+    assert clause(found) == (2, [2])  # they are the same runs
 
 
 def test_each_topic_is_a_session_of_its_own(small: Verify) -> None:
