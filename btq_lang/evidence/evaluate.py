@@ -82,6 +82,7 @@ class Findings:
             begin=last.begin if last.begin is not None else source.begin,
             end=source.end if source.end is not None else last.end,
             remarks=tuple(dict.fromkeys((*last.remarks, *source.remarks))),
+            unjoined=tuple(dict.fromkeys((*last.unjoined, *source.unjoined))),
         )
 
 
@@ -222,6 +223,7 @@ class MissionEvaluation:
                 joined=joined.number,
                 nodes=len(tree.nodes),
                 remarks=tuple(session.remarks),
+                unjoined=tuple(joined.differences()),
             )
         )
         return runs

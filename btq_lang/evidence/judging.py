@@ -21,6 +21,7 @@ from btq_lang.evidence.repeats import LoggedRows, LoggedRuns
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signals import by_signal
 from btq_lang.evidence.verdicts import Foreign, Report
+from btq_lang.evidence.wording import first_of
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import shown
@@ -126,8 +127,10 @@ def _judged(
                 if running is not None:
                     running.foreign(difference(missions, session.tree))
                 number = sum(each.uid == ROOT for each in activations(session))
-                known = foreign.get((source, joined))
-                what = known or Foreign(source, 0, joined, difference(missions, session.tree))
+                what = foreign.get((source, joined))
+                if what is None:
+                    lacks = first_of(session.unlike) or difference(missions, session.tree)
+                    what = Foreign(source, 0, joined, lacks, tuple(session.unlike))
                 foreign[source, joined] = replace(what, runs=what.runs + number)
             else:
                 mission = joined.mission

@@ -65,10 +65,12 @@ class LoggedTree:
         nodes: by uid.
         parent: the uid of the parent of each node; 0 for the root.
         last: the largest uid below each node; its own for a leaf.
+        name: the ID of the tree; empty if the log does not name it.
     """
 
-    def __init__(self, nodes: Sequence[tuple[int, str, str, int]]) -> None:
+    def __init__(self, nodes: Sequence[tuple[int, str, str, int]], name: str = "") -> None:
         """Build it from uid, kind, path and parent of each node, in the order of the uids."""
+        self.name: Final = name
         self.parent: Final = {uid: parent for uid, _, _, parent in nodes}
         self.last: Final = {uid: uid for uid, *_ in nodes}
         for uid, _, _, parent in reversed(nodes):
@@ -173,6 +175,8 @@ class Session:
         keeping: the nodes that start a child again without resetting it; complete when the transitions have been read.
         remarks: notes about the file, complete when the transitions have been read.
         robot: its name, if the log has one.
+        unlike: how the names of its nodes differ from those in the nearest mission, where the log has no tree and is of
+            no mission.
     """
 
     def __init__(
@@ -190,6 +194,7 @@ class Session:
         self.samples: Final = {} if samples is None else samples
         self.signals: Final[Mapping[str, Series]] = {} if signals is None else signals
         self.keeping: Final[set[int]] = set()
+        self.unlike: Sequence[str] = ()
         self.remarks: Final = [] if remarks is None else remarks
 
 

@@ -346,3 +346,33 @@ def test_without_rosbags_a_line_says_what_to_install(small: Verify) -> None:
         2,
         "btq verify: bag: a ROS 2 bag is read with rosbags; install it with pip install 'btq-lang[ros]'\n",
     )
+
+
+def test_a_bag_of_another_tree_of_the_mission(verify: Verify) -> None:
+    """Its nodes are numbered from its own root; the runs of the main tree in the same bag are of that."""
+    text = "QualityReq rq : safety\n    Pick takes at most 10 ms\n" + MAIN.replace(
+        "Action Pick\nA", "SubTree Hand\nA", 1
+    )
+    text += "BehaviorTree Hand\n    ->\n        Action Pick\n        Action Hold\nAction Hold\n"
+    (verify.folder / "main.btq").write_text(text, encoding="utf-8")
+    hand = {1: "Sequence", 2: "Pick", 3: "Hold"}
+    of_main = {1: "Sequence", 2: "Move", 3: "Hand", 4: "Sequence", 5: "Pick", 6: "Hold"}
+    messages = tree_log(rows("0 1R 2R 20 2S 3R 24 3S 1S 2I 3I 1I"), hand)
+    whole = rows("100 1R 2S 3R 4R 5R 104 5S 6S 4S 3S 1S 5I 6I 4I 2I 3I 1I")
+    write_bag(verify.folder / "bag", [*messages, *tree_log(whole, of_main)])
+    found = verify.json("bag", "--mission", "main.btq")
+    assert [(each["runs"], each["identity"]) for each in found["sources"]] == [
+        (1, "tree Hand, as built now"),
+        (1, "as built now"),
+    ]
+    assert clause(found) == (2, [1])
+
+
+def test_a_bag_with_other_names_says_which(small: Verify) -> None:
+    write_bag(small.folder / "bag", tree_log(rows(TWO_RUNS), {**NAMES, 3: "Reach"}))
+    (source, _) = small.json("bag", "--mission", "main.btq")["sources"]
+    assert source["unjoined"] == ["node 3 is `Reach` in the log and `Pick` in the mission"]
+    assert (small.code, small.errors.splitlines()[-1]) == (
+        2,
+        "btq verify: no log matches main.btq: node 3 is `Reach` in the log and `Pick` in the mission",
+    )
