@@ -10,12 +10,14 @@ from typing import Any
 
 import pytest
 from evidence_logs import MAIN, MAIN_XML, START, Verify, btlog, rows
+from json_schema import violations
 
 from btq_lang.cli import main
 from btq_lang.commands.candidates import candidates
 from btq_lang.evidence.identity import join
 from btq_lang.evidence.readers import btlog as btlog_reader
 
+SCHEMA = json.loads((Path(__file__).parents[2] / "btq_lang/evidence/verdicts.schema.json").read_text(encoding="utf-8"))
 DEMAND = "QualityReq rq : safety\n    Carry/Move takes at most 10 ms\n    on violation fail\n"
 MISSION = (
     DEMAND
@@ -432,7 +434,9 @@ def test_logs_of_several_trees_are_added_up(verify: Verify) -> None:
 
 
 def unjoined(verify: Verify) -> list[str]:
-    (source,) = verify.json("run.btlog", "--mission", "main.btq")["sources"]
+    document = verify.json("run.btlog", "--mission", "main.btq")
+    assert list(violations(document, SCHEMA)) == []
+    (source,) = document["sources"]
     found: list[str] = source.get("unjoined", [])
     return found
 

@@ -16,6 +16,7 @@ import lz4.frame
 import pytest
 from evidence_bags import HUMBLE, LOG, STORE, late_ends, names_of, text, tree_log, write_bag
 from evidence_logs import MAIN, MAIN_XML, START, Verify, logged, rows
+from json_schema import violations
 from rosbags.rosbag2 import storage_mcap
 from rosbags.rosbag2.storage_mcap import zstd
 from test_identity import DEMANDS
@@ -24,6 +25,7 @@ from btq_lang.cli import main
 from btq_lang.evidence.model import NamedLog
 from btq_lang.evidence.readers import read, unpacking
 
+SCHEMA = json.loads((Path(__file__).parents[3] / "btq_lang/evidence/verdicts.schema.json").read_text(encoding="utf-8"))
 LIMIT = "QualityReq rq : safety\n    Move takes at most 10 ms\n"
 NAMES = names_of(MAIN_XML)
 TWO_RUNS = "0 1R 2R 8 2S 3S 1S 2I 3I 1I 50 1R 2R 70 2F 1F 2I 1I"
@@ -370,7 +372,9 @@ def test_a_bag_of_another_tree_of_the_mission(verify: Verify) -> None:
 
 def test_a_bag_with_other_names_says_which(small: Verify) -> None:
     write_bag(small.folder / "bag", tree_log(rows(TWO_RUNS), {**NAMES, 3: "Reach"}))
-    (source, _) = small.json("bag", "--mission", "main.btq")["sources"]
+    document = small.json("bag", "--mission", "main.btq")
+    assert list(violations(document, SCHEMA)) == []
+    (source, _) = document["sources"]
     assert source["unjoined"] == ["node 3 is `Reach` in the log and `Pick` in the mission"]
     assert (small.code, small.errors.splitlines()[-1]) == (
         2,
