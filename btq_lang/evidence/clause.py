@@ -129,6 +129,8 @@ class JudgedClause:
         self._extremes: Final = self._edge.extremes if self._edge is not None else ()
         self._with_measures: Final = with_measures
         self._events: Final = _events(claim, subject)
+        subjects = (subject, *(each.subject for each in self._events))
+        self._is_about_mission: Final = any(isinstance(each, Mission) for each in subjects)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [each.target for each in parts_in(parts) if isinstance(each, Running)]
         self.found.missing = self._why_not()
@@ -352,6 +354,8 @@ class JudgedClause:
     def _own(self, joined: Joined) -> list[tuple[int, ...]]:
         """The nodes of a log that it holds for, grouped: the nodes of a group are judged as one."""
         subject = self._subject
+        if self._is_about_mission and not joined.build.is_main:  # which did not run as a whole
+            return []
         if isinstance(subject, Span):
             firsts = self._instances(joined, _known(subject.first.subject))
             groups: dict[tuple[int, ...], tuple[int, ...]] = {}
@@ -373,7 +377,7 @@ class JudgedClause:
             if uid is not None:
                 found.append(uid)
             else:
-                self.found.missing = self.found.missing or f"`{path}` {joined.lacking}"
+                self.found.missing = self.found.missing or joined.lost(path)
         return found
 
     def _is_own(self, guard: Guard) -> bool:

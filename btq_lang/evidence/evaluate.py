@@ -66,6 +66,10 @@ class Findings:
             self.add_source(replace(source, first_run=source.first_run + runs))
         self.coverage.add_all(other.coverage, runs)
 
+    def leave_out(self, runs: Sequence[int]) -> None:
+        """Name runs of the last file, by their numbers there, that another one has too."""
+        self.sources[-1] = replace(self.sources[-1], left_out=(*self.sources[-1].left_out, *runs))
+
     def add_source(self, source: Source) -> None:
         """Merge a session's counts into those of its file."""
         last = self.sources[-1] if self.sources else None
@@ -78,6 +82,7 @@ class Findings:
             begin=last.begin if last.begin is not None else source.begin,
             end=source.end if source.end is not None else last.end,
             remarks=tuple(dict.fromkeys((*last.remarks, *source.remarks))),
+            unjoined=tuple(dict.fromkeys((*last.unjoined, *source.unjoined))),
         )
 
 
@@ -130,13 +135,22 @@ class MissionEvaluation:
         self.found: Final = Findings([each.found for each in clauses], self._contexts.counts)
         self._open_run: Final = OpenRun() if with_timelines else None
 
-    def read(self, session: Session, joined: Joined, given: Mapping[str, Series], first_run: int, source: str) -> int:
+    def read(
+        self,
+        session: Session,
+        joined: Joined,
+        given: Mapping[str, Series],
+        first_run: int,
+        source: str,
+        run_ended: Callable[[Activation], None] = lambda root: None,
+    ) -> int:
         """Judge the runs of a session; returns how many there are.
 
         Args:
             given: samples by signal, which override the log's own.
             first_run: the number of the first run.
             source: the file, as people read it.
+            run_ended: called with the root's activation at the end of each run.
         """
         tree = session.tree
         signals = Signals(given, session.samples)
@@ -196,6 +210,7 @@ class MissionEvaluation:
                     self._open_run.end(run, tree, self.found.clauses)
                 signals.forget_before(end)
                 self._ran(run.number)
+                run_ended(activation)
         session.remarks.extend(remark for each in self._clauses for remark in each.remarks(tree, session.keeping))
         self.found.add_source(
             Source(
@@ -208,6 +223,7 @@ class MissionEvaluation:
                 joined=joined.number,
                 nodes=len(tree.nodes),
                 remarks=tuple(session.remarks),
+                unjoined=tuple(joined.differences()),
             )
         )
         return runs

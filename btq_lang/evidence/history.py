@@ -76,7 +76,7 @@ class Nearby:
         lost = next((path for path, uid in instances if uid is None), None)
         found: tuple[int, ...] | Unknown
         if lost is not None:
-            found = Unknown(f"`{lost}` {self._joined.lacking}")
+            found = Unknown(self._joined.lost(lost))
         else:
             found = near(self._uid, [uid for _, uid in instances if uid is not None], self._joined.tree)
             self._history.watch(found)

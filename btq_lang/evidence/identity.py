@@ -2,6 +2,8 @@
 
 One invariant: a node of a log is joined with a written one only if both have the same number and path in one build of
 the mission, or the same unique path; what is not joined is not judged.
+
+The tree that ran is the main tree of a mission, or the one whose name the log has.
 """
 
 from __future__ import annotations
@@ -40,8 +42,9 @@ class Candidate:
         self.name: Final = name
         self.side: Final = side
         self.requirements: Final[Requirements] = requirements(workspace, path)
-        self._builds: Final[list[Build]] = []
-        self._unmade: Final = _builds(self)
+        self._made: Final[list[_Made]] = []
+        self._unmade: Final = _made(self)
+        self._builds: Final[dict[tuple[int, str], Build]] = {}
 
     def __reduce__(self) -> tuple[object, ...]:
         """What makes it again in a process that does not share the memory of this one."""
@@ -52,12 +55,31 @@ class Candidate:
         """The index of each written node among those of the mission, by its `id`."""
         return {id(node): index for index, node in enumerate(self.requirements.nodes.all)}
 
-    def builds(self) -> Iterator[Build]:
-        """What `btq build` makes of it, without options first."""
-        yield from self._builds
-        for build in self._unmade:
-            self._builds.append(build)
-            yield build
+    def builds(self, tree: str = "") -> Iterator[Build]:
+        """What `btq build` makes of it, without options first, and a program runs.
+
+        Args:
+            tree: the one that the program creates; empty: the main tree.  None is made where there is no such tree.
+        """
+        for number, made in enumerate(self._all_made()):
+            name = tree or made.main
+            if name in made.trees:
+                if (number, name) not in self._builds:
+                    running = RunningTree(made.built, self.requirements.nodes, name)
+                    how = made.how if name == made.main else f"tree {name}, {made.how}"
+                    self._builds[number, name] = Build(how, running, name, name == made.main)
+                yield self._builds[number, name]
+
+    def trees(self) -> Sequence[str]:
+        """The names of the trees that a program may create instead of the main tree."""
+        made = next(self._all_made(), None)
+        return [name for name in made.trees if name != made.main] if made is not None else []
+
+    def _all_made(self) -> Iterator[_Made]:
+        yield from self._made
+        for made in self._unmade:
+            self._made.append(made)
+            yield made
 
 
 class Joined(Record):
@@ -69,6 +91,7 @@ class Joined(Record):
         uids: the uids of the nodes that were found, by their number in the build.
         number: how many of the log's nodes were found.
         lacking: why the others were not.
+        has_uids: whether the log has uids, so that a node has a number in it.
         others: the paths of other missions with the same nodes.
     """
 
@@ -80,6 +103,28 @@ class Joined(Record):
     build: Build
     lacking: str = "was not found in a log of another version of the mission"
     others: tuple[str, ...] = ()
+    has_uids: bool = True
+
+    def unjoined(self) -> frozenset[int]:
+        """The uids of the log's nodes that were not found in the mission."""
+        return frozenset(self.tree.nodes).difference(self.uids.values())
+
+    def differences(self) -> Iterator[str]:
+        """The nodes of the log, then those of the mission, that were not found, each in words."""
+        made = {_number(each): each.path for each, _ in self.build.running.all if each.element.get(MARK) is None}
+        uids = self.unjoined() if self.has_uids else frozenset()
+        for uid in sorted(uids):
+            known = made.get(uid, "") if uid not in self.uids else ""
+            yield unlike(uid, without_number(self.tree.nodes[uid].path), without_number(known))
+        yield from (self.lost(path) for number, path in made.items() if number not in self.uids and number not in uids)
+
+    def lost(self, path: str) -> str:
+        """Why a node of the mission was not found, given its path."""
+        number = next((_number(each) for each, _ in self.build.running.all if each.path == path), 0)
+        if self.has_uids and number in self.unjoined():
+            logged = without_number(self.tree.nodes[number].path)
+            return f"`{path}` {self.lacking}: {unlike(number, logged, without_number(path))}"
+        return f"`{path}` {self.lacking}"
 
     def instances(self, target: Target) -> list[tuple[str, int | None]]:
         """The paths of the instances of a written node, each with its uid in the log; None if it is not there."""
@@ -98,11 +143,28 @@ class Joined(Record):
         return {uid: mark for uid, mark in marks if uid is not None and mark is not None}
 
 
+class _Made(Record):
+    """What a build makes of a mission.
+
+    Attributes:
+        how: with which options.
+        main: the name of the main tree; empty: there is none.
+        trees: the names of all trees.
+    """
+
+    how: str
+    built: Built
+    main: str
+    trees: tuple[str, ...]
+
+
 class Build(Record):
-    """What a build makes of a mission; `how` names its options."""
+    """What runs of a build; `how` names its options, and the tree if it is not the main one."""
 
     how: str
     running: RunningTree
+    name: str
+    is_main: bool
 
     def tree(self) -> LoggedTree:
         """The tree as a log would hold it, as far as its nodes have numbers."""
@@ -112,7 +174,7 @@ class Build(Record):
                 for each, _ in self.running.all
                 if each.uid is not None
             ],
-            {
+            delays={
                 each.uid: delay
                 for each, _ in self.running.all
                 if each.uid is not None and (delay := delay_of(each.element)) is not None
@@ -126,10 +188,12 @@ def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
     None: no mission has half of its nodes, or, with those that are alike, two thirds.
     """
     nodes = [(node.uid, node.path) for node in tree.nodes.values()]
-    for mission in sorted(missions, key=lambda each: each.side != nodes):  # building a mission takes time
-        for build in mission.builds():
-            if (same := join_build(mission, build, tree)) is not None:
-                return same if mission.side == nodes else replace(same, others=_others(same, missions))
+    in_order = sorted(missions, key=lambda each: each.side != nodes)  # building a mission takes time
+    for name in dict.fromkeys(("", tree.name)):
+        for mission in in_order:
+            for build in mission.builds(name):
+                if (same := join_build(mission, build, tree)) is not None:
+                    return same if mission.side == nodes else replace(same, others=_others(same, missions))
     best = _nearest(missions, tree)
     if best is None:
         return None
@@ -137,12 +201,17 @@ def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
     return best if is_same else None
 
 
+def unlike(uid: int, logged: str, made: str) -> str:
+    """That a node has different names in the log and in the mission; empty: it is not there."""
+    return f"node {uid} is `{logged}` in the log and " + (f"`{made}` in the mission" if made else "not in the mission")
+
+
 def _others(joined: Joined, missions: Sequence[Candidate]) -> tuple[str, ...]:
     """The paths of other missions that the log belongs to as well, by the same build of theirs."""
     others = {each.path: each for each in missions if each.path != joined.mission.path}
-    builds = {
-        path: next((b for b in each.builds() if b.how == joined.build.how), None) for path, each in others.items()
-    }
+    build = joined.build
+    name = "" if build.is_main else build.name
+    builds = {path: next((b for b in each.builds(name) if b.how == build.how), None) for path, each in others.items()}
     return tuple(path for path, build in builds.items() if build and join_build(others[path], build, joined.tree))
 
 
@@ -160,7 +229,8 @@ def difference(missions: Sequence[Candidate], tree: LoggedTree) -> str:
 
 
 def _nearest(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
-    found = (_by_path(mission, build, tree) for mission in missions for build in mission.builds())
+    name = tree.name if any(tree.name in each.trees() for each in missions) else ""
+    found = (_by_path(mission, build, tree) for mission in missions for build in mission.builds(name))
     return max(found, key=lambda each: (each.number, _alike(each.build, tree)), default=None)
 
 
@@ -179,7 +249,8 @@ def _by_path(mission: Candidate, build: Build, tree: LoggedTree) -> Joined:
     """The nodes whose paths are equal and unique on both sides."""
     logged, made = _unique(_logged_paths(tree)), _unique(_made_paths(build))
     uids = {number: logged[key] for key, number in made.items() if key in logged}
-    return Joined(mission, tree, "built from another version", uids, len(uids), build)
+    how = "built from another version"
+    return Joined(mission, tree, how if build.is_main else f"tree {build.name}, {how}", uids, len(uids), build)
 
 
 def _alike(build: Build, tree: LoggedTree) -> int:
@@ -198,21 +269,24 @@ def _made_paths(build: Build) -> list[tuple[tuple[str, str], int]]:
     return [((kind_of(each.element), without_number(each.path)), _number(each)) for each, _ in build.running.all]
 
 
-def _builds(mission: Candidate) -> Iterator[Build]:
-    """The trees of builds with different options, without those that fail."""
+def _made(mission: Candidate) -> Iterator[_Made]:
+    """Builds with different options, without those that fail."""
     workspace = mission.workspace
     targets = [workspace.project.target, *(each for each in VERSIONS if each != workspace.project.target)]
     for target in targets:
         project = replace(workspace.project, engines=(target,))
         for is_enforced in (True, False):
-            running = _running(mission, workspace.with_project(project), is_enforced)
-            if running is not None:
+            built = _built(mission, workspace.with_project(project), is_enforced)
+            if built is not None:
                 how = "as built now" if target == targets[0] else f"as built for {target}"
-                yield Build(how if is_enforced else f"{how} with --no-enforce", running)
+                main = built.documents[-1].root.get("main_tree_to_execute") or ""
+                tops = (each for document in built.documents for each in document.root.elements)
+                trees = [each.get("ID") or "" for each in tops if each.tag == "BehaviorTree"]
+                yield _Made(how if is_enforced else f"{how} with --no-enforce", built, main, tuple(trees))
 
 
-def _running(mission: Candidate, workspace: Workspace, is_enforced: bool) -> RunningTree | None:
-    """The tree that `btq build` writes; None if the mission cannot be built."""
+def _built(mission: Candidate, workspace: Workspace, is_enforced: bool) -> Built | None:
+    """What `btq build` writes; None if the mission cannot be built."""
     path = mission.path
     exports = [
         as_xml(workspace, each, enforce=is_enforced and is_mission(workspace, each)).export
@@ -221,11 +295,7 @@ def _running(mission: Candidate, workspace: Workspace, is_enforced: bool) -> Run
     if any(each.problems for each in exports):
         return None
     elements = {key: element for each in exports for key, element in each.elements.items()}
-    documents = tuple(each.document for each in exports)
-    main = documents[-1].root.get("main_tree_to_execute")
-    if main is None:
-        return None
-    return RunningTree(Built(path, path, "", documents, elements), mission.requirements.nodes, main)
+    return Built(path, path, "", tuple(each.document for each in exports), elements)
 
 
 def _number(instance: Instance) -> int:

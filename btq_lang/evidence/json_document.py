@@ -11,7 +11,15 @@ from btq_lang.util.fields import as_dict
 from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.verdicts import ClauseVerdict, Measures, MissionVerdicts, Report, RequirementVerdict, Source
+    from btq_lang.evidence.verdicts import (
+        ClauseVerdict,
+        Foreign,
+        Measures,
+        MissionVerdicts,
+        Report,
+        RequirementVerdict,
+        Source,
+    )
 
     Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
@@ -22,7 +30,10 @@ VERSION: Final = 1
 def render(report: Report) -> str:
     """Write the report as JSON."""
     sources = [_source(source, mission) for mission in report.missions for source in mission.sources]
-    sources += [{"file": each.file, "mission": None, "runs": each.runs, "remarks": []} for each in report.foreign]
+    sources += [
+        {"file": each.file, "mission": None, "runs": each.runs, **_unjoined(each), "remarks": []}
+        for each in report.foreign
+    ]
     document: Json = {
         "format": FORMAT,
         "version": VERSION,
@@ -48,8 +59,14 @@ def _source(source: Source, mission: MissionVerdicts) -> Json:
         "identity": source.identity,
         "joined": source.joined,
         "nodes": source.nodes,
+        **({"left_out": list(source.left_out)} if source.left_out else {}),
+        **_unjoined(source),
         "remarks": list(source.remarks),
     }
+
+
+def _unjoined(source: Source | Foreign) -> dict[str, Json]:
+    return {"unjoined": list(source.unjoined)} if source.unjoined else {}
 
 
 def _mission(mission: MissionVerdicts) -> Json:

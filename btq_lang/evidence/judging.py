@@ -7,19 +7,21 @@ up in their order.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.evaluate import Findings, MissionEvaluation
 from btq_lang.evidence.identity import Candidate, difference
-from btq_lang.evidence.model import ROOT, Series
+from btq_lang.evidence.model import ROOT, Series, Session, Transition
 from btq_lang.evidence.named_runs import joined_sessions
 from btq_lang.evidence.odds import Limits
 from btq_lang.evidence.readers import NotALog, read
+from btq_lang.evidence.repeats import LoggedRows, LoggedRuns
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signals import by_signal
 from btq_lang.evidence.verdicts import Foreign, Report
+from btq_lang.evidence.wording import first_of
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import shown
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.watching import Watched
     from btq_lang.workspace.project_evidence import SignalSource
 NO_SERIES: Final[Mapping[str, Series]] = {}
+NOTHING: Final[Mapping[tuple[str, int], Sequence[tuple[int, int, int]]]] = {}
 
 
 class Means(Record):
@@ -43,6 +46,8 @@ class Means(Record):
         with_measures: include what is needed to judge clauses with other bounds.
         keeping: where what is found in each log is kept; None: nowhere.
         limits: which limits of probabilities decide.
+        left_out: the runs that are counted in another session, by log and number of the session: the number of each run
+            there, from 0, and of its first and last row.
         shown: gives a path as people read it.
     """
 
@@ -57,6 +62,7 @@ class Means(Record):
     keeping: Keeping | None = None
     limits: Limits = "one look"
     shown: Callable[[str], str] = shown
+    left_out: Mapping[tuple[str, int], Sequence[tuple[int, int, int]]] = NOTHING
 
 
 class JudgedLog(Record):
@@ -68,6 +74,7 @@ class JudgedLog(Record):
         foreign: the runs of other missions.
         problems: why the log, or the rest of it, could not be read or kept.
         renamed: the label and the robot that the store had for it, as far as others are given now.
+        sessions: where the runs are.
     """
 
     runs: int
@@ -75,6 +82,7 @@ class JudgedLog(Record):
     foreign: tuple[Foreign, ...]
     problems: tuple[str, ...]
     renamed: tuple[str, ...] = ()
+    sessions: tuple[LoggedRuns, ...] = ()
 
 
 def judge(
@@ -109,7 +117,9 @@ def _judged(
     evaluations: dict[tuple[str, str], MissionEvaluation] = {}
     foreign: dict[tuple[str, str], Foreign] = {}
     problems: tuple[str, ...] = ()
-    runs = 0
+    logged: list[LoggedRuns] = []
+    label = means.keeping.label_of(log) if means.keeping is not None else None
+    runs = left_out = 0
     try:
         sessions = read(log, means.sources) if running is None else running.sessions
         for source, session, joined in joined_sessions(sessions, missions, shown(log)):
@@ -117,8 +127,10 @@ def _judged(
                 if running is not None:
                     running.foreign(difference(missions, session.tree))
                 number = sum(each.uid == ROOT for each in activations(session))
-                known = foreign.get((source, joined))
-                what = known or Foreign(source, 0, joined, difference(missions, session.tree))
+                what = foreign.get((source, joined))
+                if what is None:
+                    lacks = first_of(session.unlike) or difference(missions, session.tree)
+                    what = Foreign(source, 0, joined, lacks, tuple(session.unlike))
                 foreign[source, joined] = replace(what, runs=what.runs + number)
             else:
                 mission = joined.mission
@@ -141,7 +153,13 @@ def _judged(
                     session.remarks.append(
                         f"judged by {shown(mission.path)}; the same nodes are in {others}: choose with --mission"
                     )
-                runs += evaluations[key].read(session, joined, given, runs + 1, source)
+                here = means.left_out.get((log, len(logged)), ())
+                logged.append(LoggedRuns(log, len(logged), (mission.path, label), session.robot))
+                session = _without(session, here) if here else session
+                before = runs + left_out
+                runs += evaluations[key].read(session, joined, given, runs + 1, source, logged[-1].add)
+                left_out += len(here)
+                evaluations[key].found.leave_out([before + run + 1 for run, *_ in here])
     except NotALog as error:
         problems = (f"{shown(log)}: {error}",)
     except OSError as error:
@@ -149,14 +167,42 @@ def _judged(
     for evaluation in evaluations.values():
         evaluation.end()
     findings = tuple((path, evaluation.found) for (path, _), evaluation in evaluations.items())
-    return JudgedLog(runs, findings, tuple(foreign.values()), problems)
+    return JudgedLog(runs, findings, tuple(foreign.values()), problems, sessions=tuple(logged))
+
+
+def _without(session: Session, runs: Sequence[tuple[int, int, int]]) -> Session:
+    """The session without the rows of some runs; samples in them remain."""
+
+    def others() -> Iterator[Transition]:
+        waiting = iter(runs)
+        _, first, last = next(waiting)
+        for number, row in enumerate(session.transitions, start=1):
+            if number > last:
+                _, first, last = next(waiting, _NONE)
+            if not first <= number <= last:
+                yield row
+
+    return Session(session.tree, others(), session.samples, session.remarks, session.signals, session.robot)
+
+
+def rows_of(log: str, means: Means) -> Sequence[LoggedRows]:
+    """The rows of the sessions of a log that were judged."""
+    found = []
+    try:
+        for _, session, joined in joined_sessions(read(log), means.missions, log):
+            if not isinstance(joined, str):
+                found.append(LoggedRows(session.transitions))
+    except (NotALog, OSError):  # as when it was judged, which has said so
+        pass
+    return found
 
 
 class Judging:
-    """Adds up what was found in logs, and how many runs were judged."""
+    """Adds up what was found in logs, how many runs were judged, and where they are."""
 
     def __init__(self, means: Means) -> None:
         self.runs = 0
+        self.sessions: Final[list[LoggedRuns]] = []
         of_all = partial(MissionEvaluation, limits=means.limits, with_measures=means.with_measures)
         self._evaluations: Final = {each.path: of_all(each, means.with_timelines) for each in means.missions}
         self._foreign: Final[dict[tuple[str, str], Foreign]] = {}
@@ -168,6 +214,7 @@ class Judging:
         for path, findings in log.findings:
             self._evaluations[path].found.add(findings, self.runs)
         self.runs += log.runs
+        self.sessions.extend(log.sessions)
         for each in log.foreign:
             known = self._foreign.get((each.file, each.of))
             self._foreign[each.file, each.of] = replace(known, runs=known.runs + each.runs) if known else each
@@ -180,3 +227,6 @@ class Judging:
         found = tuple(each for each in missions if each.sources)
         renamed = tuple(f"{counted(number, 'log')} had {what}" for what, number in self._renamed.items())
         return Report(found, tuple(self._foreign.values()), tuple(self._problems), renamed)
+
+
+_NONE: Final = (0, 1 << 63, 1 << 63)  # a run after all rows

@@ -67,11 +67,15 @@ class LoggedTree:
         nodes: by uid.
         parent: the uid of the parent of each node; 0 for the root.
         last: the largest uid below each node; its own for a leaf.
+        name: the ID of the tree; empty if the log does not name it.
         delays: how long a Delay waits before it ticks its child, in µs, where that is a number.
     """
 
-    def __init__(self, nodes: Sequence[tuple[int, str, str, int]], delays: Mapping[int, int] | None = None) -> None:
+    def __init__(
+        self, nodes: Sequence[tuple[int, str, str, int]], name: str = "", *, delays: Mapping[int, int] | None = None
+    ) -> None:
         """Build it from uid, kind, path and parent of each node, in the order of the uids."""
+        self.name: Final = name
         self.delays: Final = delays or {}
         self.parent: Final = {uid: parent for uid, _, _, parent in nodes}
         self.last: Final = {uid: uid for uid, *_ in nodes}
@@ -213,6 +217,8 @@ class Session:
         keeping: the nodes that start a child again without resetting it; complete when the transitions have been read.
         remarks: notes about the file, complete when the transitions have been read.
         robot: its name, if the log has one.
+        unlike: how the names of its nodes differ from those in the nearest mission, where the log has no tree and is of
+            no mission.
     """
 
     def __init__(
@@ -230,6 +236,7 @@ class Session:
         self.samples: Final = {} if samples is None else samples
         self.signals: Final[Mapping[str, Series]] = {} if signals is None else signals
         self.keeping: Final[set[int]] = set()
+        self.unlike: Sequence[str] = ()
         self.remarks: Final = [] if remarks is None else remarks
 
 

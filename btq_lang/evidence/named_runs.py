@@ -10,11 +10,11 @@ pieces of one mission are merged again.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cached_property
 from typing import Final
 
-from btq_lang.evidence.identity import Build, Candidate, Joined, join, join_build
+from btq_lang.evidence.identity import Build, Candidate, Joined, join, join_build, unlike
 from btq_lang.evidence.model import FAILURE, IDLE, ROOT, RUNNING, SUCCESS, LoggedTree, NamedLog, Session, Transition
 from btq_lang.evidence.runs import ONE_COMPLETION
 from btq_lang.util.grouping import grouped
@@ -58,7 +58,9 @@ def _sessions(log: NamedLog, missions: Sequence[Candidate]) -> Iterator[tuple[Se
         else:
             uids = trees.uids(joined.tree)
             tree = joined.tree
-        yield Session(tree, _transitions(log, begin, end, uids), {}, [*log.remarks], log.signals, log.robot), joined
+        session = Session(tree, _transitions(log, begin, end, uids), {}, [*log.remarks], log.signals, log.robot)
+        session.unlike = trees.unlike(nodes) if joined is OTHER else ()
+        yield session, joined
 
 
 def _pieces(log: NamedLog, roots: Set[int]) -> Iterator[tuple[int, int]]:
@@ -123,14 +125,11 @@ class _Trees:
         left = {run: nodes for run, nodes in named.items() if run not in found}
         fitting: dict[frozenset[int], list[Joined]] = {run: [] for run in left}
         for mission in self._missions if left else ():
-            builds: list[tuple[Set[frozenset[int]], Joined]] = []
-            for tree, joined in self._builds(mission):
-                builds.append(({run for run, nodes in left.items() if tree.has(nodes)}, joined))
-                if len(builds[-1][0]) == len(left):
-                    break
-            builds.sort(key=lambda each: -len(each[0]))  # a short run may fit builds that the others do not
-            for run in left:
-                fitting[run] += [joined for runs, joined in builds if run in runs][:1]
+            self._fit(mission, "", left, fitting)
+        left = {run: nodes for run, nodes in left.items() if not fitting[run]}
+        for mission in self._missions if left and self._has_uids else ():
+            for name in mission.trees():  # a node without a uid may be of the main tree
+                self._fit(mission, name, left, fitting)
         others = [run for run, each in fitting.items() if not each]
         for run, each in fitting.items():
             # A run whose nodes all occur in a run of another mission may belong to that mission too.
@@ -138,14 +137,41 @@ class _Trees:
             found[run] = each[0] if is_sure else SEVERAL if each else OTHER
         return found
 
+    def unlike(self, run: Set[int]) -> Sequence[str]:
+        """How the names of nodes differ in a run and in the tree that has the most of them; empty without uids."""
+        nodes = sorted(self._log.nodes[each] for each in run) if self._has_uids else []
+        trees = [tree for mission in self._missions for tree, _ in self._builds(mission)] if nodes else []
+        found = [
+            [unlike(uid, name, made) for uid, name in nodes if uid and (made := tree.name_of(uid)) != name]
+            for tree in trees
+        ]
+        return min(found, key=len, default=())
+
+    def _fit(
+        self,
+        mission: Candidate,
+        name: str,
+        left: Mapping[frozenset[int], Set[tuple[int, str]]],
+        fitting: Mapping[frozenset[int], list[Joined]],
+    ) -> None:
+        """Add a tree of a mission to those that fit the runs that are left; without a name, the main tree."""
+        builds: list[tuple[Set[frozenset[int]], Joined]] = []
+        for tree, joined in self._builds(mission, name):
+            builds.append(({run for run, nodes in left.items() if tree.has(nodes)}, joined))
+            if len(builds[-1][0]) == len(left):
+                break
+        builds.sort(key=lambda each: -len(each[0]))  # a short run may fit builds that the others do not
+        for run in left:
+            fitting[run] += [joined for runs, joined in builds if run in runs][:1]
+
     def uids(self, tree: LoggedTree) -> dict[int, int]:
         """The uids of the log's nodes in a tree, by their index."""
         names = _Names(tree)
         found = ((index, names.uid(*node)) for index, node in enumerate(self._log.nodes))
         return {index: uid for index, uid in found if uid is not None}
 
-    def _builds(self, mission: Candidate) -> Iterator[tuple[_Names, Joined]]:
-        for build in mission.builds():
+    def _builds(self, mission: Candidate, name: str = "") -> Iterator[tuple[_Names, Joined]]:
+        for build in mission.builds(name):
             if id(build) not in self._made:
                 self._made[id(build)] = self._joined_build(mission, build)
             if (made := self._made[id(build)]) is not None:
@@ -169,6 +195,7 @@ def _by_name(joined: Joined, names: _Names) -> Joined:
         uids=uids,
         number=len(uids),
         lacking="has a name that another node has too, and the log has no uids",
+        has_uids=False,
     )
 
 
@@ -183,6 +210,10 @@ class _Names:
     def has(self, nodes: Set[tuple[int, str]]) -> bool:
         """Whether the tree has all these nodes."""
         return all(self._names.get(uid) == name if uid else name in self._named for uid, name in nodes)
+
+    def name_of(self, uid: int) -> str:
+        """The name of a node; empty if there is no such node."""
+        return self._names.get(uid, "")
 
     def is_unique(self, uid: int) -> bool:
         """Whether no other node has the name of this one."""

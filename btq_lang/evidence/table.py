@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.sentences import explained, headline, result, worst_violation
 from btq_lang.evidence.signals import NO_SAMPLES
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
-from btq_lang.evidence.wording import duration, period
+from btq_lang.evidence.wording import duration, first_of, period
 from btq_lang.render.cells import broken, cells_of, narrowed, printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.util.text import counted
@@ -45,11 +45,13 @@ def _heading(mission: MissionVerdicts) -> Iterator[str]:
         if source.joined < source.nodes:
             identity = f"{found} joined: {source.identity}"
         runs = f"{counted(source.runs, 'run')} in {source.file}"
-        if source.first_run > 1:
+        if source.first_run > 1 and source.runs:
             runs += f", numbered from {source.first_run}"
         if source.begin is not None and source.end is not None:
             runs += f", {period(source.begin, source.end)}"
         yield printable(f"{runs}, mission {mission.name} ({identity})")
+        if source.unjoined:
+            yield printable(f"  not joined: {first_of(source.unjoined)}")
         for remark in source.remarks:
             yield printable(f"  note: {remark}")
 

@@ -229,6 +229,8 @@ class Source(Record):
         identity: how the nodes were found in the mission.
         joined, nodes: how many of the log's nodes were found, and how many there are.
         remarks: notes about the file.
+        left_out: the numbers in the file of runs that are counted in another one.
+        unjoined: the nodes of the log and of the mission that were not found in the other, in words.
     """
 
     file: str
@@ -240,6 +242,8 @@ class Source(Record):
     joined: int
     nodes: int
     remarks: tuple[str, ...]
+    left_out: tuple[int, ...] = ()
+    unjoined: tuple[str, ...] = ()
 
 
 class NodeSummary(Record):
@@ -334,12 +338,14 @@ class Foreign(Record):
     Attributes:
         of: what they belong to: another mission, or one of several.
         difference: how the nearest mission and the tree of the log differ; empty if one of them is unknown.
+        unjoined: the nodes that have other names there, in words, where the log has no tree.
     """
 
     file: str
     runs: int
     of: str
     difference: str
+    unjoined: tuple[str, ...] = ()
 
 
 class Report(Record):

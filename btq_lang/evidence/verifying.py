@@ -12,13 +12,14 @@ from btq_lang.btcpp.side_file import side_path
 from btq_lang.evidence import write
 from btq_lang.evidence.copies import without_copies
 from btq_lang.evidence.identity import Candidate
-from btq_lang.evidence.judging import Judging, Means, judge
+from btq_lang.evidence.judging import Judging, Means, judge, rows_of
 from btq_lang.evidence.notes import ignored_columns, missing_verdicts, missions_with_errors, other_times
 from btq_lang.evidence.readers import SUFFIXES, samples_of_bags, whole_bags
 from btq_lang.evidence.readers.bag import METADATA
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.readers.side import side_file_at
+from btq_lang.evidence.repeats import notes, repeated
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.loader import IS_SPECIAL, absolute, collect, is_special, shown
@@ -142,23 +143,37 @@ def verify(
     """
     of_bags, remarks, bags = samples_of_bags(logs, means.sources)
     means = replace(means, of_bags=of_bags, remarks=remarks)
-    judging = Judging(means)
     wanted, copies = without_copies([log for log in logs if log not in bags])
-    if jobs > 1 and len(wanted) > 1:
-        from btq_lang.evidence.parallel import judge_all
-
-        for number, found in enumerate(judge_all(wanted, means, jobs), start=1):
-            judging.add(found)
-            progress(number, judging.runs)
-    else:
-        for number, log in enumerate(wanted):
-            judging.add(judge(log, means, partial(_progress, progress, number, judging.runs)))
-    notes = (
+    judging = _all(wanted, means, jobs, progress)
+    report = judging.report()
+    found = repeated(judging.sessions, partial(rows_of, means=means))
+    if found:
+        left_out = {
+            (session.log, session.number): [(run, session.first[run], session.last[run]) for run in sorted(runs_there)]
+            for session, runs_there in found
+        }
+        again = _all(wanted, replace(means, keeping=None, left_out=left_out), jobs, progress).report()
+        report = replace(again, problems=report.problems, remarks=report.remarks)
+    same = (
         f"{means.shown(log)} is the same log as {means.shown(first)}, so it is not counted"
         for log, first in copies.items()
     )
-    report = judging.report()
-    return replace(report, remarks=(*notes, *report.remarks))
+    return replace(report, remarks=(*same, *notes(found, judging.sessions, means.shown), *report.remarks))
+
+
+def _all(logs: Sequence[str], means: Means, jobs: int, progress: Callable[[int, int], None]) -> Judging:
+    """What was found in all logs."""
+    judging = Judging(means)
+    if jobs > 1 and len(logs) > 1:
+        from btq_lang.evidence.parallel import judge_all
+
+        for number, found in enumerate(judge_all(logs, means, jobs), start=1):
+            judging.add(found)
+            progress(number, judging.runs)
+    else:
+        for number, log in enumerate(logs):
+            judging.add(judge(log, means, partial(_progress, progress, number, judging.runs)))
+    return judging
 
 
 def _progress(progress: Callable[[int, int], None], files: int, runs: int, run: int) -> None:

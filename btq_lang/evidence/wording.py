@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from datetime import datetime, timedelta, timezone
 
 from btq_lang.catalog.units import Unit, from_si, parse_unit
@@ -30,6 +31,12 @@ def measured(si: float, unit: Unit | None, bound: float) -> str:
 def duration(seconds: float) -> str:
     """A duration in ms, s, min or h, whichever is easiest to read."""
     return quantity(seconds, _readable(seconds))
+
+
+def first_of(texts: Sequence[str]) -> str:
+    """The first five texts, and how many more there are."""
+    more = len(texts) - _NAMED
+    return "; ".join([*texts[:_NAMED], *([f"{more} more"] if more > 0 else [])])
 
 
 def _readable(seconds: float) -> Unit:
@@ -77,4 +84,5 @@ def time_of(text: str) -> int:
 
 
 _MILLISECOND, _SECOND, _MINUTE, _HOUR = filter(None, map(parse_unit, ("ms", "s", "min", "h")))
+_NAMED = 5
 _EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)

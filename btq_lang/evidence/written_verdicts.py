@@ -17,8 +17,8 @@ class NotVerdicts(ValueError):
 
 
 class WrittenSource(Record):
-    """A log: its runs, the number of the first, when the last one ended, empty without any, and whether all nodes were
-    found in the mission.
+    """A log: its runs, the number of the first, when the last one ended, empty without any, whether all nodes were
+    found in the mission, and the numbers there of runs that are counted in another log.
     """
 
     file: str
@@ -26,6 +26,7 @@ class WrittenSource(Record):
     first_run: int
     end: str
     is_whole: bool
+    left_out: tuple[int, ...]
 
 
 class WrittenMission(Record):
@@ -77,7 +78,8 @@ def _requirement(found: dict[str, Any]) -> RequirementVerdict:
 
 def _source(found: dict[str, Any]) -> WrittenSource:
     is_whole = found["joined"] == found["nodes"]
-    return WrittenSource(found["file"], found["runs"], found["first_run"], found["end"] or "", is_whole)
+    end, left_out = found["end"] or "", tuple(found.get("left_out", ()))
+    return WrittenSource(found["file"], found["runs"], found["first_run"], end, is_whole, left_out)
 
 
 def _clause(found: dict[str, Any]) -> ClauseVerdict:

@@ -61,7 +61,10 @@ def logged_run(workspace: Workspace, path: str, evidence: Evidence, number: int)
     for source in evidence.missions[mission].sources if mission is not None else ():
         if source.first_run <= number < source.first_run + source.runs:
             assert mission is not None, "it has sources"
-            return LoggedRun(mission, source.file, number, number - source.first_run + 1)
+            number_in_log = number - source.first_run + 1
+            for left_out in sorted(source.left_out):
+                number_in_log += left_out <= number_in_log
+            return LoggedRun(mission, source.file, number, number_in_log)
     return None
 
 

@@ -6,12 +6,18 @@ import json
 import re
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
-from evidence_logs import MAIN, MAIN_XML, Verify, btlog, rows
+from evidence_logs import MAIN, MAIN_XML, START, Verify, btlog, rows
+from json_schema import violations
 
 from btq_lang.cli import main
+from btq_lang.commands.candidates import candidates
+from btq_lang.evidence.identity import join
+from btq_lang.evidence.readers import btlog as btlog_reader
 
+SCHEMA = json.loads((Path(__file__).parents[2] / "btq_lang/evidence/verdicts.schema.json").read_text(encoding="utf-8"))
 DEMAND = "QualityReq rq : safety\n    Carry/Move takes at most 10 ms\n    on violation fail\n"
 MISSION = (
     DEMAND
@@ -336,3 +342,155 @@ def test_logs_of_other_builds(options: tuple[str, ...], verify: Verify) -> None:
     how, joined, nodes = identity(verify)
     assert joined == nodes == len(re.findall("_uid=", xml))
     assert how.startswith("as built")
+
+
+# ---- another tree of the mission runs ----
+
+TREES = (
+    "QualityReq of_main : safety\n    Undock takes at most 10 ms\n"
+    "QualityReq of_carry : safety\n    Move takes at most 10 ms\n"
+    "QualityReq of_all : safety\n    mission succeeds\n"
+    "QualityReq after : safety\n    Move starts within 5 ms after mission starts\n"
+    "QualityReq below : safety\n    Lift takes at most 10 ms\n"
+    "Root Main\nBehaviorTree Main\n    ->\n        Action Undock\n        SubTree Carry\n"
+    "BehaviorTree Carry\n    ->\n        Action Move\n        SubTree Arm\n"
+    "BehaviorTree Arm\n    ->\n        Action Lift\n"
+    "Action Undock\nAction Move\nAction Lift\n"
+)
+CARRY = "0 1R 2R 20 2S 3R 4R 5S 4S 3S 1S 2I 5I 4I 3I 1I 50 1R 2R 54 2F 1F 2I 1I"
+JUDGED = {
+    "of_main": ("never exercised", 0),
+    "of_carry": ("violated", 2),
+    "of_all": ("never exercised", 0),
+    "after": ("never exercised", 0),
+    "below": ("satisfied", 1),
+}
+
+
+def judged(found: dict[str, Any]) -> dict[str, tuple[str, int]]:
+    return {
+        each["id"]: (each["verdict"], sum(one["counted"] for one in each["clauses"])) for each in found["requirements"]
+    }
+
+
+@pytest.mark.parametrize("root", ["Root Main\n", ""])
+def test_the_log_says_which_tree_ran(verify: Verify, root: str) -> None:
+    """`createTree("Carry")`: its nodes are numbered from its own root, those of the subtree in it too."""
+    text = TREES.replace("Root Main\n", root)
+    (verify.folder / "main.btq").write_text(text, encoding="utf-8")
+    log_of(verify, TREES.replace("Root Main", "Root Carry"), CARRY, "--no-enforce")
+    assert identity(verify) == ("tree Carry, as built now", 5, 5)
+    assert judged(verify.json("run.btlog", "--mission", "main.btq")) == JUDGED
+
+
+def test_a_log_with_guards_of_another_tree(verify: Verify) -> None:
+    """It is found among the builds of that tree, with its guards, for any version of the engine."""
+    text = TREES.replace("Move takes at most 10 ms\n", "Move takes at most 10 ms\n    on violation fail\n")
+    (verify.folder / "main.btq").write_text(text, encoding="utf-8")
+    log_of(verify, text.replace("Root Main", "Root Carry"), "0 1R 2R 3R 10 3I 2F 1F 2I 1I")
+    assert identity(verify) == ("tree Carry, as built now", 6, 6)
+    found = verify.json("run.btlog", "--mission", "main.btq")
+    assert judged(found)["of_carry"] == ("violated", 1)
+
+
+def test_an_older_text_of_another_tree(verify: Verify) -> None:
+    (verify.folder / "main.btq").write_text(TREES.replace("Action Lift", "Action Raise"), encoding="utf-8")
+    log_of(verify, TREES.replace("Root Main", "Root Carry"), CARRY, "--no-enforce")
+    assert identity(verify) == ("tree Carry, built from another version", 4, 5)
+
+
+def test_a_tree_that_is_the_main_one_of_another_mission(verify: Verify) -> None:
+    """The mission whose main tree it is comes first, also if another one includes it."""
+    carry = "BehaviorTree Carry\n    ->\n        Action Move\nAction Move\n"
+    demand = "QualityReq rq : safety\n    Move takes at most 10 ms\n"
+    (verify.folder / "carry.btq").write_text(f"Root Carry\n{demand}{carry}", encoding="utf-8")
+    (verify.folder / "all.btq").write_text(
+        'include "carry.btq"\nRoot All\nBehaviorTree All\n    ->\n        SubTree Carry\n', encoding="utf-8"
+    )
+    log_of(verify, f"Root Carry\n{carry}", "0 1R 2R 20 2S 1S")
+    given = ("run.btlog", "--mission", "all.btq", "--mission", "carry.btq")
+    assert [(each["mission"], each["identity"]) for each in verify.json(*given)["sources"]] == [
+        ("carry", "as built now")
+    ]
+    assert identity(verify, "all.btq") == ("tree Carry, as built now", 2, 2)
+
+
+def test_logs_of_several_trees_are_added_up(verify: Verify) -> None:
+    (verify.folder / "main.btq").write_text(TREES, encoding="utf-8")
+    log_of(verify, TREES.replace("Root Main", "Root Carry"), CARRY, "--no-enforce")
+    of_main = btlog(verify.build(TREES), rows("0 1R 2R 5 2S 3R 4R 5R 9 5S 6R 7R 8S 7S 6S 4S 3S 1S"), START + 10**9)
+    (verify.folder / "all.btlog").write_bytes(of_main)
+    found = verify.json("run.btlog", "all.btlog", "--mission", "main.btq")
+    assert judged(found) == {
+        "of_main": ("satisfied", 1),
+        "of_carry": ("violated", 3),
+        "of_all": ("satisfied", 1),
+        "after": ("satisfied", 1),
+        "below": ("satisfied", 2),
+    }
+
+
+# ---- nodes that are not joined ----
+
+
+def unjoined(verify: Verify) -> list[str]:
+    document = verify.json("run.btlog", "--mission", "main.btq")
+    assert list(violations(document, SCHEMA)) == []
+    (source,) = document["sources"]
+    found: list[str] = source.get("unjoined", [])
+    return found
+
+
+def test_nodes_that_are_not_joined_are_named(verify: Verify) -> None:
+    text = MISSION.replace("Carry/Move takes at most 10 ms\n    on violation fail", "Leave takes at most 10 ms")
+    (verify.folder / "main.btq").write_text(text.replace("Undock", "Leave"), encoding="utf-8")
+    log_of(verify, MISSION, PLAIN, "--no-enforce")
+    assert unjoined(verify) == ["node 2 is `Undock` in the log and `Leave` in the mission"]
+    (requirement,) = verify.json("run.btlog", "--mission", "main.btq")["requirements"]
+    assert requirement["clauses"][0]["why"] == (
+        "`Leave::2` was not found in a log of another version of the mission: "
+        "node 2 is `Undock` in the log and `Leave` in the mission"
+    )
+
+
+def test_nodes_that_one_side_lacks_are_named(verify: Verify) -> None:
+    older = MISSION.replace("Action Undock\n        Sub", "Action Undock\n        Action Wave\n        Sub")
+    (verify.folder / "main.btq").write_text(MISSION, encoding="utf-8")
+    log_of(verify, f"{older}Action Wave\n", "0 1R 2S 3S 4S 1S", "--no-enforce")
+    assert unjoined(verify) == ["node 3 is `Wave` in the log and not in the mission"]
+    (verify.folder / "main.btq").write_text(f"{older}Action Wave\n", encoding="utf-8")
+    shutil.rmtree(verify.folder / "built", ignore_errors=True)
+    log_of(verify, MISSION, PLAIN, "--no-enforce")
+    assert unjoined(verify) == ["`Wave::3` was not found in a log of another version of the mission"]
+
+
+def test_a_table_names_five_of_them(verify: Verify) -> None:
+    actions = "".join(f"        Action A{number}\n" for number in range(16))
+    models = "".join(f"Action {name}{number}\n" for name in "AB" for number in range(16))
+    text = f"Root Main\nBehaviorTree Main\n    ->\n{actions}{models}"
+    changed = text
+    for number in range(3, 10):
+        changed = changed.replace(f"        Action A{number}\n", f"        Action B{number}\n")
+    changed += "QualityReq rq : safety\n    mission succeeds\n"
+    (verify.folder / "main.btq").write_text(changed, encoding="utf-8")
+    log_of(verify, text, "0 1R 2S 1F")
+    lines = verify.text("run.btlog", "--mission", "main.btq").splitlines()
+    named = "; ".join(f"node {n} is `A{n - 2}` in the log and `B{n - 2}` in the mission" for n in range(5, 10))
+    assert lines[1] == f"  not joined: {named}; 2 more"
+    assert len(unjoined(verify)) == 7
+
+
+def test_guards_that_the_mission_lacks_are_not_joined(verify: Verify) -> None:
+    """A log of a build with a requirement that the mission has no more."""
+    (verify.folder / "main.btq").write_text(MISSION.removeprefix(DEMAND), encoding="utf-8")
+    log_of(verify, MISSION, GUARDED)
+    assert identity(verify) == ("built from another version", 10, 12)
+    assert unjoined(verify) == [
+        f"node {uid} is `{path}/rq_limit` in the log and not in the mission"
+        for uid, path in ((5, "Carry"), (10, "Back"))
+    ]
+    mission = candidates(["main.btq"], [], [])
+    (session,) = btlog_reader.read("run.btlog")
+    joined = join(mission, session.tree)
+    assert joined is not None
+    assert joined.unjoined() == {5, 10}

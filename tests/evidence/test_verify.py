@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import struct
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -47,7 +48,7 @@ def verdicts(folder: Path, log: str, *more: str) -> dict[str, Any]:
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_a_copy_of_a_log_counts_once(jobs: str, lab: Path) -> None:
-    """A log of the same size counts, unless its bytes are the same."""
+    """Of a log with the same bytes nothing is read, and of one with nearly the same the runs do not count again."""
     log = (lab / "lab.btlog").read_bytes()
     (lab / "again.btlog").write_bytes(log)
     (lab / "other.btlog").write_bytes(log[:-1] + bytes([log[-1] ^ 1]))
@@ -55,10 +56,11 @@ def test_a_copy_of_a_log_counts_once(jobs: str, lab: Path) -> None:
     code, output, errors = btq(lab, "verify", *logs, "--mission", "lab.btq", "--jobs", jobs)
     assert (code, errors) == (1, "")
     lines = output.splitlines()
-    assert [line.partition(",")[0] for line in lines[:3]] == [
-        "200 runs in again.btlog",
+    assert [line.partition(",")[0] for line in lines[:4]] == [
+        "0 runs in again.btlog",
         "201 runs in other.btlog",  # its last row, of the root, says something else
         "  note: lab.btlog is the same log as again.btlog",
+        "  note: again.btlog: 200 of its 200 runs are in other.btlog too",
     ]
 
 
@@ -238,20 +240,30 @@ def test_a_robot_has_the_xml_and_the_side_file_alone(given: tuple[str, ...], lab
 
 
 def test_runs_are_numbered_over_all_files(lab: Path) -> None:
-    code, output, _ = btq(lab, "verify", ".", "--format", "json", "--signals", "lab.battery.csv")
+    """The runs of the second log are an hour later."""
+    data = (lab / "lab.btlog").read_bytes()
+    start = 23 + struct.unpack_from("<i", data, 19)[0]
+    later = struct.pack("<q", struct.unpack_from("<q", data, start)[0] + 3_600_000_000)
+    (lab / "later.btlog").write_bytes(data[:start] + later + data[start + 8 :])
+    logs = ("lab.btlog", "later.btlog", "lab.db3")
+    code, output, _ = btq(lab, "verify", *logs, "--mission", "lab.btq", "--format", "json")
     assert code == 1
     found = json.loads(output)
+    assert list(violations(found, SCHEMA)) == []
     assert [(each["file"], each["first_run"], each["runs"]) for each in found["sources"]] == [
         ("lab.btlog", 1, 200),
-        ("lab.db3", 201, 200),
+        ("later.btlog", 201, 200),
+        ("lab.db3", 401, 0),
     ]
     late = found["requirements"][0]["clauses"][0]["violations"]
     assert [each["run"] for each in late[4:]] == [each["run"] + 200 for each in late[:4]]
     _, output, _ = btq(lab, "verify", ".")
-    known = "2026-11-20 21:22–21:24 UTC, mission lab (as built now, 19 of 19 nodes)"
-    assert output.splitlines()[:2] == [
-        f"200 runs in lab.btlog, {known}",
-        f"200 runs in lab.db3, numbered from 201, {known}",
+    known = "mission lab (as built now, 19 of 19 nodes)"
+    assert output.splitlines()[:4] == [
+        f"200 runs in lab.btlog, 2026-11-20 21:22–21:24 UTC, {known}",
+        f"0 runs in lab.db3, {known}",
+        f"200 runs in later.btlog, numbered from 201, 2026-11-20 22:22–22:24 UTC, {known}",
+        "  note: lab.db3: 200 of its 200 runs are in lab.btlog too, and not counted again",
     ]
 
 

@@ -33,16 +33,18 @@ def read_tree(xml: bytes | str) -> LoggedTree:
     if document is None or document.root.tag != "root":
         raise NotALog("its tree is not BehaviorTree.CPP XML")
     tops: dict[int, tuple[Element, str]] = {}  # the top node of each tree, by uid, with the path of the tree
+    name = ""
     for tree in document.root.elements:
         if tree.tag == "BehaviorTree":
             for element in tree.elements:
                 tops[_uid(element)] = element, tree.get("_fullpath") or ""
+                name = tree.get("ID") or name if _uid(element) == ROOT else name
     if ROOT not in tops:
         raise NotALog("its tree has no node with `_uid` 1")
     nodes, delays = _numbered(tops)
     if [uid for uid, *_ in nodes] != [*range(1, len(nodes) + 1)]:
         raise NotALog("the nodes of its tree are not numbered 1, 2, 3 … as BehaviorTree.CPP numbers them")
-    return LoggedTree(nodes, delays)
+    return LoggedTree(nodes, name, delays=delays)
 
 
 def _numbered(tops: dict[int, tuple[Element, str]]) -> tuple[list[tuple[int, str, str, int]], dict[int, int]]:

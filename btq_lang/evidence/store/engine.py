@@ -14,6 +14,7 @@ from functools import lru_cache
 from typing import Any, Final
 
 from btq_lang.evidence.store.damage import damage, incomplete
+from btq_lang.evidence.store.queries import REPEATED
 from btq_lang.evidence.store.rows import file_of
 from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, ROWS, files_of, quoted
 
@@ -83,7 +84,14 @@ def asked(store: str, label: str | None = None) -> Callable[[str], list[dict[str
     wanted = f"label = {quoted(label)}" if label is not None else "true"
     for table in ROWS:
         files = quoted(files_of(store, table))
-        ask(f"CREATE VIEW {table} AS SELECT * FROM read_parquet({files}, union_by_name = true) WHERE {wanted}")
+        ask(f"CREATE VIEW all_{table} AS SELECT * FROM read_parquet({files}, union_by_name = true) WHERE {wanted}")
+        ask(f"CREATE VIEW {table} AS FROM all_{table}")
+    ask(f"CREATE TABLE left_out AS {REPEATED}")
+    ask("CREATE VIEW repeated AS SELECT all_runs.* FROM all_runs JOIN left_out USING (log, run)")
+    if ask("FROM left_out LIMIT 1"):
+        for table in ROWS:
+            keys, kept = ("log, mission, robot", "SEMI JOIN runs") if table == "clauses" else ("log, run", _KEPT)
+            ask(f"CREATE OR REPLACE VIEW {table} AS SELECT * FROM all_{table} {kept} USING ({keys})")
     return ask
 
 
@@ -136,6 +144,7 @@ def _rows(folder: str, table: str) -> str:
 
 # The rows of a group are in memory together: fewer than DuckDB's 122 880 take less, and a few bytes more on the disk.
 _OPTIONS: Final = "FORMAT parquet, COMPRESSION zstd, PARQUET_VERSION v2, ROW_GROUP_SIZE 20480"
+_KEPT: Final = "ANTI JOIN left_out"
 _BUFFER: Final = 4_000_000  # bytes of text that are read at once
 _MEMORY: Final = "64MB"
 _MOST: Final = "400MB"  # of a question; what exceeds it goes to the disk

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from btq_lang.evidence.store.engine import NoEngine
+from btq_lang.evidence.store.queries import REPEATED
 from btq_lang.evidence.store.tables import ROWS, files_of
 
 
@@ -32,8 +33,15 @@ def asked_by(url: str, store: str) -> Callable[[str], list[dict[str, Any]]]:
 
     try:
         connection = ibis.connect(url)
-        for table in ROWS:
-            connection.read_parquet(files_of(store, table), table_name=table)
+        tables = {table: connection.read_parquet(files_of(store, table), table_name=table) for table in ROWS}
+        left_out = ibis.memtable(ask(REPEATED), schema={"log": "string", "run": "int32"})
+        kept = {name: each.anti_join(left_out, ["log", "run"]) for name, each in tables.items() if name != "clauses"}
+        kept["clauses"] = tables["clauses"].semi_join(kept["runs"], ["log", "mission", "robot"])
+        repeated = tables["runs"].semi_join(left_out, ["log", "run"])
+        for table, found in {"repeated": repeated, **kept}.items():  # what names a table, before that is replaced
+            connection.create_view(table, found, overwrite=True)
+    except NoEngine:
+        raise
     except Exception as error:  # likewise
         raise _failed(url, error) from error
     return ask

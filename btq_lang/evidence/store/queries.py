@@ -16,6 +16,81 @@ Row: TypeAlias = Mapping[str, Any]
 Ask: TypeAlias = Callable[[str], Sequence[Row]]  # the rows of a question, by the names of their columns
 
 
+# The runs that another log of the label holds as well, at least as completely.  Of two runs of one tree that begin, or
+# end, within a millisecond of each other, the one is a part of the other if all results of its nodes are there within a
+# millisecond.
+REPEATED: Final = """
+    WITH logs AS (SELECT log, SUM(end_us - start_us) AS in_log FROM runs GROUP BY log),
+    marks AS (
+        SELECT runs.*, in_log, 'begin' AS kind, start_us AS at_us FROM runs JOIN logs ON runs.log = logs.log
+        UNION ALL
+        SELECT runs.*, in_log, 'end' AS kind, end_us AS at_us FROM runs JOIN logs ON runs.log = logs.log
+    ),
+    near AS (
+        SELECT label, mission, tree, kind, log, run, CAST(FLOOR(at_us / 1000.0) AS BIGINT) + step.d AS ms, at_us,
+            robot, start_us, end_us, activations, in_log
+        FROM marks CROSS JOIN (SELECT -1 AS d UNION ALL SELECT 0 AS d UNION ALL SELECT 1 AS d) AS step
+    ),
+    pairs AS (
+        SELECT DISTINCT one.log AS log, one.run AS run, two.log AS other_log, two.run AS other_run,
+            one.activations AS activations, two.activations AS other_activations,
+            one.in_log AS in_log, two.in_log AS other_in_log
+        FROM marks AS one
+        JOIN near AS two
+            ON one.label = two.label AND one.mission = two.mission AND one.tree = two.tree AND one.kind = two.kind
+            AND CAST(FLOOR(one.at_us / 1000.0) AS BIGINT) = two.ms
+        WHERE ABS(one.at_us - two.at_us) <= 1000
+            AND (one.robot = two.robot OR one.robot = '' OR two.robot = '')
+            AND one.tree <> '' AND (one.log <> two.log OR one.run <> two.run)
+            AND (one.log <> two.log OR (one.start_us < two.end_us AND two.start_us < one.end_us))
+    ),
+    results AS (
+        SELECT activations.log AS log, activations.run AS run, uid, outcome, end_us
+        FROM activations
+        JOIN (SELECT DISTINCT log, run FROM pairs) AS paired
+            ON activations.log = paired.log AND activations.run = paired.run
+        WHERE outcome = 'succeeded' OR outcome = 'failed'
+    ),
+    numbers AS (SELECT log, run, COUNT(*) AS number FROM results GROUP BY log, run),
+    near_results AS (
+        SELECT log, run, uid, outcome, end_us, CAST(FLOOR(end_us / 1000.0) AS BIGINT) + step.d AS ms
+        FROM results CROSS JOIN (SELECT -1 AS d UNION ALL SELECT 0 AS d UNION ALL SELECT 1 AS d) AS step
+    ),
+    held AS (
+        SELECT log, run, other_log, other_run, COUNT(*) AS number
+        FROM (
+            SELECT DISTINCT pairs.log AS log, pairs.run AS run, other_log, other_run, one.uid AS uid,
+                one.outcome AS outcome, one.end_us AS end_us
+            FROM pairs
+            JOIN results AS one ON pairs.log = one.log AND pairs.run = one.run
+            JOIN near_results AS two
+                ON pairs.other_log = two.log AND pairs.other_run = two.run AND one.uid = two.uid
+                AND one.outcome = two.outcome AND CAST(FLOOR(one.end_us / 1000.0) AS BIGINT) = two.ms
+            WHERE ABS(one.end_us - two.end_us) <= 1000
+        ) AS found
+        GROUP BY log, run, other_log, other_run
+    ),
+    compared AS (
+        SELECT pairs.*, COALESCE(own.number, 0) AS number, COALESCE(other.number, 0) AS other_number,
+            COALESCE(held.number, 0) AS held
+        FROM pairs
+        LEFT JOIN numbers AS own ON pairs.log = own.log AND pairs.run = own.run
+        LEFT JOIN numbers AS other ON pairs.other_log = other.log AND pairs.other_run = other.run
+        LEFT JOIN held
+            ON pairs.log = held.log AND pairs.run = held.run
+            AND pairs.other_log = held.other_log AND pairs.other_run = held.other_run
+    )
+    SELECT DISTINCT log, run
+    FROM compared
+    WHERE held = number AND (
+        other_number > number OR (other_number = number AND (
+        other_activations > activations OR (other_activations = activations AND (
+        other_in_log > in_log OR (other_in_log = in_log AND (
+        other_log < log OR (other_log = log AND other_run < run))))))))
+    ORDER BY log, run
+"""
+
+
 def only(ask: Ask, condition: str) -> Ask:
     """Asks the same of some of the rows."""
     parts = ", ".join(f"{table} AS (SELECT * FROM main.{table} WHERE {condition})" for table in _OF_RUNS)
@@ -37,6 +112,12 @@ QUERIES: Final = {
         FROM runs
         GROUP BY {by}
         ORDER BY {by}
+    """,
+    # The runs that are not counted, for another log has them.
+    "repeated": """
+        SELECT {by}, COUNT(*) AS runs, COUNT(DISTINCT log) AS logs
+        FROM repeated
+        GROUP BY {by}
     """,
     # A clause at its nodes.  Its columns are the same in all logs, but for what happened in them.
     "clauses": """
@@ -161,4 +242,4 @@ OVERVIEW: Final = {
         GROUP BY {by}
     """,
 }
-_OF_RUNS: Final = ("runs", "clauses", "verdicts")
+_OF_RUNS: Final = ("runs", "repeated", "clauses", "verdicts")

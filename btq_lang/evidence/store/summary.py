@@ -69,6 +69,7 @@ def parted(
     counts = {clause_of(row): row for row in found["verdicts"]}
     broken, recent = (grouped((clause_of(row), row) for row in found[name]) for name in ("violations", "recent"))
     clauses = grouped((part_of(row), row) for row in found["clauses"])
+    repeated = {part_of(row): row for row in found["repeated"]}
     for part in found["runs"]:
         judged: dict[str, list[ClauseVerdict]] = {}
         titles = {}
@@ -81,17 +82,21 @@ def parted(
             RequirementVerdict(name, titles[name], worst_of(each.verdict for each in verdicts), tuple(verdicts))
             for name, verdicts in judged.items()
         ]
-        yield part, _mission(part, parts, store, requirements)
+        yield part, _mission(part, parts, store, requirements, repeated.get(part_of(part)))
 
 
 def _mission(
-    part: Row, parts: Sequence[str], store: str, requirements: Sequence[RequirementVerdict]
+    part: Row, parts: Sequence[str], store: str, requirements: Sequence[RequirementVerdict], repeated: Row | None
 ) -> MissionVerdicts:
-    """A mission in a part of the store."""
+    """A mission in a part of the store; `repeated`: the runs that are not counted."""
     named = [f"{each} {part[each] or '(none)'}" for each in parts]
     identity = [counted(int(part["logs"]), "log")]
     if part["partly_joined"]:
         identity.append(f"{counted(int(part['partly_joined']), 'run')} of another version")
+    remarks = []
+    if repeated is not None:
+        number, logs = counted(int(repeated["runs"]), "run"), counted(int(repeated["logs"]), "log")
+        remarks.append(f"{number} of {logs} also in others of the same label, and not counted again")
     source = Source(
         file=store,
         runs=int(part["runs"]),
@@ -101,7 +106,7 @@ def _mission(
         identity=", ".join(identity),
         joined=0,
         nodes=0,
-        remarks=(),
+        remarks=tuple(remarks),
     )
     return MissionVerdicts(
         name=", ".join([part["mission"], *named]),

@@ -16,6 +16,7 @@ import lz4.frame
 import pytest
 from evidence_bags import HUMBLE, LOG, STORE, late_ends, names_of, text, tree_log, write_bag
 from evidence_logs import MAIN, MAIN_XML, START, Verify, logged, rows
+from json_schema import violations
 from rosbags.rosbag2 import storage_mcap
 from rosbags.rosbag2.storage_mcap import zstd
 from test_identity import DEMANDS
@@ -24,6 +25,7 @@ from btq_lang.cli import main
 from btq_lang.evidence.model import NamedLog
 from btq_lang.evidence.readers import read, unpacking
 
+SCHEMA = json.loads((Path(__file__).parents[3] / "btq_lang/evidence/verdicts.schema.json").read_text(encoding="utf-8"))
 LIMIT = "QualityReq rq : safety\n    Move takes at most 10 ms\n"
 NAMES = names_of(MAIN_XML)
 TWO_RUNS = "0 1R 2R 8 2S 3S 1S 2I 3I 1I 50 1R 2R 70 2F 1F 2I 1I"
@@ -122,8 +124,8 @@ def test_files_of_a_bag_are_read_alone_and_as_a_folder(small: Verify) -> None:
         write_bag(small.folder / "logs" / storage, tree_log(rows(TWO_RUNS), NAMES), storage)  # type: ignore[arg-type]  # a name from a list
         assert clause(small.json(f"logs/{storage}/{storage}.{suffix}")) == (2, [2])
     found = small.json("logs")
-    assert [each["file"] for each in found["sources"]] == ["logs/mcap", "logs/sqlite3"]
-    assert clause(found) == (4, [2, 4])
+    assert [(each["file"], each["runs"]) for each in found["sources"]] == [("logs/mcap", 2), ("logs/sqlite3", 0)]
+    assert clause(found) == (2, [2])  # they are the same runs
 
 
 def test_each_topic_is_a_session_of_its_own(small: Verify) -> None:
@@ -345,4 +347,36 @@ def test_without_rosbags_a_line_says_what_to_install(small: Verify) -> None:
     assert (run.returncode, run.stderr) == (
         2,
         "btq verify: bag: a ROS 2 bag is read with rosbags; install it with pip install 'btq-lang[ros]'\n",
+    )
+
+
+def test_a_bag_of_another_tree_of_the_mission(verify: Verify) -> None:
+    """Its nodes are numbered from its own root; the runs of the main tree in the same bag are of that."""
+    text = "QualityReq rq : safety\n    Pick takes at most 10 ms\n" + MAIN.replace(
+        "Action Pick\nA", "SubTree Hand\nA", 1
+    )
+    text += "BehaviorTree Hand\n    ->\n        Action Pick\n        Action Hold\nAction Hold\n"
+    (verify.folder / "main.btq").write_text(text, encoding="utf-8")
+    hand = {1: "Sequence", 2: "Pick", 3: "Hold"}
+    of_main = {1: "Sequence", 2: "Move", 3: "Hand", 4: "Sequence", 5: "Pick", 6: "Hold"}
+    messages = tree_log(rows("0 1R 2R 20 2S 3R 24 3S 1S 2I 3I 1I"), hand)
+    whole = rows("100 1R 2S 3R 4R 5R 104 5S 6S 4S 3S 1S 5I 6I 4I 2I 3I 1I")
+    write_bag(verify.folder / "bag", [*messages, *tree_log(whole, of_main)])
+    found = verify.json("bag", "--mission", "main.btq")
+    assert [(each["runs"], each["identity"]) for each in found["sources"]] == [
+        (1, "tree Hand, as built now"),
+        (1, "as built now"),
+    ]
+    assert clause(found) == (2, [1])
+
+
+def test_a_bag_with_other_names_says_which(small: Verify) -> None:
+    write_bag(small.folder / "bag", tree_log(rows(TWO_RUNS), {**NAMES, 3: "Reach"}))
+    document = small.json("bag", "--mission", "main.btq")
+    assert list(violations(document, SCHEMA)) == []
+    (source, _) = document["sources"]
+    assert source["unjoined"] == ["node 3 is `Reach` in the log and `Pick` in the mission"]
+    assert (small.code, small.errors.splitlines()[-1]) == (
+        2,
+        "btq verify: no log matches main.btq: node 3 is `Reach` in the log and `Pick` in the mission",
     )

@@ -1,0 +1,209 @@
+"""Runs that several logs hold, as those of two loggers, of a copy, or of a log that was copied while it was written.
+
+One invariant: a run is left out only if another one that is kept holds all its rows: node and status of each, in their
+order, within a millisecond; of equal ones that of the session with more rows is kept, then the first.
+
+Only sessions in which runs begin or end at the same time are read for this; where there are none, nothing is.
+"""
+
+from __future__ import annotations
+
+from array import array
+from bisect import bisect_left, bisect_right
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property, lru_cache
+from itertools import accumulate
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+from btq_lang.util.grouping import grouped
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.model import Activation, Transition
+
+WITHIN: Final = 1000  # µs between two rows of one change of a node
+
+
+class LoggedRuns:
+    """Where the runs in a session of a log are.
+
+    Attributes:
+        log, number: which session: of the log, counted from 0 among those that were judged.
+        whose: only runs with equal ones may be one: the mission, and the label.
+        robot: its name, if the log has one; other robots have other runs.
+        begins, ends: in µs since the epoch.
+        first, last: the numbers of their rows among the transitions of the session, from 1.
+    """
+
+    def __init__(self, log: str, number: int, whose: tuple[str, str | None], robot: str = "") -> None:
+        self.log: Final = log
+        self.number: Final = number
+        self.whose: Final = whose
+        self.robot: Final = robot
+        self.begins: Final = array("q")
+        self.ends: Final = array("q")
+        self.first: Final = array("q")
+        self.last: Final = array("q")
+
+    def add(self, root: Activation) -> None:
+        """Add a run."""
+        for (time, row), times, rows in ((root.started, self.begins, self.first), (root.ended, self.ends, self.last)):
+            times.append(min(time, _LATEST))
+            rows.append(row)
+
+    @property
+    def rows(self) -> int:
+        """How many rows there are up to the end of the last run."""
+        return self.last[-1]
+
+
+class LoggedRows:
+    """The rows of a session."""
+
+    def __init__(self, transitions: Sequence[Transition] | Iterator[Transition]) -> None:
+        self.times: Final = array("q")
+        self.changes: Final = array("q")
+        for time, uid, status in transitions:
+            self.times.append(min(time, _LATEST))
+            self.changes.append(hash((uid, status)))
+
+    @cached_property
+    def latest(self) -> array[int]:
+        """The latest time up to each row: later than its own where the clock was set back."""
+        return array("q", accumulate(self.times, max))
+
+    @cached_property
+    def earliest(self) -> array[int]:
+        """The earliest time from each row on."""
+        found = array("q", accumulate(reversed(self.times), min))
+        found.reverse()
+        return found
+
+    def find(self, other: LoggedRows, first: int, last: int) -> tuple[int, int] | None:
+        """The first and the last of the rows that match those of another session from `first` to `last`, counted from
+        1; None if one has no match.
+        """
+        at = bisect_left(self.latest, other.times[first - 1] - WITHIN)
+        begin = -1
+        for time, change in zip(other.times[first - 1 : last], other.changes[first - 1 : last], strict=True):
+            while at < len(self.times) and not (
+                self.changes[at] == change and -WITHIN <= self.times[at] - time <= WITHIN
+            ):
+                if self.earliest[at] > time + WITHIN:
+                    return None
+                at += 1
+            if at == len(self.times):
+                return None
+            begin = at if begin < 0 else begin
+            at += 1
+        return begin + 1, at
+
+
+LeftOut: TypeAlias = dict[int, LoggedRuns]  # by the run's number in its session, from 0: where it is counted
+
+
+def repeated(
+    sessions: Sequence[LoggedRuns], read: Callable[[str], Sequence[LoggedRows]]
+) -> list[tuple[LoggedRuns, LeftOut]]:
+    """The sessions of which runs are left out because other sessions hold them.
+
+    Args:
+        read: the rows of all sessions in a log, in their order; what is not read again is missing.
+    """
+    rows_of = lru_cache(_LOGS_AT_ONCE)(read)
+    found: dict[int, LeftOut] = {}
+    for alike in grouped((each.whose, each) for each in sessions if each.begins).values():
+        checked = _LeftOut(_overlapping(alike), rows_of)
+        found.update(zip(map(id, checked.sessions), checked.runs, strict=True))
+    return [(each, left_out) for each in sessions if (left_out := found.get(id(each)))]
+
+
+def notes(
+    found: Sequence[tuple[LoggedRuns, LeftOut]], sessions: Sequence[LoggedRuns], shown: Callable[[str], str]
+) -> Iterator[str]:
+    """Which runs of which logs are not counted, a note for each two logs; `sessions`: all of them."""
+    runs: Counter[str] = Counter()
+    for each in sessions:
+        runs[each.log] += len(each.begins)
+    pairs = Counter((session.log, kept.log) for session, left_out in found for kept in left_out.values())
+    for (log, kept), number in pairs.items():
+        where = f"in {shown(kept)} too" if kept != log else "there twice"
+        verb = "is" if number == 1 else "are"
+        yield f"{shown(log)}: {number} of its {runs[log]} runs {verb} {where}, and not counted again"
+
+
+def _overlapping(sessions: Sequence[LoggedRuns]) -> list[LoggedRuns]:
+    """The sessions during which another one has runs, those with the most rows first."""
+    found: dict[int, LoggedRuns] = {}
+    latest: tuple[int, LoggedRuns] | None = None
+    for begin, end, place in sorted((min(each.begins), max(each.ends), at) for at, each in enumerate(sessions)):
+        session = sessions[place]
+        if latest is not None and begin <= latest[0] + WITHIN:
+            found.update({id(each): each for each in (latest[1], session)})
+        if latest is None or end > latest[0]:
+            latest = end, session
+    in_order = [each for each in sessions if id(each) in found]
+    return sorted(in_order, key=lambda each: -each.rows)
+
+
+class _LeftOut:
+    """Sessions, and of each the runs that are left out.
+
+    Attributes:
+        sessions: those with the most rows first.
+    """
+
+    def __init__(self, sessions: Sequence[LoggedRuns], rows_of: Callable[[str], Sequence[LoggedRows]]) -> None:
+        self.sessions: Final = sessions
+        self.runs: Final[list[LeftOut]] = [{} for _ in sessions]
+        self._rows_of: Final = rows_of
+        self._marks: Final = [
+            sorted((time, at, run) for at, each in enumerate(sessions) for run, time in enumerate(times(each)))
+            for times in _TIMES
+        ]
+        for at in range(len(sessions)):
+            for other in self._beside(at):
+                self._leave_out(other, at, is_first=False)
+                self._leave_out(at, other, is_first=True)
+
+    def _beside(self, at: int) -> list[int]:
+        """The later sessions of which runs that are counted begin or end when some of this one do."""
+        found = set()
+        for marks, times in zip(self._marks, _TIMES, strict=True):
+            for run in self._counted(at):
+                time = times(self.sessions[at])[run]
+                begin = bisect_left(marks, (time - WITHIN,))
+                for _, other, its in marks[begin : bisect_right(marks, (time + WITHIN + 1,))]:
+                    if other > at and its not in self.runs[other] and self._may_be_one(at, other):
+                        found.add(other)
+        return sorted(found)
+
+    def _may_be_one(self, at: int, other: int) -> bool:
+        robots = {self.sessions[at].robot, self.sessions[other].robot}
+        return len(robots - {""}) < 2
+
+    def _counted(self, at: int) -> Iterator[int]:
+        return (run for run in range(len(self.sessions[at].begins)) if run not in self.runs[at])
+
+    def _leave_out(self, at: int, other: int, is_first: bool) -> None:
+        """Leave out the runs of a session that another one holds; `is_first`: not those that are equal."""
+        session, kept = self.sessions[at], self.sessions[other]
+        rows, wider = self._rows(session), self._rows(kept)
+        for run in [*self._counted(at)]:
+            first, last = session.first[run], min(session.last[run], len(rows.times))
+            if first <= last and (match := wider.find(rows, first, last)) is not None:
+                begin, end = match
+                held = range(bisect_left(kept.last, begin), bisect_right(kept.first, end))  # the runs with these rows
+                if held and not self.runs[other].keys() & held:
+                    number = max(end, kept.last[held[-1]]) - min(begin, kept.first[held[0]])
+                    if number > last - first or not is_first:
+                        self.runs[at][run] = kept
+
+    def _rows(self, session: LoggedRuns) -> LoggedRows:
+        of_log = self._rows_of(session.log)
+        return of_log[session.number] if session.number < len(of_log) else LoggedRows(())
+
+
+_TIMES: Final[tuple[Callable[[LoggedRuns], array[int]], ...]] = (lambda each: each.begins, lambda each: each.ends)
+_LATEST: Final = 2**63 - 1  # what an array takes; a damaged log may be later
+_LOGS_AT_ONCE: Final = 4  # whose rows are in memory
