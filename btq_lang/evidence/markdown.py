@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.evidence.node_rows import node_rows
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import WORST_FIRST, MissionVerdicts, Report
 from btq_lang.render.gfm import code, escaped, table
@@ -24,6 +25,10 @@ def _lines(mission: MissionVerdicts) -> Iterator[str]:
     outcomes = ", ".join(f"{number} {outcome}" for outcome, number in mission.outcomes)
     yield f"{counted(mission.runs, 'run')} in {files}{': ' if outcomes else ''}{outcomes}"
     if not verdicts:
+        if mission.nodes:
+            heads, rows = node_rows(mission.nodes)
+            yield ""
+            yield from table(heads, [[code(path), *numbers] for path, *numbers in rows], numbers_from=1)
         return
     yield ""
     clauses = [(requirement, clause) for requirement in mission.requirements for clause in requirement.clauses]

@@ -65,10 +65,12 @@ class LoggedTree:
         nodes: by uid.
         parent: the uid of the parent of each node; 0 for the root.
         last: the largest uid below each node; its own for a leaf.
+        xml: as it is in the log; empty if it was made otherwise.
     """
 
-    def __init__(self, nodes: Sequence[tuple[int, str, str, int]]) -> None:
+    def __init__(self, nodes: Sequence[tuple[int, str, str, int]], xml: str = "") -> None:
         """Build it from uid, kind, path and parent of each node, in the order of the uids."""
+        self.xml: Final = xml
         self.parent: Final = {uid: parent for uid, _, _, parent in nodes}
         self.last: Final = {uid: uid for uid, *_ in nodes}
         for uid, _, _, parent in reversed(nodes):

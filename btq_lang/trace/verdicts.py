@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.evidence.node_rows import node_rows
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import OUTCOMES, VIOLATED, WORST_FIRST
 from btq_lang.evidence.wording import duration, quantity, timestamp
@@ -62,6 +63,8 @@ def _mission(mission: MissionVerdicts, keys: Mapping[str, str]) -> Iterator[str]
     clauses = [(requirement, clause) for requirement in mission.requirements for clause in requirement.clauses]
     if not clauses:
         yield "<p>The mission has no requirement to judge.</p>"
+        if mission.nodes:
+            yield from _nodes(mission)
         return
     clauses.sort(key=lambda each: WORST_FIRST.index(each[1].verdict))
     yield f'<table class="verdicts"><caption>Verdicts of {escape(mission.name)}</caption>'
@@ -73,6 +76,16 @@ def _mission(mission: MissionVerdicts, keys: Mapping[str, str]) -> Iterator[str]
     runs = {clause.timeline.run: clause.timeline for _, clause in clauses if clause.timeline is not None}
     for timeline in runs.values():
         yield from _timeline(timeline)
+
+
+def _nodes(mission: MissionVerdicts) -> Iterator[str]:
+    heads, rows = node_rows(mission.nodes)
+    yield f'<table class="numbers"><caption>Nodes of {escape(mission.name)}</caption><thead><tr>'
+    yield "".join(f'<th scope="col">{head}</th>' for head in heads)
+    yield "</tr></thead><tbody>"
+    for path, *numbers in rows:
+        yield f'<tr><th scope="row">{escape(path)}</th>{"".join(f"<td>{each}</td>" for each in numbers)}</tr>'
+    yield "</tbody></table>"
 
 
 def _row(requirement: RequirementVerdict, clause: ClauseVerdict, mission: MissionVerdicts, key: str) -> str:

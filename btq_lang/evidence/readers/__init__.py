@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.model import NamedLog, Series, Session
+from btq_lang.evidence.model import LoggedTree, NamedLog, Series, Session
 from btq_lang.evidence.readers import bag, btlog, sqlite, tree_log
 from btq_lang.evidence.readers.topics import Clock
 from btq_lang.evidence.readers.tree import NotALog as NotALog
@@ -34,6 +34,18 @@ def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[Session | 
     """
     reader = _reader(path)
     return tree_log.read(path, sources) if reader is tree_log else reader.read(path)
+
+
+def trees(path: str) -> list[LoggedTree]:
+    """The trees in a log, in their order, with repetitions; of a bag those on its topics.
+
+    Raises:
+        NotALog, OSError: as `read` does.
+    """
+    found: list[LoggedTree] = []
+    for each in read(path):
+        found += [each.tree] if isinstance(each, Session) else each.trees
+    return found
 
 
 def samples_of_bags(
