@@ -110,7 +110,7 @@ def _copied(path: str, stack: ExitStack) -> str:
     """Copy a database with its journal and log to a temporary folder.
 
     Raises:
-        NotALog: there is no room for a copy, or somebody else writes the database.
+        NotALog: there is no room for a copy, or the database was written meanwhile.
     """
     files = {f"{path}{suffix}": f"log.db3{suffix}" for suffix in ("", *BESIDE) if os.path.exists(f"{path}{suffix}")}
     before = [_version(each) for each in files]
