@@ -26,6 +26,8 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     sentences.py   a clause's result, and what to look at, in a sentence
     judging.py, parallel.py   one log judged by itself, by one of several processes, and all of them added up
     watching.py    a running robot: verdicts as they fall
+    own_trees.py, node_rows.py   logs of which no mission is known, and what each node did
+    folding.py     what is said of very many logs, in a few lines
     copies.py      logs that are given under two names
     verifying.py, notes.py, signal_sources.py   all of it in one call, and notes beside the verdicts
     events.py      the violations as messages of a bag

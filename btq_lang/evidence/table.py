@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.evidence.folding import folded, folded_sources
 from btq_lang.evidence.node_rows import node_rows
 from btq_lang.evidence.sentences import explained, headline, result, worst_violation
 from btq_lang.evidence.signals import NO_SAMPLES
@@ -31,7 +32,7 @@ def render(report: Report, colour: bool = False, verbose: bool = False, width: i
     room = max(width, LEAST) if width is not None else sys.maxsize
     lines: list[str] = []
     for index, mission in enumerate(report.missions):
-        notes = [printable(f"  note: {remark}") for remark in report.remarks] if index == 0 else []
+        notes = [printable(f"  note: {remark}") for remark in folded(report.remarks)] if index == 0 else []
         lines += _broken([*_heading(mission), *notes], room)
         rows = [*requirement_rows(mission.requirements, mission.medians, paint, verbose, room)]
         if mission.nodes and not mission.requirements:
@@ -42,7 +43,7 @@ def render(report: Report, colour: bool = False, verbose: bool = False, width: i
 
 def _heading(mission: MissionVerdicts) -> Iterator[str]:
     """The mission and the logs that were read."""
-    for source in mission.sources:
+    for source in folded_sources(mission.sources):
         found = f"{source.joined} of {source.nodes} nodes"
         identity = f"{source.identity}, {found}" if source.nodes else source.identity
         if source.joined < source.nodes:

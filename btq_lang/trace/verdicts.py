@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.evidence.folding import folded_sources
 from btq_lang.evidence.node_rows import node_rows
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import OUTCOMES, VIOLATED, WORST_FIRST
@@ -56,7 +57,7 @@ def _outcome(nodes: Sequence[NodeSummary]) -> tuple[tuple[str, ...], str]:
 
 
 def _mission(mission: MissionVerdicts, keys: Mapping[str, str]) -> Iterator[str]:
-    files = ", ".join(source.file for source in mission.sources)
+    files = ", ".join(source.file for source in folded_sources(mission.sources))
     outcomes = ", ".join(f"{number} {outcome}" for outcome, number in mission.outcomes)
     yield f"<h3>{escape(mission.name)}</h3>"
     yield f"<p>{counted(mission.runs, 'run')} in {escape(files)}{': ' if outcomes else ''}{outcomes}</p>"
