@@ -20,6 +20,9 @@ from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.btcpp.version3 import Change
 from btq_lang.commands.output import is_coloured, tell
+from btq_lang.evidence.readers import SUFFIXES as LOGS
+from btq_lang.evidence.readers import NotALog, trees
+from btq_lang.evidence.readers.bag import files_in
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.util.record import Record, replace
 from btq_lang.util.source_map import Places
@@ -29,7 +32,6 @@ from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, absolute, decoded, find_project, read, shown, write_whole
 
 _STDIN = "-"
-_LOGS = (".btlog", ".db3", ".btdb", ".mcap")
 
 
 class _Job(Record):
@@ -98,7 +100,7 @@ def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: li
         job = _Job("<stdin>", xml, import_xml(xml, options.keep_v3), None)
         return _without_side_file(job, "import the file by its name, beside its .qreq.json, to keep them")
     path = absolute(path)
-    if os.path.isdir(path) or path.endswith(_LOGS):
+    if path.endswith(LOGS) or files_in(path):
         return _of_log(path, targets[path], options, problems)
     if options.xml or targets[path] == path:
         why = "--xml is for logs" if options.xml else "its name does not end with .xml"
@@ -126,8 +128,6 @@ def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: li
 
 def _of_log(path: str, target: str, options: Namespace, problems: list[LoadProblem]) -> _Job | None:
     """The last tree in a log, as the XML that it was created from, or as .btq file."""
-    from btq_lang.evidence.readers import NotALog, trees
-
     try:
         found = trees(path)
     except (NotALog, OSError) as error:

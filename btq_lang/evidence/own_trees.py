@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import chain, count
 from typing import Final
 
 from btq_lang.btcpp.document import write
@@ -65,6 +66,6 @@ class OwnTrees:
                 continue
             self._known.add(nodes)
             ID = as_written(tree.xml).root.get("main_tree_to_execute") or "tree"
-            number = sum(each.name.partition(" ")[0] == ID for each in self.missions) + 1
-            name = f"{ID} {number}" if number > 1 else ID
+            names = chain((ID,), (f"{ID} {number}" for number in count(2)))
+            name = next(each for each in names if all(each != mission.name for mission in self.missions))
             self.missions.append(OwnTree(f"{log}/{name}.btq", name, tree))

@@ -143,6 +143,12 @@ def test_a_bag_without_a_tree(tmp_path: Path) -> None:
     assert run_btq("import", "bag", cwd=tmp_path)[2] == "btq: bag: not imported: it has no tree\n0 files imported\n"
 
 
+def test_a_folder_that_is_no_bag(tmp_path: Path) -> None:
+    (tmp_path / "trees").mkdir()
+    assert run_btq("import", "trees", cwd=tmp_path)[0] == 2
+    assert [each.name for each in tmp_path.iterdir()] == ["trees"]
+
+
 def test_existing_files_are_not_overwritten(tmp_path: Path) -> None:
     (tmp_path / "run.btlog").write_bytes(btlog(MAIN_XML, RUN))
     (tmp_path / "run.xml").write_text("mine", encoding="utf-8")

@@ -138,12 +138,21 @@ def test_a_bag_without_a_tree(verify: Verify) -> None:
     assert (verify.code, verify.errors) == (2, f"btq verify: {why}\n")
 
 
+def test_trees_whose_ids_have_blanks(verify: Verify) -> None:
+    for number, kind in enumerate(("Pick", "Drop", "Hold")):
+        xml = MAIN_XML.replace('ID="Main"', 'ID="Main Tree"').replace("Pick", kind)
+        (verify.folder / f"{number}.btlog").write_bytes(btlog(xml, rows(TWO_RUNS)))
+    names = [each["name"] for each in verify.json(".")["missions"]]
+    assert names == ["Main Tree", "Main Tree 2", "Main Tree 3"]
+
+
 @pytest.mark.parametrize("name", ["bag.xml", "tree.xml"])
 def test_a_bag_beside_its_tree(name: str, verify: Verify) -> None:
     write_bag(verify.folder / "bag", tree_log(rows(TWO_RUNS), names_of(MAIN_XML)))
     plain = '<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence><Move/><Pick/></Sequence></BehaviorTree></root>'
     (verify.folder / name).write_text(plain, encoding="utf-8")
-    (verify.folder / "empty.xml").write_text(plain.replace("Move", "Fly"), encoding="utf-8")
+    (verify.folder / "package.xml").write_text("<package><name>x</name></package>", encoding="utf-8")
+    (verify.folder / "other.xml").write_text(plain.replace("Move", "Fly"), encoding="utf-8")
     (source,) = verify.json("bag")["sources"]
     assert (verify.code, source["mission"], source["joined"]) == (0, name.removesuffix(".xml"), 3)
 
