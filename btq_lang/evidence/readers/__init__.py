@@ -37,15 +37,13 @@ def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[Session | 
 
 
 def trees(path: str) -> list[LoggedTree]:
-    """The trees in a log, in their order, with repetitions; of a bag those on its topics.
+    """The trees of a log's sessions, or those on the topics of a bag, in their order.
 
     Raises:
         NotALog, OSError: as `read` does.
     """
-    found: list[LoggedTree] = []
-    for each in read(path):
-        found += [each.tree] if isinstance(each, Session) else each.trees
-    return found
+    reader = _reader(path)
+    return tree_log.trees(path) if reader is tree_log else [each.tree for each in reader.read(path)]
 
 
 def samples_of_bags(
