@@ -201,17 +201,19 @@ def _add_folder(parser: Parser, metavar: str, help: str) -> None:
 
 @_command(
     "import",
-    "convert BehaviorTree.CPP XML to .btq files",
+    "convert BehaviorTree.CPP XML, and the trees in logs, to .btq files",
     "exit codes: 0 imported; 1 XML that cannot be read; 2 usage or I/O\n\n"
     "examples:\n  btq import mission.xml          writes mission.btq beside it\n"
     "  btq import trees/*.xml -o btq   and into a folder\n"
-    "  btq import - < mission.xml      to standard output\n",
+    "  btq import - < mission.xml      to standard output\n"
+    "  btq import run.btlog            the tree that ran\n",
 )
 def _add_import(parser: Parser) -> None:
-    parser.add("files", nargs="+", metavar="FILE", help="XML files, `-` for standard input")
+    parser.add("files", nargs="+", metavar="FILE", help="XML files and logs, `-` for XML on standard input")
     _add_folder(parser, "DIR", "the folder to write into; default: that of each file")
     parser.flag("--keep-v3", "keep the syntax of files for version 3 of the engine")
-    parser.flag("--force", "overwrite existing .btq files")
+    parser.flag("--xml", "of logs: write the tree as XML")
+    parser.flag("--force", "overwrite existing files")
     _add_color(parser)
 
 

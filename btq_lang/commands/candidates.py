@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from argparse import Namespace
 from collections.abc import Iterator, Mapping, Sequence
+from glob import escape, glob
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.as_built import as_built
@@ -12,8 +14,10 @@ from btq_lang.btcpp.side_file import side_path, xml_path
 from btq_lang.commands.files import Files
 from btq_lang.commands.opening import Disk
 from btq_lang.evidence.identity import Candidate
+from btq_lang.evidence.own_trees import NO_MISSION, OwnTree, OwnTrees
+from btq_lang.evidence.readers import NotALog, trees
 from btq_lang.evidence.readers.side import SideFile, side_file_at, side_files_beside
-from btq_lang.workspace.loader import find_project
+from btq_lang.workspace.loader import absolute, find_project, shown
 
 if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
@@ -21,7 +25,7 @@ if TYPE_CHECKING:
 
 def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
     """The missions that logs may belong to: the requested ones, else those of side files beside the logs and of this
-    folder's project.
+    folder's project, else the trees in the logs.
     """
     sides = {side.mission: side for side in side_files_beside(logs)}
     there = [mission for mission in sides if os.path.isfile(mission)]
@@ -37,9 +41,43 @@ def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str
                 found += built
             elif requested or path not in group.workspace.included_files:
                 found.append(candidate(group.workspace, path, side))
+    if not found and not problems and not requested:
+        return _of_logs(logs, problems)
     if not found and not problems:
-        problems.append("no mission found; name one with --mission FILE, a .btq file or XML")
+        problems.append(NO_MISSION)
     return found
+
+
+def strict_problem(options: Namespace, missions: Sequence[Candidate]) -> list[str]:
+    """Why not every requirement can be satisfied: there is no mission."""
+    is_known = any(not isinstance(each, OwnTree) for each in missions)
+    return [] if is_known or not options.strict else [f"--strict: {NO_MISSION}"]
+
+
+def _of_logs(logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
+    """The trees in logs as missions; for logs without a tree, the XML beside them."""
+    made = OwnTrees()
+    treeless: list[str] = []
+    for log in logs:
+        try:
+            made.add(found := trees(log), log)
+        except (NotALog, OSError):
+            continue  # judging it reports that
+        treeless += [] if found else [log]
+    beside = dict.fromkeys(path for log in treeless for path in _xml_beside(log))
+    groups, unreadable = Files().groups([*beside]) if beside else ((), ())
+    problems += map(str, unreadable)
+    others = [candidate(group.workspace, path, None) for group in groups for path in group.given]
+    if treeless and not others and not made.missions and not problems:
+        problems.append(f"{NO_MISSION}; {shown(treeless[0])} has no tree")
+    return [*made.missions, *others]
+
+
+def _xml_beside(log: str) -> Sequence[str]:
+    """The XML file beside a log that has its name, else all."""
+    folder, name = os.path.split(absolute(log))
+    own = os.path.join(folder, f"{os.path.splitext(name)[0]}.xml")
+    return [own] if os.path.isfile(own) else sorted(glob(os.path.join(escape(folder), "*.xml")))
 
 
 def side_of(path: str, sides: Mapping[str, SideFile]) -> SideFile | None:

@@ -1,4 +1,4 @@
-"""`btq import`: BehaviorTree.CPP XML as .btq files.
+"""`btq import`: BehaviorTree.CPP XML, and the trees in logs, as .btq files.
 
 One invariant: whatever paths the side file of a bundle names, only files that btq reads are written, and only below the
 folder of the import, links followed.
@@ -13,13 +13,19 @@ from argparse import Namespace
 from collections.abc import Iterable, Iterator, Mapping
 from shlex import quote
 
+from btq_lang.btcpp.document import write
 from btq_lang.btcpp.importing import Imported, import_xml
+from btq_lang.btcpp.logged import as_written
 from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.btcpp.version3 import Change
 from btq_lang.commands.output import is_coloured, tell
+from btq_lang.evidence.readers import SUFFIXES as LOGS
+from btq_lang.evidence.readers import NotALog, trees
+from btq_lang.evidence.readers.bag import files_in
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.util.record import Record, replace
+from btq_lang.util.source_map import Places
 from btq_lang.util.text import LineIndex, counted
 from btq_lang.workspace.config import include_candidates
 from btq_lang.workspace.file import SUFFIXES
@@ -79,9 +85,10 @@ def import_files(options: Namespace) -> tuple[int, tuple[str, ...]]:
 
 
 def _target(path: str, options: Namespace) -> str:
-    """The path of the .btq file for an XML file."""
-    name = f"{os.path.splitext(os.path.basename(path))[0]}.btq"
-    return absolute(os.path.join(options.output or os.path.dirname(path), name))
+    """The path of the .btq file for an XML file or a log, or of the XML file for a log."""
+    folder, name = os.path.split(absolute(path))
+    ending = ".xml" if options.xml else ".btq"
+    return absolute(os.path.join(options.output or folder, f"{os.path.splitext(name)[0]}{ending}"))
 
 
 def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: list[LoadProblem]) -> _Job | None:
@@ -93,8 +100,11 @@ def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: li
         job = _Job("<stdin>", xml, import_xml(xml, options.keep_v3), None)
         return _without_side_file(job, "import the file by its name, beside its .qreq.json, to keep them")
     path = absolute(path)
-    if targets[path] == path:
-        problems.append(LoadProblem(path, "not imported: its name does not end with .xml"))
+    if path.endswith(LOGS) or files_in(path):
+        return _of_log(path, targets[path], options, problems)
+    if options.xml or targets[path] == path:
+        why = "--xml is for logs" if options.xml else "its name does not end with .xml"
+        problems.append(LoadProblem(path, f"not imported: {why}"))
         return None
     text, problem = read(path)
     if text is None or problem is not None:  # other than UTF-8 would lose bytes
@@ -114,6 +124,25 @@ def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: li
 
     job = _Job(path, text, import_xml(text, options.keep_v3, included_as=included_as), target)
     return _with_side_file(job, target, options.force, problems)
+
+
+def _of_log(path: str, target: str, options: Namespace, problems: list[LoadProblem]) -> _Job | None:
+    """The last tree in a log, as the XML that it was created from, or as .btq file."""
+    try:
+        found = trees(path)
+    except (NotALog, OSError) as error:
+        why = f"cannot be read: {error.strerror}" if isinstance(error, OSError) else str(error)
+        problems.append(LoadProblem(path, f"not imported: {why}"))
+        return None
+    if not found:
+        problems.append(LoadProblem(path, "not imported: it has no tree"))
+        return None
+    xml = write(as_written(found[-1].xml))
+    done = Imported(xml, (), (), Places()) if options.xml else import_xml(xml, options.keep_v3)
+    number = len({write(as_written(tree.xml)) for tree in found})
+    return _Job(
+        path, xml, done, target, losses=(f"it has {number} trees, of which the last is imported",) * (number > 1)
+    )
 
 
 def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProblem]) -> _Job | None:

@@ -57,7 +57,7 @@ def run(options: Namespace) -> int:
         from btq_lang.commands.import_xml import run as convert
 
         files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
-        if code := convert(Namespace(files=files, output=None, force=False, keep_v3=False)):
+        if code := convert(Namespace(files=files, output=None, force=False, keep_v3=False, xml=False)):
             return code
         trees, models = _by_kind(workspace)
         excluded = [f"/{each}.xml" for each in patterns(folder, trees, models)]

@@ -12,7 +12,7 @@ from types import FrameType
 from typing import Final
 from urllib.parse import urlsplit
 
-from btq_lang.commands.candidates import candidates
+from btq_lang.commands.candidates import candidates, strict_problem
 from btq_lang.commands.files import usage_problem
 from btq_lang.commands.live_lines import Lines
 from btq_lang.commands.live_screen import Screen, is_screen
@@ -23,6 +23,7 @@ from btq_lang.commands.verdict_events import events_problem
 from btq_lang.commands.verdict_formats import FORMATS
 from btq_lang.commands.verdict_report import finish
 from btq_lang.evidence.judging import Means
+from btq_lang.evidence.own_trees import OwnTrees
 from btq_lang.evidence.readers.groot2.publisher import NoLive, check_installed
 from btq_lang.evidence.readers.groot2.sessions import sessions
 from btq_lang.evidence.verifying import judged_live
@@ -35,7 +36,9 @@ def run(options: Namespace) -> int:
         options.store = store_of_project()
     refuse(usage_problem(options.mission) or _problem(options))
     problems: list[str] = []
-    missions = candidates(options.mission, (), problems)
+    own = OwnTrees()
+    missions = candidates(options.mission, (), problems) or own.missions
+    problems += strict_problem(options, missions)
     keeping = opened(options, problems)
     refuse(*problems)
     address = options.live
@@ -45,7 +48,7 @@ def run(options: Namespace) -> int:
     shown = Screen(stream, is_coloured(options, True)) if is_screen(stream) else Lines(stream)
     with stopped_by_signals() as stop, shown:
         robot = sessions(address, entries, stop, lambda text: watched.tell(text), lambda: shown.refresh(watched))
-        watched = Watched(robot, address, shown.show)
+        watched = Watched(own.of(robot, address) if missions is own.missions else robot, address, shown.show)
         means = Means(missions, with_timelines=form == "html", keeping=keeping)
         found = judged_live(watched, address, means, options.mission)
     return finish(options, found, missions, ())

@@ -12,6 +12,7 @@ from btq_lang.commands.output import form_of, is_coloured, terminal_width, write
 from btq_lang.commands.verdict_events import write_events
 from btq_lang.commands.verdict_formats import FORMATS, write
 from btq_lang.commands.verdict_summary import write_summary
+from btq_lang.evidence.folding import folded
 from btq_lang.evidence.notes import foreign_runs
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
 
@@ -29,12 +30,12 @@ def finish(options: Namespace, found: Verification, missions: Sequence[Candidate
     """
     report = found.report
     remarks = report.remarks if form_of(options, FORMATS) != "table" else ()  # the table has them
-    for note in (*remarks, *foreign_runs(report)):
+    for note in folded((*remarks, *foreign_runs(report))):
         print(f"btq verify: {note}", file=sys.stderr)
     code = print_report(options, report, missions)
     if options.events is not None:
         write_events(options.events, report, logs)
-    refuse(*found.problems)
+    refuse(*folded(found.problems))
     return code
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from glob import glob
 from typing import TYPE_CHECKING
 
-from btq_lang.commands.candidates import candidates
+from btq_lang.commands.candidates import candidates, strict_problem
 from btq_lang.commands.files import usage_problem
 from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_of, form_problem
@@ -98,7 +98,9 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
             problems.append(f"{options.signals}: {error}")
         except OSError as error:
             problems.append(f"{options.signals}: cannot be read: {error.strerror or error}")
-    return logs, candidates(options.mission, logs, problems), samples
+    missions = candidates(options.mission, logs, problems)
+    problems += strict_problem(options, missions)
+    return logs, missions, samples
 
 
 def logs_of(project: Project) -> Sequence[str]:

@@ -27,6 +27,8 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     judging.py, parallel.py   one log judged by itself, by one of several processes, and all of them added up
     watching.py    a running robot: verdicts as they fall
     copies.py, repeats.py   logs that are given under two names, and runs that several logs hold
+    own_trees.py, node_rows.py   logs of which no mission is known, and what each node did
+    folding.py     what is said of very many logs, in a few lines
     verifying.py, notes.py, signal_sources.py   all of it in one call, and notes beside the verdicts
     events.py      the violations as messages of a bag
     table.py, json_document.py, csv_rows.py, junit.py, markdown.py   the writers

@@ -32,9 +32,12 @@ class Candidate:
     """A mission that logs may belong to, and the trees that `btq build` makes of it, built on demand.
 
     Attributes:
+        origin: where the list of its nodes is from, for messages.
         name: its name, for messages.
         side: the nodes that its side file lists, uid and path of each; None where there is none.
     """
+
+    origin = "side file matches"
 
     def __init__(self, workspace: Workspace, path: str, name: str, side: list[tuple[int, str]] | None) -> None:
         self.workspace: Final = workspace
@@ -241,7 +244,7 @@ def join_build(mission: Candidate, build: Build, tree: LoggedTree) -> Joined | N
     if made != wanted:
         return None
     is_side = mission.side == [(uid, path) for uid, _, path in wanted]
-    how = "side file matches" if is_side else build.how
+    how = mission.origin if is_side else build.how
     return Joined(mission, tree, how, {uid: uid for uid, *_ in wanted}, len(wanted), build)
 
 

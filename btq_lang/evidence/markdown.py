@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.evidence.folding import folded_sources
+from btq_lang.evidence.node_rows import node_rows
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import WORST_FIRST, MissionVerdicts, Report
 from btq_lang.render.gfm import code, escaped, table
@@ -20,10 +22,14 @@ def _lines(mission: MissionVerdicts) -> Iterator[str]:
     found = [f"{verdicts.count(verdict)} {verdict}" for verdict in WORST_FIRST if verdict in verdicts]
     yield f"### {escaped(mission.name)}: {', '.join(found) or 'no requirement to judge'}"
     yield ""
-    files = ", ".join(code(source.file) for source in mission.sources)
+    files = ", ".join(code(source.file) for source in folded_sources(mission.sources))
     outcomes = ", ".join(f"{number} {outcome}" for outcome, number in mission.outcomes)
     yield f"{counted(mission.runs, 'run')} in {files}{': ' if outcomes else ''}{outcomes}"
     if not verdicts:
+        if mission.nodes:
+            heads, rows = node_rows(mission.nodes)
+            yield ""
+            yield from table(heads, [[code(path), *numbers] for path, *numbers in rows], numbers_from=1)
         return
     yield ""
     clauses = [(requirement, clause) for requirement in mission.requirements for clause in requirement.clauses]

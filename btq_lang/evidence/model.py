@@ -68,14 +68,21 @@ class LoggedTree:
         parent: the uid of the parent of each node; 0 for the root.
         last: the largest uid below each node; its own for a leaf.
         name: the ID of the tree; empty if the log does not name it.
+        xml: as it is in the log; empty if it was made otherwise.
         delays: how long a Delay waits before it ticks its child, in µs, where that is a number.
     """
 
     def __init__(
-        self, nodes: Sequence[tuple[int, str, str, int]], name: str = "", *, delays: Mapping[int, int] | None = None
+        self,
+        nodes: Sequence[tuple[int, str, str, int]],
+        name: str = "",
+        *,
+        xml: str = "",
+        delays: Mapping[int, int] | None = None,
     ) -> None:
         """Build it from uid, kind, path and parent of each node, in the order of the uids."""
         self.name: Final = name
+        self.xml: Final = xml
         self.delays: Final = delays or {}
         self.parent: Final = {uid: parent for uid, _, _, parent in nodes}
         self.last: Final = {uid: uid for uid, *_ in nodes}

@@ -74,7 +74,9 @@ def missing_verdicts(report: Report, requested: Sequence[str]) -> Iterator[str]:
         if differences:
             yield from (f"no log matches {', '.join(requested)}: {each}" for each in differences)
         else:
-            yield "no log matches a known mission; name the mission with --mission FILE"
+            log = next((each.file for each in report.foreign if each.difference), "")
+            instead = f"; btq import {log} writes its tree as one" if log else ""
+            yield f"no log matches a known mission; name the mission with --mission FILE{instead}"
     elif report.missions and not any(mission.runs for mission in report.missions):
         yield "no run in any log, so there is nothing to judge"
 

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.evidence.folding import folded, folded_sources
+from btq_lang.evidence.node_rows import node_rows
 from btq_lang.evidence.sentences import explained, headline, result, worst_violation
 from btq_lang.evidence.signals import NO_SAMPLES
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
@@ -30,16 +32,18 @@ def render(report: Report, colour: bool = False, verbose: bool = False, width: i
     room = max(width, LEAST) if width is not None else sys.maxsize
     lines: list[str] = []
     for index, mission in enumerate(report.missions):
-        notes = [printable(f"  note: {remark}") for remark in report.remarks] if index == 0 else []
+        notes = [printable(f"  note: {remark}") for remark in folded(report.remarks)] if index == 0 else []
         lines += _broken([*_heading(mission), *notes], room)
-        rows = requirement_rows(mission.requirements, mission.medians, paint, verbose, room)
+        rows = [*requirement_rows(mission.requirements, mission.medians, paint, verbose, room)]
+        if mission.nodes and not mission.requirements:
+            rows = [*rows, "", *_node_table(mission, room)]
         lines += ["", *rows, "", *_broken(_summary(mission), room), ""]
     return "\n".join(lines[:-1]) + "\n" if lines else ""
 
 
 def _heading(mission: MissionVerdicts) -> Iterator[str]:
     """The mission and the logs that were read."""
-    for source in mission.sources:
+    for source in folded_sources(mission.sources):
         found = f"{source.joined} of {source.nodes} nodes"
         identity = f"{source.identity}, {found}" if source.nodes else source.identity
         if source.joined < source.nodes:
@@ -142,11 +146,25 @@ def _nodes(mission: MissionVerdicts) -> Iterator[str]:
     yield " · ".join(map(printable, nodes))
 
 
+def _node_table(mission: MissionVerdicts, room: int) -> Iterator[str]:
+    """What each node did, a line each; the paths are broken where a line has no room for them."""
+    heads, rows = node_rows(mission.nodes)
+    texts = [[printable(text) for text in row] for row in (heads, *rows)]
+    first, *others = (max(map(cells_of, column)) for column in zip(*texts, strict=True))
+    first = max(_NARROWEST, min(first, room - 2 - sum(width + 2 for width in others)))
+    for path, *numbers in texts:
+        *above, last = broken(path, first)
+        yield from (f"  {part}" for part in above)
+        cells = "".join(f"  {text.rjust(width)}" for text, width in zip(numbers, others, strict=True))
+        yield f"  {last}{' ' * (first - cells_of(last))}{cells}".rstrip()
+
+
 def _broken(lines: Iterable[str], room: int) -> Iterator[str]:
     return (part for line in lines for part in broken(line, room))
 
 
 LEAST: Final = 60  # columns that the table needs
+_NARROWEST: Final = 12  # columns of a node's path
 _FURTHER: Final = 4  # violations explained in addition to the worst
 _NAMED: Final = 3  # nodes where failures began
 _LONG_TICK: Final = 0.01  # s, the period in which Nav2 ticks its trees

@@ -14,6 +14,7 @@ from btq_lang.evidence.copies import without_copies
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.judging import Judging, Means, judge, rows_of
 from btq_lang.evidence.notes import ignored_columns, missing_verdicts, missions_with_errors, other_times
+from btq_lang.evidence.own_trees import NO_MISSION, OwnTree
 from btq_lang.evidence.readers import SUFFIXES, samples_of_bags, whole_bags
 from btq_lang.evidence.readers.bag import METADATA
 from btq_lang.evidence.readers.samples import NoSamples
@@ -189,8 +190,9 @@ def judged_live(running: Watched, address: str, means: Means, requested: Sequenc
     """
     # The limits must hold at every look, for verdicts are looked at after every run.
     means = replace(means, limits="every look", shown=str)
-    judging = Judging(means)
-    judging.add(judge(address, means, running=running))
+    found = judge(address, means, running=running)
+    judging = Judging(means)  # now all missions are known
+    judging.add(found)
     report = judging.report()
     if not (report.missions or report.foreign or report.problems):
         return Verification(report, (f"no robot answered at {address}, so there is nothing to judge",))
@@ -199,5 +201,8 @@ def judged_live(running: Watched, address: str, means: Means, requested: Sequenc
 
 def _with_problems(report: Report, missions: Sequence[Candidate], requested: Sequence[str]) -> Verification:
     """The report with what makes its verdicts incomplete."""
-    problems = (*report.problems, *missing_verdicts(report, requested), *missions_with_errors(report, missions))
+    written = [each for each in missions if not isinstance(each, OwnTree)]
+    if len(written) < len(missions):
+        report = replace(report, remarks=(f"nothing is judged: {NO_MISSION}", *report.remarks))
+    problems = (*report.problems, *missing_verdicts(report, requested), *missions_with_errors(report, written))
     return Verification(report, problems)

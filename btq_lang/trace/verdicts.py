@@ -9,6 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.evidence.folding import folded_sources
+from btq_lang.evidence.node_rows import node_rows
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import OUTCOMES, VIOLATED, WORST_FIRST
 from btq_lang.evidence.wording import duration, quantity, timestamp
@@ -55,13 +57,15 @@ def _outcome(nodes: Sequence[NodeSummary]) -> tuple[tuple[str, ...], str]:
 
 
 def _mission(mission: MissionVerdicts, keys: Mapping[str, str]) -> Iterator[str]:
-    files = ", ".join(source.file for source in mission.sources)
+    files = ", ".join(source.file for source in folded_sources(mission.sources))
     outcomes = ", ".join(f"{number} {outcome}" for outcome, number in mission.outcomes)
     yield f"<h3>{escape(mission.name)}</h3>"
     yield f"<p>{counted(mission.runs, 'run')} in {escape(files)}{': ' if outcomes else ''}{outcomes}</p>"
     clauses = [(requirement, clause) for requirement in mission.requirements for clause in requirement.clauses]
     if not clauses:
         yield "<p>The mission has no requirement to judge.</p>"
+        if mission.nodes:
+            yield from _nodes(mission)
         return
     clauses.sort(key=lambda each: WORST_FIRST.index(each[1].verdict))
     yield f'<table class="verdicts"><caption>Verdicts of {escape(mission.name)}</caption>'
@@ -73,6 +77,16 @@ def _mission(mission: MissionVerdicts, keys: Mapping[str, str]) -> Iterator[str]
     runs = {clause.timeline.run: clause.timeline for _, clause in clauses if clause.timeline is not None}
     for timeline in runs.values():
         yield from _timeline(timeline)
+
+
+def _nodes(mission: MissionVerdicts) -> Iterator[str]:
+    heads, rows = node_rows(mission.nodes)
+    yield f'<table class="numbers"><caption>Nodes of {escape(mission.name)}</caption><thead><tr>'
+    yield "".join(f'<th scope="col">{head}</th>' for head in heads)
+    yield "</tr></thead><tbody>"
+    for path, *numbers in rows:
+        yield f'<tr><th scope="row">{escape(path)}</th>{"".join(f"<td>{each}</td>" for each in numbers)}</tr>'
+    yield "</tbody></table>"
 
 
 def _row(requirement: RequirementVerdict, clause: ClauseVerdict, mission: MissionVerdicts, key: str) -> str:

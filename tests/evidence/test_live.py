@@ -58,7 +58,9 @@ class Live(Verify):
 
     def watch(self, robot: Robot, does: Callable[[], object], *arguments: str, mission: str = MISSION) -> str:
         """What the command prints when the robot has done it and Ctrl+C has been pressed."""
-        (self.folder / "main.btq").write_text(mission, encoding="utf-8")
+        if mission:
+            (self.folder / "main.btq").write_text(mission, encoding="utf-8")
+            arguments = ("--mission", "main.btq", *arguments)
         failures: list[BaseException] = []
 
         def act() -> None:
@@ -75,7 +77,7 @@ class Live(Verify):
         thread = threading.Thread(target=act)
         thread.start()
         try:
-            return self.text("--live", robot.address, "--mission", "main.btq", *arguments)
+            return self.text("--live", robot.address, *arguments)
         finally:
             thread.join()
             assert failures == []
@@ -115,9 +117,25 @@ def test_verdicts_are_printed_as_they_fall_and_then_the_table(live: Live) -> Non
     assert {*robot.asked} == {"T", "S", "r", "t"}  # no blackboard without signals, and no hooks
 
 
+def test_a_robot_of_which_no_mission_is_known(live: Live) -> None:
+    with Robot(MAIN_XML) as robot:
+        printed = live.watch(robot, lambda: robot.play(GOOD) or robot.play(SLOW), mission="")
+    lines = plain(printed, robot)
+    assert any(line.endswith("mission Main (the tree in the log, 3 of 3 nodes)") for line in lines)
+    assert "runs: 2 succeeded" in lines
+    assert [line.split()[:3] for line in lines if line.startswith("  Move::2")] == [["Move::2", "2", "2"]]
+    assert (live.code, live.errors) == (0, "")
+
+
+def test_a_mission_is_demanded_before_the_robot_runs(live: Live) -> None:
+    live.text("--live", "tcp://127.0.0.1:1", "--strict")
+    told = "btq verify: --strict: no mission found; name one with --mission FILE, a .btq file or XML\n"
+    assert (live.code, live.errors) == (2, told)
+
+
 def test_the_page_shows_what_is_printed(live: Live) -> None:
     page = Path(__file__).parents[2] / "docs" / "evidence.md"
-    _, shown = re.findall(r"^```text\n(.*?)^```$", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    *_, shown = re.findall(r"^```text\n(.*?)^```$", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
     first, second = "0 1R 2R 80 2S 3R 90 3S 1S 2I 3I 1I", "0 1R 2R 150 2F 1F 2I 1I"
     with Robot(MAIN_XML) as robot:
         printed = live.watch(robot, lambda: robot.play(first) or robot.play(second))

@@ -39,9 +39,12 @@ def night(folder: Path, xml: str) -> None:
 
 def test_the_table_of_the_page(verify: Verify) -> None:
     (mission,) = re.findall(r"^```btq\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
-    shown, _ = re.findall(r"^```text\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+    shown, alone, *_ = re.findall(r"^```text\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
     (verify.folder / "charge.btq").write_text(mission, encoding="utf-8")
     xml = write(export(Workspace.of({"charge.btq": mission}), "charge.btq").document)
     night(verify.folder, as_logged(xml))
     assert verify.text("night.btlog", "--signals", "battery.csv") == shown
     assert (verify.code, verify.errors) == (1, "")
+    (verify.folder / "charge.btq").unlink()
+    assert verify.text("night.btlog") == alone
+    assert (verify.code, verify.errors) == (0, "")

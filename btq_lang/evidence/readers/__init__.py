@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.model import NamedLog, Series, Session
+from btq_lang.evidence.model import LoggedTree, NamedLog, Series, Session
 from btq_lang.evidence.readers import bag, btlog, sqlite, tree_log
 from btq_lang.evidence.readers.topics import Clock
 from btq_lang.evidence.readers.tree import NotALog as NotALog
@@ -34,6 +34,16 @@ def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[Session | 
     """
     reader = _reader(path)
     return tree_log.read(path, sources) if reader is tree_log else reader.read(path)
+
+
+def trees(path: str) -> list[LoggedTree]:
+    """The trees of a log's sessions, or those on the topics of a bag, in their order.
+
+    Raises:
+        NotALog, OSError: as `read` does.
+    """
+    reader = _reader(path)
+    return tree_log.trees(path) if reader is tree_log else [each.tree for each in reader.read(path)]
 
 
 def samples_of_bags(

@@ -100,7 +100,7 @@ def _folder(path: str, remarks: list[str]) -> list[Any]:
     from rosbags.rosbag2 import Reader
 
     databases = sorted(each for each in os.listdir(path) if each.endswith(".db3"))
-    if any(sqlite.has_log(os.path.join(path, each)) for each in databases):  # `rosbags` does not read that log
+    if any(sqlite.is_unfinished(os.path.join(path, each)) for each in databases):  # `rosbags` does not read that
         return [_file(os.path.join(path, each), remarks) for each in databases]
     storage = Reader.STORAGE_PLUGINS["dir"](Path(path))
     try:
@@ -142,7 +142,7 @@ def _file(path: str, remarks: list[str]) -> Any:
             storage = Reader.STORAGE_PLUGINS[".mcap"](_WholeFile(path, remarks))  # type: ignore[arg-type]  # only opened
             storage.open()
             return storage
-        needs_sqlite = sqlite.missing_bytes(path) > 0 or sqlite.has_log(path)
+        needs_sqlite = sqlite.missing_bytes(path) > 0 or sqlite.is_unfinished(path)
         storage = BagDatabase(path, remarks) if needs_sqlite else Reader.STORAGE_PLUGINS[".db3"](Path(path))
         storage.open()
     except (OSError, NotALog):

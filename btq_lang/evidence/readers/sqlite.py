@@ -1,7 +1,7 @@
 """`.db3` and `.btdb`, the database of BehaviorTree.CPP's SqliteLogger: sessions, each with its tree and transitions.
 
-One invariant: the database is opened read-only, so a robot can write it meanwhile; of a damaged one, all that is
-readable is read.
+One invariant: the database is opened read-only, so a robot can write it meanwhile, and where its writer was killed, a
+temporary copy is repaired; of a damaged one, all that is readable is read.
 
 Source: src/loggers/bt_sqlite_logger.cpp.
 """
@@ -11,13 +11,17 @@ from __future__ import annotations
 import json
 import os
 import sqlite3
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, closing, contextmanager
+from shutil import copyfile
+from tempfile import TemporaryDirectory
 from typing import Final
 from urllib.request import pathname2url
 
 from btq_lang.evidence.model import Series, Session, Transition, is_sample
 from btq_lang.evidence.readers.tree import NotALog, read_tree
+
+BESIDE: Final = ("-journal", "-wal")  # what the names of the files end with that belong to a database
 
 
 def read(path: str) -> Iterator[Session]:
@@ -50,38 +54,95 @@ def is_bag(path: str) -> bool:
 
 @contextmanager
 def opened(path: str, remarks: list[str]) -> Iterator[sqlite3.Connection]:
-    """Open a database for reading; a truncated one, for what is left of it, with a remark.
+    """Open a database for reading, without the transaction in which its writer was killed, with a remark; a truncated
+    one, for what is left of it, with a remark.
 
     Raises:
         NotALog: it is not a database, or is damaged where it is read.
         OSError: it cannot be read.
     """
+    path = os.path.realpath(path)  # SQLite looks for a journal there
     missing = missing_bytes(path)
-    how = "mode=ro"
-    if not os.access(os.path.dirname(path) or ".", os.W_OK) and not os.path.exists(f"{path}-shm"):
-        # In such a folder SQLite cannot create the index that it needs for a write-ahead log, even an absent one.
-        if has_log(path):
-            raise NotALog(f"{os.path.basename(path)}-wal has a part of it; copy both to a folder that can be written")
-        how = "immutable=1"
-    database = sqlite3.connect(f"file:{pathname2url(path)}?{how}", uri=True)
     try:
-        database.text_factory = lambda data: data.decode("utf-8", "replace")
-        if missing:
-            remarks.append(f"cut off: the last {missing} bytes of the database are missing")
-            database.execute("PRAGMA writable_schema = ON")  # else SQLite reads nothing of it; nothing is written
-        yield database
+        with ExitStack() as stack:
+            database = _in_place(path, stack)
+            if database is None:
+                path = _copied(path, stack)
+                has_journal = os.path.exists(f"{path}-journal")
+                database = _connected(path, "mode=rw", stack)
+                if has_journal and not os.path.exists(f"{path}-journal"):  # SQLite has rolled back
+                    remarks.append("its writer was killed in the middle of a transaction, which is left out")
+                missing = missing_bytes(path)
+            if missing:
+                remarks.append(f"cut off: the last {missing} bytes of the database are missing")
+            yield database
     except _DAMAGED as error:
         raise NotALog(f"the database cannot be read: {error}") from error
-    finally:
-        database.close()
 
 
-def has_log(path: str) -> bool:
-    """Whether a part of a database is in its write-ahead log: it is being written, or its writer was killed."""
+def _in_place(path: str, stack: ExitStack) -> sqlite3.Connection | None:
+    """Open a database where it is; None if SQLite would have to write there first."""
+    how = "mode=ro"
+    if not os.path.exists(f"{path}-shm"):  # the index of a write-ahead log, there while a database is in use
+        if is_unfinished(path, ("-wal",)):
+            return None
+        with open(path, "rb") as file:
+            has_log = file.read(_HEAD)[18:20] == b"\2\2"
+        how = "immutable=1" if has_log else how  # else SQLite creates an index, or cannot
     try:
-        return os.path.getsize(f"{path}-wal") > 0
+        return _connected(path, how, stack)
+    except sqlite3.OperationalError as error:
+        if "locked" in str(error) or not is_unfinished(path):
+            raise
+        return None
+
+
+def _connected(path: str, how: str, stack: ExitStack) -> sqlite3.Connection:
+    """Open a database, to be closed at the end."""
+    database = stack.enter_context(closing(sqlite3.connect(f"file:{pathname2url(path)}?{how}", uri=True)))
+    database.text_factory = lambda data: data.decode("utf-8", "replace")
+    database.execute("PRAGMA writable_schema = ON")  # else SQLite reads nothing of a truncated one; nothing is written
+    database.execute("PRAGMA schema_version")  # now SQLite looks for a journal
+    return database
+
+
+def _copied(path: str, stack: ExitStack) -> str:
+    """Copy a database with its journal and log to a temporary folder.
+
+    Raises:
+        NotALog: there is no room for a copy, or the database was written meanwhile.
+    """
+    files = {f"{path}{suffix}": f"log.db3{suffix}" for suffix in ("", *BESIDE) if os.path.exists(f"{path}{suffix}")}
+    before = [_version(each) for each in files]
+    folder = why = ""
+    try:
+        folder = stack.enter_context(TemporaryDirectory(prefix="btq-"))
+        for source, name in files.items():
+            copyfile(source, os.path.join(folder, name))
+    except OSError as error:
+        why = f"it needs a temporary copy, which cannot be made: {error.strerror or error}; TMPDIR says where"
+    if before != [_version(each) for each in files]:
+        why = "it was written while it was copied; read it again"
+    if why:
+        raise NotALog(why)
+    return os.path.join(folder, "log.db3")
+
+
+def _version(path: str) -> tuple[int, int] | None:
+    """What differs when a file has been written; None if it is gone."""
+    try:
+        found = os.stat(path)
     except OSError:
-        return False
+        return None
+    return found.st_size, found.st_mtime_ns
+
+
+def is_unfinished(path: str, beside: Sequence[str] = BESIDE) -> bool:
+    """Whether there is something in a database's journal or write-ahead log: it is being written, or its writer was
+    killed.
+    """
+    found = (_version(f"{os.path.realpath(path)}{suffix}") for suffix in beside)
+    return any(each is not None and each[0] > 0 for each in found)
 
 
 def missing_bytes(path: str) -> int:

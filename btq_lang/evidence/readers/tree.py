@@ -44,7 +44,7 @@ def read_tree(xml: bytes | str) -> LoggedTree:
     nodes, delays = _numbered(tops)
     if [uid for uid, *_ in nodes] != [*range(1, len(nodes) + 1)]:
         raise NotALog("the nodes of its tree are not numbered 1, 2, 3 … as BehaviorTree.CPP numbers them")
-    return LoggedTree(nodes, name, delays=delays)
+    return LoggedTree(nodes, name, xml=text, delays=delays)
 
 
 def _numbered(tops: dict[int, tuple[Element, str]]) -> tuple[list[tuple[int, str, str, int]], dict[int, int]]:

@@ -33,7 +33,7 @@ def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[NamedLog]:
         if not logs:
             raise NotALog(f"expected a topic of type {TREE_LOG}, such as /behavior_tree_log; the bag has none")
         topics = Topics(sources, [each.topic for each in bag.connections], map(_namespace, logs))
-        trees: dict[str, dict[str, LoggedTree]] = {}
+        found: dict[str, dict[str, LoggedTree]] = {}
         malformed = 0
         wanted = [*bag.of_type(TREE_LOG), *bag.of_type(TEXT)]
         wanted += [each for each in bag.connections if each.topic in topics.names and each not in wanted]
@@ -43,26 +43,43 @@ def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[NamedLog]:
                 continue
             if topic in topics.names:
                 topics.add(topic, received, message)
-            text = getattr(message, "data", "")
-            if (
-                isinstance(text, str)
-                and "_uid" in text
-                and text not in (found := trees.setdefault(_namespace(topic), {}))
-            ):
-                try:
-                    found[text] = read_tree(text)
-                except NotALog as error:
-                    bag.remarks.append(f"{topic}: {error}")
+            if wrong := _add_tree(message, found.setdefault(_namespace(topic), {})):
+                bag.remarks.append(f"{topic}: {wrong}")
         remarks = bag.remarks
         if malformed:
             remarks.append(f"status changes that are not as Nav2 defines them, left out: {malformed}")
-    every = [tree for found in trees.values() for tree in found.values()]
+    every = [tree for of_robot in found.values() for tree in of_robot.values()]
     for topic, changes in logs.items():
-        own = trees.get(_namespace(topic))
+        own = found.get(_namespace(topic))
         signals = topics.series(_namespace(topic), changes.clock())
         named = [*own.values()] if own else every
         yield changes.log(topic, len(logs) > 1, named, signals, [*remarks, *topics.remarks])
         topics.remarks.clear()
+
+
+def trees(path: str) -> list[LoggedTree]:
+    """The trees on the topics of a bag.
+
+    Raises:
+        NotALog: it is not a bag.
+        OSError: it cannot be read.
+    """
+    found: dict[str, LoggedTree] = {}
+    with opened(path) as bag:
+        for _, _, message in bag.messages(bag.of_type(TEXT)):
+            _add_tree(message, found)
+    return [*found.values()]
+
+
+def _add_tree(message: Any, found: dict[str, LoggedTree]) -> str:
+    """Add the tree in a message, if it has a new one; returns what is wrong with it."""
+    text = getattr(message, "data", "")
+    if isinstance(text, str) and "_uid" in text and text not in found:
+        try:
+            found[text] = read_tree(text)
+        except NotALog as error:
+            return str(error)
+    return ""
 
 
 def samples(path: str, sources: Iterable[SignalSource]) -> tuple[dict[str, Series], list[str]] | None:

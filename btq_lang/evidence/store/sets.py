@@ -23,6 +23,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, Final
 
+from btq_lang.evidence.readers import sqlite
 from btq_lang.evidence.store.engine import NoEngine, write_parquet
 from btq_lang.evidence.store.rows import Rows, digest, file_of
 from btq_lang.evidence.store.tables import ROWS
@@ -183,11 +184,12 @@ def _take_place(folder: str, target: str) -> None:
 
 
 def sha256(log: str) -> str:
-    """The SHA-256 of a file, or of all files of a bag, with their names."""
+    """The SHA-256 of a file with what is unfinished beside it, or of all files of a bag, with their names."""
     found = hashlib.sha256()
     for path in files_of_log(log):
         if path != log:
-            found.update(f"{os.path.relpath(path, log)}\0{os.path.getsize(path)}\0".encode(errors="surrogateescape"))
+            name = path.removeprefix(log).lstrip(os.sep)
+            found.update(f"{name}\0{os.path.getsize(path)}\0".encode(errors="surrogateescape"))
         with open(path, "rb") as file:
             while block := file.read(_BLOCK):
                 found.update(block)
@@ -195,9 +197,9 @@ def sha256(log: str) -> str:
 
 
 def files_of_log(log: str) -> Sequence[str]:
-    """A log's file, or all files of a bag."""
+    """A log's file, with the journal of a database whose writer was killed, or all files of a bag."""
     if not os.path.isdir(log):
-        return [log]
+        return [log, *(f"{log}{suffix}" for suffix in sqlite.BESIDE if sqlite.is_unfinished(log, [suffix]))]
     return sorted(os.path.join(folder, name) for folder, _, names in os.walk(log) for name in names)
 
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
 import sqlite3
 import tracemalloc
 from pathlib import Path
@@ -231,22 +229,3 @@ def test_samples_need_no_order_and_may_be_missing(verify: Verify) -> None:
     (verify.folder / "samples.csv").write_text("\r\n".join(lines), encoding="utf-8")
     needs = verify.json("run.btlog", "--signals", "samples.csv")["requirements"][0]["clauses"][0]
     assert (needs["counted"], [each["run"] for each in needs["violations"]]) == (2, [2])
-
-
-def test_a_database_whose_folder_cannot_be_written(verify: Verify, monkeypatch: pytest.MonkeyPatch) -> None:
-    """SQLite needs an index beside the log of a database, and would say that it is unable to open the file."""
-    (verify.folder / "main.btq").write_text(TEXT, encoding="utf-8")
-    write_db3(verify.folder / "run.db3", MAIN_XML, [rows(TWO_RUNS)])
-    writer = sqlite3.connect(verify.folder / "run.db3")
-    writer.execute("PRAGMA journal_mode = WAL")
-    writer.execute("UPDATE Transitions SET duration = 1")
-    writer.commit()
-    (verify.folder / "copy").mkdir()
-    for name in ("run.db3", "run.db3-wal"):
-        shutil.copy(verify.folder / name, verify.folder / "copy")
-    writer.close()
-    monkeypatch.setattr(os, "access", lambda path, mode: False)
-    assert verify.json("run.db3", "--mission", "main.btq")["runs"] == 2
-    verify.text("copy/run.db3", "--mission", "main.btq")
-    told = "btq verify: copy/run.db3: run.db3-wal has a part of it; copy both to a folder that can be written\n"
-    assert (verify.code, verify.errors) == (2, told)

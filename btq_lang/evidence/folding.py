@@ -1,0 +1,46 @@
+"""What is said of very many logs, in a few lines for people; documents for programs have all of it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Final
+
+from btq_lang.evidence.verdicts import Source
+from btq_lang.util.grouping import grouped
+from btq_lang.util.record import replace
+from btq_lang.util.text import counted
+
+
+def folded(lines: Iterable[str]) -> Iterator[str]:
+    """Lines of which many that differ only in names and numbers are one, with how many more there are."""
+    for alike in grouped((_VARYING.sub("#", line), line) for line in lines).values():
+        if len(alike) <= _MOST:
+            yield from alike
+        else:
+            yield f"{alike[0]} (and {len(alike) - 1} more like this)"
+
+
+def folded_sources(sources: Sequence[Source]) -> Sequence[Source]:
+    """Logs of which many whose nodes were found in the same way are one."""
+    if len(sources) <= _MOST:
+        return sources
+    alike = grouped(((each.identity, each.joined, each.nodes), each) for each in sources).values()
+    return [one for group in alike for one in (group if len(group) <= _MOST else [_joint(group)])]
+
+
+def _joint(sources: Sequence[Source]) -> Source:
+    first, last = sources[0], sources[-1]
+    remarks = [f"{source.file}: {remark}" for source in sources for remark in source.remarks]
+    return replace(
+        first,
+        file=f"{counted(len(sources), 'log')}, {first.file} to {last.file}",
+        runs=sum(each.runs for each in sources),
+        begin=min((each.begin for each in sources if each.begin is not None), default=None),
+        end=max((each.end for each in sources if each.end is not None), default=None),
+        remarks=tuple(folded(remarks)),
+    )
+
+
+_MOST: Final = 5  # that are listed one by one
+_VARYING: Final = re.compile(r"\S*[\d./\\]\S*")  # words with a number, or of a path
