@@ -291,10 +291,28 @@ def test_what_a_description_demands() -> None:
     workspace = Workspace.of({"main.btq": text})
     found = states(workspace, "main.btq")
     assert found == [
-        "rq1: enforced",
+        "rq1: enforced: the mission ends if a guard reads `battery` before anything writes it",
         "rq1: monitored: its script is not a single expression that all versions of the engine evaluate alike",
     ]
     assert 'code="(battery &gt; 20)"' in xml_of(workspace, "main.btq")
+
+
+@pytest.mark.parametrize(
+    ("script", "read"),
+    [
+        ("battery > 20 && @speed < reserve || battery > 90", "`battery`, `@speed`, `reserve`"),
+        ("mode == CHARGING && level > 3", "`mode`, `level`"),  # a name of an enumeration
+        ("true", ""),
+    ],
+)
+@pytest.mark.parametrize("word", ["SuccessIf", "FailureIf"])
+def test_a_description_reads_entries_that_must_be_written_first(word: str, script: str, read: str) -> None:
+    text = (
+        'Root Main\nBehaviorTree Main\n    -> (Quality = x)\n        Move (satisfies QualityReq ID = "rq1"'
+        f' description = "{word} {script}")\n'
+    )
+    said = f": the mission ends if a guard reads {read} before anything writes it" if read else ""
+    assert states(Workspace.of({"main.btq": text}), "main.btq") == [f"rq1: enforced{said}"]
 
 
 @pytest.mark.parametrize("script", ["(a := 3) > 2", "(a = 3) > 2", "(a += 1) > 2"])
