@@ -67,13 +67,14 @@ def _is_of_mission(view: View, event: syntax.Event) -> bool:
 
 
 def _is_mission(view: View, subject: syntax.Subject | None) -> bool:
-    """Whether it means the mission, as such or by the name of its root, which no other tree runs again."""
+    """Whether it means the mission, as such or by the name of its root, which no other tree runs again and which has
+    children: a single action is rather a part of a mission."""
     if not isinstance(subject, syntax.Path):
         return isinstance(subject, syntax.Mission)
     from btq_lang.requirements.nodes import callers, find, mission  # few clauses need them
 
     root = view.ask(mission)
-    if root is None or view.is_used_elsewhere or view.ask(callers, root.tree):
+    if root is None or not root.children or view.is_used_elsewhere or view.ask(callers, root.tree):
         return False
     return [target.node for target in view.ask(find, tuple(name.text for name in subject.names))] == [root]
 
