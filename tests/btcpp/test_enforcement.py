@@ -146,7 +146,7 @@ def test_an_included_file_holds_what_it_asks_for_itself() -> None:
     assert "btq_init" not in skills
     assert main.count('_onFailure="@safe_stop := true"') == 1
     assert '<WasEntryUpdated entry="@on" _onFailure="@on := true" _btq="*"/>' in main
-    assert '<Script name="btq_start" code="@safe_stop := false" _btq="*"/>' in main
+    assert '<Script name="btq_start" code="@safe_stop := false" _skipIf="@safe_stop := false; true" _btq="*"/>' in main
 
 
 def test_what_no_bundle_enforces_either_has_that_reason() -> None:
@@ -163,7 +163,7 @@ def test_a_mission_begins_with_what_included_files_need() -> None:
     workspace = Workspace.of(FILES | {"main.btq": MAIN.replace("apply safe to Look, Drive\n", "")})
     main = xml_of(workspace, "main.btq")
     assert '<WasEntryUpdated entry="@on" _onFailure="@on := true" _btq="*"/>' in main
-    assert '<Script name="btq_start" code="@safe_stop := false" _btq="*"/>' in main
+    assert '<Script name="btq_start" code="@safe_stop := false" _skipIf="@safe_stop := false; true" _btq="*"/>' in main
     assert "safe_guard" not in main
     assert "btq_stop" in main
 
