@@ -37,9 +37,14 @@ def marked(tag: str, requirement: str, attributes: Mapping[str, str], children: 
 
 
 def leaf(tag: LeafTag, requirement: str, name: str, code: str, failed: str | None = None) -> Element:
-    """A Script or a ScriptCondition beside a node; `failed`: script that runs when it fails."""
+    """A Script or a ScriptCondition beside a node; `failed`: script that runs when it fails.
+
+    It does not succeed but is skipped, because a Sequence is skipped only if all its children are: a node that skips
+    itself must not become one that has succeeded.  So a Script runs as the condition of its being skipped.
+    """
+    skipped = code if tag == EVALUATING else f"{code}; true"
     failing = {"_onFailure": failed} if failed is not None else {}
-    return marked(tag, requirement, {"name": name, "code": code, **failing})
+    return marked(tag, requirement, {"name": name, "code": code, "_skipIf": skipped, **failing})
 
 
 def first_values(requirement: str, values: Mapping[str, str]) -> Element:

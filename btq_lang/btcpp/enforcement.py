@@ -229,7 +229,7 @@ class _Plan:
         for each, wrapper in made.wrappers:
             self.wrappers.setdefault(id(each.node), []).append(wrapper)
         notes = [*made.notes]
-        if unset := [signal.name for signal in made.signals if signal.initially is None]:
+        if unset := [*(signal.name for signal in made.signals if signal.initially is None), *made.entries]:
             notes.append(f"the mission ends if a guard reads {_listed(unset)} before anything writes it")
         if aging := [signal.name for signal in made.signals if signal.fresh is not None]:
             notes.append(f"guards read the latest value of {_listed(aging)}, whatever its age")

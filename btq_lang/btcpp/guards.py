@@ -24,6 +24,7 @@ from btq_lang.btcpp.document import Element
 from btq_lang.btcpp.keys import legal
 from btq_lang.catalog.units import Unit
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.requirements.classic import entries_in
 from btq_lang.requirements.model import (
     Bounded,
     Claim,
@@ -53,6 +54,7 @@ class Guarded:
         wrappers: each with its node, from the outside in.
         cells: the entries of the root blackboard that the mission initializes, each with its first value.
         signals: that its scripts read.
+        entries: that those scripts read which the requirement itself spells.
         stop: the entry that halts the mission, if a violation does.
         notes: what of the clause is not enforced, or how it is interpreted.
     """
@@ -72,6 +74,7 @@ class Guarded:
         self.wrappers: list[tuple[ResolvedNode, Wrapper]] = []
         self.cells: Final[dict[str, str]] = {}
         self.signals: tuple[Signal, ...] = ()
+        self.entries: tuple[str, ...] = ()
         self.stop: Final = stop if requirement.action == "halt" else None
         self.notes: Final[list[str]] = []
         self.requirement: Final = requirement
@@ -97,6 +100,7 @@ class Guarded:
         scopes = tuple(scope.condition for scope in self.requirement.scopes)
         read = signals_in((claim.condition, claim.limit, claim.signal, scopes)) if self.wrappers else ()
         self.signals = tuple({signal.name: signal for signal in read}.values())
+        self.entries = entries_in(claim.condition)
 
     def around(
         self,

@@ -16,10 +16,9 @@ from btq_lang.btcpp.document import Attribute, Content, Element, Text, escape
 from btq_lang.btcpp.source import Source
 from btq_lang.btcpp.spelling import spelt
 from btq_lang.catalog.kinds import CATEGORIES
-from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax.tree import Entry, Meta, Model, Port, Tree, Verbatim, Word, models_in
 from btq_lang.util.record import replace
-from btq_lang.workspace.custom_nodes import CustomNode, custom_nodes, custom_nodes_of
+from btq_lang.workspace.custom_nodes import CustomNode, custom_nodes, custom_nodes_of, is_declared
 from btq_lang.workspace.file import File
 from btq_lang.workspace.workspace import Workspace
 
@@ -131,12 +130,7 @@ def _declares(model: Element, raw: str) -> bool:
 
 def undeclared(workspace: Workspace, path: str) -> dict[str, CustomNode]:
     """The nodes that a file uses and that neither it, nor what it includes, nor what includes it declares."""
-    scope = workspace.scope(path)
-    used = custom_nodes_of(workspace.files[path])
-    missing = [name for name in used if scope.find(Kind.MODEL, name) is None]
-    if missing and path in workspace.included_files:
-        above = [workspace.scope(other) for other in workspace.files if path in workspace.closure(other)]
-        missing = [name for name in missing if not any(scope.find(Kind.MODEL, name) for scope in above)]
+    missing = [name for name in custom_nodes_of(workspace, path) if not is_declared(workspace, path, name)]
     if not missing:
         return {}
     known = custom_nodes(workspace, path)

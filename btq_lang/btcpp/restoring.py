@@ -15,6 +15,7 @@ from btq_lang.btcpp.manual_edits import ManualEdit, manual_edits
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.side_file import FORMAT, VERSIONS
 from btq_lang.catalog.names import legal_name
+from btq_lang.catalog.nodes import xml_tag
 from btq_lang.lexer import tokens
 from btq_lang.parser import Parsed, parse
 from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
@@ -151,12 +152,12 @@ def _parts(entry: Entry) -> dict[object, Tree | Node]:
 
 
 def _called(node: Node) -> tuple[str, str]:
-    """The ID and the name of a node in XML."""
+    """The ID and the name of a node in XML; a word of the published language and a node so called are one."""
     name = node.name.text if node.name is not None else ""
     if is_placeholder(node):
         ID = legal_name(name)
         return ID, "" if name == ID else name
-    return tag_of(node), name
+    return xml_tag(tag_of(node)), name
 
 
 def _place_of_items(parsed: Parsed) -> int:

@@ -16,11 +16,11 @@ from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.btcpp.source import Source
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.names import is_port_name, is_xml_name, legal_name, model_name_problem
-from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, NodeKind, inspects_children, is_by_children, xml_tag
+from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, NodeKind, inspects_children, is_by_children
 from btq_lang.catalog.versions import NO_EXPLICIT_CHILD, UNIQUE_SUBTREES
 from btq_lang.syntax.tree import Entry, Node, Tree, Verbatim, Word
 from btq_lang.workspace.comments import NO_COMMENTS
-from btq_lang.workspace.custom_nodes import likely_category
+from btq_lang.workspace.custom_nodes import likely_category, tag_in
 from btq_lang.workspace.node_names import is_placeholder
 from btq_lang.workspace.port_types import is_number
 
@@ -105,7 +105,7 @@ class Trees:
         assert kind is not None, "a node without a category has a kind"
         known = self._tags.get(kind.raw)
         if known is None:
-            tag = xml_tag(kind.text, kind.quoted, len(node.children))
+            tag = self._tag(kind, node)
             known = tag, BUILTINS.get(tag)
             if not is_by_children(kind.raw):
                 self._tags[kind.raw] = known
@@ -119,13 +119,16 @@ class Trees:
             return self._as_explicit(entry, node, likely_category(len(node.children)), attributes, parent)
         return Element(tag, attributes)
 
+    def _tag(self, word: Word, node: Node) -> str:
+        return tag_in(self._source.workspace, self._source.path, word, len(node.children))
+
     def _explicit(self, entry: Entry, node: Node, category: str, parent: Element) -> Element:
         """`Action MoveBase (…)`, `SubTree PickPlace`, `SubTree (ID = PickPlace)`."""
         source = self._source
         if category == "SubTree":
             return Element(category, self._subtree_attributes(entry, node))
         word = node.id if node.category is not None else node.attribute("ID")
-        name = "" if word is None else xml_tag(word.text, word.quoted, len(node.children))
+        name = "" if word is None else self._tag(word, node)
         attributes = attributes_of(source, entry, node.attributes, BUILTINS.get(name), node.label)
         in_brackets = next((index for index, each in enumerate(attributes) if each.name == "ID"), None)
         if in_brackets is not None:

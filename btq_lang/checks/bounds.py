@@ -11,6 +11,7 @@ from typing import Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, parse_unit
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.checks.one_run import same_in_every_run
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, write_fix
 from btq_lang.syntax import tree as syntax
@@ -20,16 +21,13 @@ from btq_lang.util.text import Span
 
 
 def impossible_bound(view: View) -> Iterator[Diagnostic]:
-    """A fractional number of attempts, a negative time, and attempts of a mission, which starts once."""
+    """A fractional number of attempts, a negative time, and what comes out the same in every run."""
     for requirement, claim in _claims(view):
         bound, verb = claim.bound, claim.verb.raw
         operand = VERBS[verb].operand
         is_count = operand in _COUNTED
-        if is_count and isinstance(claim.subject, syntax.Mission):
-            span = Span(claim.start, claim.end)
-            message = f"a mission starts only once in a run, so `{verb}` does not apply to it"
-            notes = ("name the node whose starts to count: `MoveBase tries at most 3`",)
-            yield Diagnostic("impossible-bound", span, message, notes=notes)
+        if (found := same_in_every_run(view, claim)) is not None:
+            yield found
         elif bound is not None:
             for amount in syntax.walk(bound):
                 if not isinstance(amount, syntax.Amount):

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from btq_lang.btcpp.enforceability import Judge
 
 Found: TypeAlias = tuple[Place, Diagnostic]
-Guard: TypeAlias = tuple[tuple[Signal, ...], Place]
+Guard: TypeAlias = tuple[tuple[Signal, ...], tuple[str, ...], Place]
 
 
 class Demanded:

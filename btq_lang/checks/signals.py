@@ -39,18 +39,20 @@ def of_signals(view: View, guards: Sequence[Guard]) -> Iterator[Found]:
 
 
 def guards(demanded: Demanded) -> Iterator[Guard]:
-    """The signals that the engine reads to enforce a claim, each once, and where to report it."""
-    known: dict[tuple[int, ...], tuple[Signal, ...]] = {}
+    """The signals and the entries that the engine reads to enforce a claim, each once, and where to report it."""
+    known: dict[tuple[int, ...], tuple[tuple[Signal, ...], tuple[str, ...]]] = {}
     for applied, claim, _, place in demanded.claims:
         if claim.verb not in _READING or not applied.requirement.is_enforceable:
             continue
         parts = (claim.condition, claim.signal, *(scope.condition for scope in applied.requirement.scopes))
         key = tuple(map(id, parts))  # one claim may apply to many nodes
         if key not in known:
-            from btq_lang.requirements.model import signals_in  # few missions have a claim that is enforced
+            from btq_lang.requirements.classic import entries_in  # few missions have a claim that is enforced
+            from btq_lang.requirements.model import signals_in
 
-            known[key] = tuple({each.name: each for each in signals_in(parts)}.values())
-        yield known[key], place
+            signals = tuple({each.name: each for each in signals_in(parts)}.values())
+            known[key] = signals, entries_in(claim.condition)
+        yield *known[key], place
 
 
 def _never_written(view: View, here: list[Signal], guards: Sequence[Guard]) -> Iterator[Found]:
@@ -63,7 +65,7 @@ def _never_written(view: View, here: list[Signal], guards: Sequence[Guard]) -> I
         return  # it may be written in the files that include this one
     written = view.ask(written_keys)
     writes = [write for each in view.ask(all_entries) for write in each.writes] if guards else []
-    guarding = {signal.name for signals, _ in guards for signal in signals}
+    guarding = {signal.name for signals, *_ in guards for signal in signals}
     for signal in here:
         key = signal.entry
         if key in written and signal.name in guarding and (writer := isolated(view, writes, key)) is not None:
@@ -110,9 +112,17 @@ def _of_text(view: View, here: list[Signal]) -> Iterator[Found]:
 
 
 def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[Found]:
-    """A guard on a signal without a first value: until something writes it, the engine ends the mission."""
+    """A guard on a signal without a first value, or of a classic description on an entry that nothing writes: until
+    something writes it, the engine ends the mission."""
     reported: dict[str, tuple[Signal, list[Related]]] = {}
-    for read, place in guards:
+    for read, entries, place in guards:
+        for entry in entries:
+            if entry.removeprefix("@") not in view.ask(written_keys) and view.is_read and not view.is_included:
+                message = (
+                    f"nothing in the mission writes `{entry}`: it ends if a guard reads it before anything writes it"
+                )
+                notes = (f'write it first: `Script (code = "{entry} := …")`',)
+                yield found_at(place, "signal-may-be-unset", message, notes=notes)
         for signal in read:
             if signal.key is not None and signal.initially is None:
                 related = reported.setdefault(signal.name, (signal, []))[1]

@@ -11,7 +11,7 @@ from typing import Final
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.clauses import with_clauses
 from btq_lang.requirements.constraints import Constraint, can_be_checked, clauses_of, constraints, is_script
-from btq_lang.requirements.model import Claim, Limit, Not, Relation, Requirement, Script
+from btq_lang.requirements.model import Claim, Limit, Not, Relation, Requirement, Script, parts_in
 from btq_lang.requirements.reader import Reader
 from btq_lang.syntax import tree as syntax
 from btq_lang.util.record import replace
@@ -28,6 +28,19 @@ def with_constraints(reader: Reader, requirement: Requirement, text: syntax.Word
     if not requirement.claims:
         return requirement
     return replace(requirement, classic=True, action=requirement.action or "fail")
+
+
+def entries_in(part: object) -> tuple[str, ...]:
+    """The entries that scripts in a part of the model read, each once, without names in capitals: these are those of
+    enumerations, which only the robot's program knows."""
+    scripts = [each for each in parts_in(part) if isinstance(each, Script)]
+    if not scripts:
+        return ()
+    from btq_lang.syntax.script.parser import parse_script  # few missions have one
+    from btq_lang.syntax.script.tree import variables
+
+    read = [each.name for script in scripts for each in variables(parse_script(script.code)) if each.reads]
+    return tuple(dict.fromkeys(name for name in read if not name.isupper()))
 
 
 def _with(reader: Reader, requirement: Requirement, constraint: Constraint, span: Span) -> Requirement:

@@ -72,7 +72,7 @@ def _custom_nodes(store: Store[Workspace], mission: str) -> dict[str, CustomNode
     found: dict[str, list[tuple[Node, str | None]]] = {}
     for path in sorted(workspace.linked(mission)):
         for node in _nodes(workspace.files[path]):
-            name, category = _named(node)
+            name, category = _named(workspace, path, node)
             if name and name not in BUILTINS:
                 found.setdefault(name, []).append((node, category))
     return {name: CustomNode(uses) for name, uses in found.items()}
@@ -88,12 +88,30 @@ def custom_node(workspace: Workspace, path: str, name: str) -> CustomNode:
         for use in facts.summary.uses
         if use.node is not None and use.kind is Kind.MODEL and use.name == name
     ]
-    return CustomNode([(node, _named(node)[1]) for node in uses])
+    return CustomNode([(node, _named(workspace, path, node)[1]) for node in uses])
 
 
-def custom_nodes_of(file: File) -> frozenset[str]:
+def custom_nodes_of(workspace: Workspace, path: str) -> frozenset[str]:
     """The IDs of the custom nodes in one file."""
-    return frozenset([name for name, _ in map(_named, _nodes(file)) if name and name not in BUILTINS])
+    named = (_named(workspace, path, node)[0] for node in _nodes(workspace.files[path]))
+    return frozenset([name for name in named if name and name not in BUILTINS])
+
+
+def tag_in(workspace: Workspace, path: str, word: Word, children: int) -> str:
+    """The XML tag of a word in a file, for a node with so many children; if the mission declares a node of that name, a
+    word of the published language means that one."""
+    tag = xml_tag(word.text, word.quoted, children)
+    is_own = tag != word.text and tag not in BUILTINS and is_declared(workspace, path, word.text)
+    return word.text if is_own else tag
+
+
+def is_declared(workspace: Workspace, path: str, name: str) -> bool:
+    """Whether a file, what it includes, or what includes it has a model of a node."""
+    if workspace.scope(path).find(Kind.MODEL, name) is not None:
+        return True
+    others = workspace.files if path in workspace.included_files else ()
+    above = (each for each in others if path in workspace.closure(each))
+    return any(workspace.scope(each).find(Kind.MODEL, name) is not None for each in above)
 
 
 def likely_category(children: int) -> str:
@@ -106,8 +124,8 @@ def _nodes(file: File) -> Iterator[Node]:
         yield from tree.walk()
 
 
-def _named(node: Node) -> tuple[str, str | None]:
-    """The ID of a node, as it is written, and the category that it names; a SubTree's ID does not count."""
+def _named(workspace: Workspace, path: str, node: Node) -> tuple[str, str | None]:
+    """The ID of a node in a file, as it is written, and the category that it names; a SubTree's ID does not count."""
     kind = node.kind
     if is_placeholder(node):
         return legal_name(node.name.text if node.name else ""), PLACEHOLDERS[node.head.raw]
@@ -120,7 +138,7 @@ def _named(node: Node) -> tuple[str, str | None]:
         word = kind
         if kind is not None and not kind.quoted and kind.raw in KNOWN_WORDS:
             category = KNOWN_WORDS[kind.raw].category
-    tag = xml_tag(word.text, word.quoted, len(node.children)) if word is not None else ""
+    tag = tag_in(workspace, path, word, len(node.children)) if word is not None else ""
     return ("", None) if category == "SubTree" or tag == "SubTreePlus" else (tag, category)
 
 

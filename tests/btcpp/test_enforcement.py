@@ -146,7 +146,7 @@ def test_an_included_file_holds_what_it_asks_for_itself() -> None:
     assert "btq_init" not in skills
     assert main.count('_onFailure="@safe_stop := true"') == 1
     assert '<WasEntryUpdated entry="@on" _onFailure="@on := true" _btq="*"/>' in main
-    assert '<Script name="btq_start" code="@safe_stop := false" _btq="*"/>' in main
+    assert '<Script name="btq_start" code="@safe_stop := false" _skipIf="@safe_stop := false; true" _btq="*"/>' in main
 
 
 def test_what_no_bundle_enforces_either_has_that_reason() -> None:
@@ -163,7 +163,7 @@ def test_a_mission_begins_with_what_included_files_need() -> None:
     workspace = Workspace.of(FILES | {"main.btq": MAIN.replace("apply safe to Look, Drive\n", "")})
     main = xml_of(workspace, "main.btq")
     assert '<WasEntryUpdated entry="@on" _onFailure="@on := true" _btq="*"/>' in main
-    assert '<Script name="btq_start" code="@safe_stop := false" _btq="*"/>' in main
+    assert '<Script name="btq_start" code="@safe_stop := false" _skipIf="@safe_stop := false; true" _btq="*"/>' in main
     assert "safe_guard" not in main
     assert "btq_stop" in main
 
@@ -291,10 +291,28 @@ def test_what_a_description_demands() -> None:
     workspace = Workspace.of({"main.btq": text})
     found = states(workspace, "main.btq")
     assert found == [
-        "rq1: enforced",
+        "rq1: enforced: the mission ends if a guard reads `battery` before anything writes it",
         "rq1: monitored: its script is not a single expression that all versions of the engine evaluate alike",
     ]
     assert 'code="(battery &gt; 20)"' in xml_of(workspace, "main.btq")
+
+
+@pytest.mark.parametrize(
+    ("script", "read"),
+    [
+        ("battery > 20 && @speed < reserve || battery > 90", "`battery`, `@speed`, `reserve`"),
+        ("mode == CHARGING && level > 3", "`mode`, `level`"),  # a name of an enumeration
+        ("true", ""),
+    ],
+)
+@pytest.mark.parametrize("word", ["SuccessIf", "FailureIf"])
+def test_a_description_reads_entries_that_must_be_written_first(word: str, script: str, read: str) -> None:
+    text = (
+        'Root Main\nBehaviorTree Main\n    -> (Quality = x)\n        Move (satisfies QualityReq ID = "rq1"'
+        f' description = "{word} {script}")\n'
+    )
+    said = f": the mission ends if a guard reads {read} before anything writes it" if read else ""
+    assert states(Workspace.of({"main.btq": text}), "main.btq") == [f"rq1: enforced{said}"]
 
 
 @pytest.mark.parametrize("script", ["(a := 3) > 2", "(a = 3) > 2", "(a += 1) > 2"])

@@ -46,6 +46,103 @@ def test_what_no_run_can_keep(clause: str, found: str) -> None:
     assert_problems(f'QualityReq r "t"\n    X succeeds\n    {clause}\n{NODE}', found)
 
 
+MISSION = """signal door : bool from {door}
+Root Main
+BehaviorTree Main
+    ->
+        Action X
+        Action Y
+"""
+SINGLE_RUN = "each run is judged by itself"
+NAMED = "name the node that is meant: `Dock starts within 2 s after Batch succeeds`"
+
+
+@pytest.mark.parametrize("mission", ["mission", "Main"])
+@pytest.mark.parametrize(
+    ("clause", "said", "note"),
+    [
+        ("{} tries at most 3", "a mission starts only once in a run, so `tries` does not apply to it", None),
+        ("{} tries at most 3 per X", "a mission starts only once in a run, so `tries` does not apply to it", None),
+        ("{} runs at least 1 per 1 h", "a mission starts only once in a run, so `runs` does not apply to it", None),
+        ("{} starts within 2 s after X succeeds", "a mission starts before all else in its run, not after it", NAMED),
+        ("{} starts within 2 s after when door", "a mission starts before all else in its run, not after it", NAMED),
+        ("{} starts within 2 s after {} fails", "a mission starts before all else in its run, not after it", NAMED),
+        ("{} follows X succeeds", "a mission starts before all else in its run, not after it", NAMED),
+        ("{} follows {} starts", "a mission starts before all else in its run, not after it", NAMED),
+        (
+            "{} follows when door",
+            "a mission starts before all else in its run, not after it",
+            "for what must hold when it starts, write `mission needs …`",
+        ),
+        *(
+            (f"X {clause} {{}} {end}", f"nothing happens in a run after `{{}} {end}`", SINGLE_RUN)
+            for clause in ("starts within 2 s after", "ends within 2 s after", "follows")
+            for end in ("succeeds", "fails", "finishes", "halts")
+        ),
+        ("every X follows {} finishes", "nothing happens in a run after `{} finishes`", SINGLE_RUN),
+        ("{} ends within 2 s after {} fails", "nothing happens in a run after `{} fails`", SINGLE_RUN),
+        ("from {} succeeds to X starts takes at most 2 s", "nothing happens in a run after `{} succeeds`", SINGLE_RUN),
+        ("from {} fails to {} finishes takes at most 2 s", "nothing happens in a run after `{} fails`", SINGLE_RUN),
+        (
+            "from X succeeds to {} starts takes at most 2 s",
+            "nothing happens in a run before `{} starts`",
+            SINGLE_RUN,
+        ),
+        (
+            "X ends within 9 s after {} starts",
+            "no other node runs yet at `{} starts`",
+            "for the time from there on, write `from mission starts to X finishes takes at most …`",
+        ),
+    ],
+)
+def test_what_one_run_never_shows(clause: str, said: str, note: str | None, mission: str) -> None:
+    written, said = clause.replace("{}", mission), said.replace("{}", mission)
+    text = f'QualityReq r "t"\n    {written}\n{MISSION}'
+    (found,) = problems(text, "impossible-bound")
+    assert (found.message, text[found.span.start : found.span.end]) == (said, written)
+    assert note is None or found.notes == (note,)
+
+
+@pytest.mark.parametrize("mission", ["mission", "Main"])
+@pytest.mark.parametrize(
+    "clause",
+    [
+        "{} takes at most 1 h",
+        "{} succeeds within 1 h",
+        "{} ends within 2 s after X fails",
+        "{} ends within 2 s after when door",
+        "{} ends within 1 h after {} starts",
+        "X starts within 2 s after {} starts",
+        "X follows {} starts",
+        "X tries at most 3 per {}",
+        "X follows Y succeeds",
+        "from {} starts to X succeeds takes at most 2 s",
+        "from {} starts to {} finishes takes at most 1 h",
+        "from X fails to {} finishes takes at most 2 s",
+    ],
+)
+def test_what_one_run_may_show(clause: str, mission: str) -> None:
+    assert problems(f'QualityReq r "t"\n    {clause.replace("{}", mission)}\n{MISSION}', "impossible-bound") == []
+
+
+@pytest.mark.parametrize(
+    "trees",
+    [
+        "BehaviorTree Main\n    Action X\nBehaviorTree Other\n    Action Y",  # which of them runs is unknown
+        "Root Other\nBehaviorTree Main\n    X\nBehaviorTree Other\n    Repeat (num_cycles = 2)\n        SubTree Main",
+    ],
+)
+def test_a_tree_that_is_no_mission_may_start_again(trees: str) -> None:
+    for clause in ("Main tries at most 3", "Main follows Y succeeds", "Y starts within 2 s after Main succeeds"):
+        assert problems(f'QualityReq r "t"\n    {clause}\n{trees}\n', "impossible-bound") == []
+
+
+@pytest.mark.parametrize("root", ['Switch2 (variable = "{v}", case_1 = "a", case_2 = "b")', "Patrol"])
+def test_a_root_may_start_with_its_first_child(root: str) -> None:
+    text = f"Root Main\nBehaviorTree Main\n    {root}\n        Action X\n        Action Y\n        Action Z\n"
+    assert problems(f'QualityReq r "t"\n    X ends within 9 s after mission starts\n{text}', "impossible-bound") == []
+
+
 @pytest.mark.parametrize(
     ("clauses", "signal"),
     [

@@ -421,6 +421,26 @@ def test_a_first_value() -> None:
     assert findings(through + "context high : n > 3\n" + tree, "signal-may-be-unset") == [f"1 warning «n» {message}"]
 
 
+HARD = 'BehaviorTree Main\n    ->\n        {}\n        A (satisfies QualityReq ID = "q" description = "{said}")\n'
+
+
+@pytest.mark.parametrize("said", ["SuccessIf level > 20", "FailureIf level < 20 && true"])
+def test_an_entry_of_a_description(said: str) -> None:
+    text = HARD.replace("{said}", said)
+    message = "nothing in the mission writes `level`: it ends if a guard reads it before anything writes it"
+    told = [f'4 warning «"{said}"» {message}']
+    assert findings(text.replace("{}", "B"), "signal-may-be-unset") == told
+    assert findings(text.replace("{}", 'Script (code = "other := 1")'), "signal-may-be-unset") == told
+    for writer in ('Script (code = "level := 1")', "B (out = {level})", "Script (code = '@level := 1')"):
+        assert findings(text.replace("{}", writer), "signal-may-be-unset") == []
+
+
+def test_an_entry_of_a_description_that_enforces_nothing() -> None:
+    text = HARD.replace("{}", "B").replace("{said}", "SuccessIf level > 20")
+    assert findings(text.replace('"q"', '"q" verified by review'), "signal-may-be-unset") == []
+    assert findings(HARD.replace("{}", "B").replace("{said}", "the level is above 20"), "signal-may-be-unset") == []
+
+
 # ---- places ---------------------------------------------------------------------------------------------------------
 
 

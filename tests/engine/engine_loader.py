@@ -181,6 +181,7 @@ def job(
     every_tree: bool = False,
     seconds: int = 10,
     runs: int = 1,
+    log: Path | None = None,
 ) -> dict[str, object]:
     """One file to load, as the loader reads it.
 
@@ -198,12 +199,14 @@ def job(
         every_tree: every tree is instantiated, and not only the main one.
         seconds: after which the engine is said to never return.
         runs: how often the tree is run.
+        log: the file in which the engine's FileLogger2 logs the ticks, a .btlog.
     """
     asked: dict[str, object] = {"file": str(source)} if isinstance(source, Path) else {"text": source}
     asked["stubs"] = list(stubs_of(source) if stubs is None else stubs)
     asked["parts"] = {name: _activations(said) for name, said in (parts or {}).items()}
     asked |= {"blackboard": dict(blackboard or {}), "ticks": ticks, "tick_ms": tick_ms, "halt": halt}
-    return asked | {"every_tree": every_tree, "seconds": seconds, "runs": runs}
+    asked |= {"every_tree": every_tree, "seconds": seconds, "runs": runs}
+    return asked | ({"log": str(log)} if log is not None else {})
 
 
 def stubs_of(source: str | Path) -> list[dict[str, object]]:

@@ -5,6 +5,7 @@
 // Nothing here catches a crash of the engine: then answers are missing, and the caller knows which.
 #include <behaviortree_cpp/bt_factory.h>
 #include <behaviortree_cpp/contrib/json.hpp>
+#include <behaviortree_cpp/loggers/bt_file_logger_v2.h>
 #ifdef HAS_PUBLISHER
 #include <behaviortree_cpp/loggers/groot2_publisher.h>
 #endif
@@ -285,6 +286,9 @@ void tick(BT::Tree& tree, const Json& job, Json& answer)
   };
   std::vector<BT::TreeNode::StatusChangeSubscriber> subscribers;
   tree.applyVisitor([&](BT::TreeNode* node) { subscribers.push_back(node->subscribeToStatusChange(note)); });
+  std::unique_ptr<BT::FileLogger2> logger;
+  if(job.contains("log"))
+    logger = std::make_unique<BT::FileLogger2>(tree, job.at("log").get<std::string>());
 #ifdef HAS_PUBLISHER
   std::unique_ptr<BT::Groot2Publisher> publisher;
   if(job.contains("publish"))

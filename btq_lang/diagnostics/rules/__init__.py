@@ -176,7 +176,11 @@ _TABLE = (
     Rule("signal-never-written", _W, "a signal whose entry no port and no script writes"),
     Rule("unused-signal", _H, "a signal that no clause uses"),
     Rule("unused-context", _H, "a context that no condition names"),
-    Rule("signal-may-be-unset", _W, "an enforced condition (a guard) on a signal without an initial value"),
+    Rule(
+        "signal-may-be-unset",
+        _W,
+        "an enforced condition (a guard) on a signal without an initial value, or on an entry that nothing writes",
+    ),
     # Traps of the engine's semantics.
     Rule("reactive-multiple-async", _W, "a reactive node with more than one asynchronous child"),
     Rule("explicit-in-reactive", _E, "an explicit form in XML where the engine requires the node's own tag"),
