@@ -33,12 +33,13 @@ class OwnTree(Candidate):
     def __reduce__(self) -> tuple[object, ...]:
         return OwnTree, self._made_of
 
-    def builds(self) -> Iterator[Build]:
+    def builds(self, tree: str = "") -> Iterator[Build]:
         """What `btq build` makes of it, and at the end the tree itself, which always is that in the log."""
-        yield from super().builds()
-        built = Built(self.path, self.path, "", (self._document,), {})
-        main = self._document.root.get("main_tree_to_execute")
-        yield Build(self.origin, RunningTree(built, self.requirements.nodes, main))
+        yield from super().builds(tree)
+        main = self._document.root.get("main_tree_to_execute") or ""
+        if tree in ("", main):
+            built = Built(self.path, self.path, "", (self._document,), {})
+            yield Build(self.origin, RunningTree(built, self.requirements.nodes, main), main, True)
 
 
 class OwnTrees:
