@@ -376,11 +376,8 @@ class JudgedClause:
 
     @property
     def text(self) -> str:
-        """The clause as typed, with all that counts for its requirement."""
-        requirement = self.requirement
-        of_all = (*requirement.scopes, requirement.odds, requirement.window)
-        parts = [self.claim.text, *(each.text for each in of_all if each is not None)]
-        return " ".join([*parts, f"goal {requirement.goal.text}"] if requirement.goal is not None else parts)
+        """As of its demand."""
+        return self.demand.text
 
 
 def _kind(judgement: Judgement | None, of: Activation) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from btq_lang.evidence.tally import USUAL_CONFIDENCE
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Violation
+from btq_lang.evidence.verdicts import NEVER, OPEN, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Violation
 from btq_lang.evidence.wording import duration, moment, share
 from btq_lang.util.text import counted
 
@@ -78,7 +78,7 @@ def _counted(clause: ClauseVerdict) -> str:
     if clause.verdict == UNKNOWN:
         others = f" ({clause.unknown} of {clause.counted + clause.unknown} {clause.unit})" if clause.unknown else ""
         return f"{clause.why}{others}"
-    if clause.verdict == NEVER:
+    if clause.verdict in (NEVER, OPEN):
         return clause.why
     why = f" ({clause.why})" if clause.why else ""
     unknown = f", {clause.unknown} unknown{why}" if clause.unknown else ""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.sentences import explained, headline, result, worst_violation
 from btq_lang.evidence.signals import NO_SAMPLES
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
+from btq_lang.evidence.verdicts import NEVER, OPEN, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
 from btq_lang.evidence.wording import duration, period
 from btq_lang.render.cells import broken, cells_of, narrowed, printable
 from btq_lang.render.colour import Paint, painter
@@ -122,8 +122,6 @@ def _summary(mission: MissionVerdicts) -> Iterator[str]:
             runs.append(f"{word} {repeats.total}, at most {repeats.most} in {run}")
     yield " · ".join(map(printable, runs))
     yield from _nodes(mission) if mission.nodes else ()  # the summary of a store has none
-    if mission.by_people:
-        yield printable(f"verified by people: {', '.join(mission.by_people)}")
 
 
 def _nodes(mission: MissionVerdicts) -> Iterator[str]:
@@ -148,5 +146,12 @@ LEAST: Final = 60  # columns that the table needs
 _FURTHER: Final = 4  # violations explained in addition to the worst
 _NAMED: Final = 3  # nodes where failures began
 _LONG_TICK: Final = 0.01  # s, the period in which Nav2 ticks its trees
-_ORDER: Final = (VIOLATED, SATISFIED, UNDECIDED, UNKNOWN, NEVER)
-VERDICT_STYLES: Final = {VIOLATED: "error", SATISFIED: "hint", UNDECIDED: "warning", UNKNOWN: "info", NEVER: "warning"}
+_ORDER: Final = (VIOLATED, SATISFIED, UNDECIDED, UNKNOWN, NEVER, OPEN)
+VERDICT_STYLES: Final = {
+    VIOLATED: "error",
+    SATISFIED: "hint",
+    UNDECIDED: "warning",
+    UNKNOWN: "info",
+    NEVER: "warning",
+    OPEN: "warning",
+}

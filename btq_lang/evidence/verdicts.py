@@ -18,13 +18,14 @@ if TYPE_CHECKING:
     from btq_lang.requirements.model import Value
     from btq_lang.workspace.resolved import ResolvedNode
 
-Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised"]
+Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised", "open"]
 VIOLATED: Final = "violated"
 UNKNOWN: Final = "unknown"
 UNDECIDED: Final = "undecided"
 SATISFIED: Final = "satisfied"
 NEVER: Final = "never exercised"
-WORST_FIRST: Final[tuple[Verdict, ...]] = (VIOLATED, UNKNOWN, UNDECIDED, SATISFIED, NEVER)
+OPEN: Final = "open"
+WORST_FIRST: Final[tuple[Verdict, ...]] = (VIOLATED, UNKNOWN, UNDECIDED, SATISFIED, NEVER, OPEN)
 OUTCOMES: Final[dict[Outcome, str]] = {"S": "succeeded", "F": "failed", "H": "halted", "O": "interrupted"}
 
 
@@ -156,10 +157,11 @@ class ClauseVerdict(Record):
     """A clause at a written node.
 
     Attributes:
-        text: as typed, with its scopes and odds.
+        text: as typed, with its scopes and odds; empty if an open requirement has no clause.
         path: of the node, as the engine names it; all paths for a subtree that is used several times.
         of: what it measures if that is more than a node: `from … to …`, `sum of …`; else empty.
-        why: why the verdict is unknown or never exercised, or why parts of an undecided one are unknown; else empty.
+        why: why the verdict is unknown, never exercised or open, or why parts of an undecided one are unknown; else
+            empty.
         unit: what is counted: `activations` or `runs`.
         counted: how many activations (or runs, for odds of runs, sums, and tries in a run) were judged true or false.
         violated, unknown: how many of these are violations, and how many more are unknown.
@@ -281,7 +283,6 @@ class MissionVerdicts(Record):
         contexts: of the mission, in the order of definition.
         retries: by Retry nodes and Nav2's RecoveryNodes.
         recoveries: by RecoveryNodes between two tries.
-        by_people: the requirements verified by review, test or analysis, which are not judged.
         outline: of its trees; empty without measures.
     """
 
@@ -294,7 +295,6 @@ class MissionVerdicts(Record):
     contexts: tuple[ContextSummary, ...]
     retries: Repeats
     recoveries: Repeats
-    by_people: tuple[str, ...]
     outline: str = ""
 
     @property
