@@ -14,7 +14,16 @@ from btq_lang.evidence import margins
 from btq_lang.evidence.edges import WHILE_IT_RUNS, edge_of, key_of
 from btq_lang.evidence.history import History, Nearby, near
 from btq_lang.evidence.margins import Margins
-from btq_lang.evidence.model import BEGUN_BEFORE, CLOCK_SET_BACK, CUT_BY_GAP, ROOT, ROWS_LOST, Activation, LoggedTree
+from btq_lang.evidence.model import (
+    BEGUN_BEFORE,
+    CLOCK_SET_BACK,
+    CUT_BY_GAP,
+    ROOT,
+    ROWS_LOST,
+    Activation,
+    LoggedTree,
+    Moment,
+)
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.over_run import OverRun, target_of
 from btq_lang.evidence.recent import Recent
@@ -25,7 +34,7 @@ from btq_lang.evidence.tally import Run, Tally
 from btq_lang.evidence.verbs import JUDGES, Judgement
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Link, Measures
 from btq_lang.evidence.wording import duration
-from btq_lang.requirements.model import Mission, Running, Span, Target, Total, Value, parts_in
+from btq_lang.requirements.model import Aggregate, Mission, Running, Span, Target, Total, Value, parts_in
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
@@ -87,6 +96,7 @@ class JudgedClause:
     Attributes:
         found: what was found of it in the logs so far.
         judged: the claim as it is judged.
+        broken: the open activations that break it already, by node, each with the path.
         explainer: of the current log.
     """
 
@@ -110,15 +120,21 @@ class JudgedClause:
         self._events: Final = _events(claim, subject)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [each.target for each in parts_in(parts) if isinstance(each, Running)]
+        is_whole = any(scope.word == "while" for scope in requirement.scopes) and claim.verb not in _AT_ANY_TIME
+        is_of_all = any(isinstance(each, Aggregate) for each in parts_in(parts))
+        self._is_final: Final = claim.verb in _FINAL and not (self._running or is_whole or is_of_all)
         self.found.missing = self._why_not()
         self._is_judged: Final = not self.found.missing
         self._nodes: Final[list[int]] = []  # of the current log, as are these:
         self._places: Final[list[_Place]] = []
         self._signals: Signals
         self._history: History
+        self._nearby: Callable[[int], Nearby]
         self._waiting: Final[list[tuple[Activation, Observed, str]]] = []  # until it is known what else ran meanwhile
         self._waits = False
         self._records: Final[list[Callable[[Judgement, int, int, str], None]]] = []
+        self._looked: Final[dict[int, tuple[Moment, Moment]]] = {}  # of open activations: their start, and up to when
+        self.broken: Final[dict[int, tuple[Judgement, str]]] = {}
         self.explainer: Explainer
 
     def record(self, record: Callable[[Judgement, int, int, str], None]) -> None:
@@ -131,7 +147,7 @@ class JudgedClause:
         Args:
             nearby: resolves the other nodes that a clause names, relative to its node.
         """
-        self._signals, self._history = signals, history
+        self._signals, self._history, self._nearby = signals, history, nearby
         self._nodes.clear()
         self._places.clear()
         for uids in self._own(joined) if self._is_judged else ():
@@ -165,6 +181,28 @@ class JudgedClause:
             self._waiting.append((activation, observed, path))
         elif self._judge is not None:
             self._judge_one(activation, observed, path)
+        self.broken.pop(activation.uid, None)
+
+    def look(self, activation: Activation, path: str) -> bool:
+        """Judge an activation that is still open; returns whether it breaks the clause, whatever comes later, and was
+        not seen to before.
+        """
+        uid, verb = activation.uid, self.claim.verb
+        if self._judge is None or not self._is_final or uid in self.broken or uid not in self._nodes:
+            return False
+        observed = Observed(self._signals, self._nearby(uid), activation.started, activation.ended)
+        starts = [scope for scope in self.requirement.scopes if scope.word == "when"]
+        if in_scope(starts, verb, observed) is not True:
+            return False
+        started, until = self._looked.get(uid, (None, activation.started))
+        if verb in _AT_ANY_TIME and started == activation.started:
+            observed = observed.between(until, activation.ended)
+        self._looked[uid] = activation.started, activation.ended
+        judgement = self._judge(self.judged, activation, observed)
+        if judgement is None or judgement.holds is not False:
+            return False
+        self.broken[uid] = judgement, path
+        return True
 
     def refuse(self, refusal: Refusal, path: str) -> None:
         """Count a start that a guard refused: it violates the demand that the guard enforces, and for `succeeds` it is
@@ -191,6 +229,8 @@ class JudgedClause:
             self._margins.add(margins.UNKNOWN, margins.UNKNOWN, None)
         self._tally.end_run(run)
         self._margins.end_run(run.number)
+        self.broken.clear()
+        self._looked.clear()
 
     def _judge_over(self, root: Activation) -> None:
         """Count what is judged over the run, in order of time for all uses of a subtree together: a window may keep
@@ -342,7 +382,7 @@ class JudgedClause:
     def verdict(self, open_run: Run | None = None) -> ClauseVerdict:
         """The verdict on all judgements so far, with those of the open run if that is given."""
         found = self.found
-        tally = self._tally.result() if open_run is None else self._tally.so_far(open_run)
+        tally = self._tally.result() if open_run is None else self._tally.so_far(open_run, self.broken.values())
         verdict, why = verdict_of(tally, found.missing, found.has_run)
         goal = self.requirement.goal
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
@@ -424,6 +464,8 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
     return Judgement(None, judgement.at, CLOCK_SET_BACK)
 
 
+_AT_ANY_TIME: Final = ("keeps", "never")
+_FINAL: Final = ("takes", "succeeds", "needs", *_AT_ANY_TIME)  # verbs whose violation stays one, whatever follows
 # The kinds of guards that halt a node for each verb; other guards around it belong to other clauses.
 _STOPPED_BY: Final = {
     LIMITING: words(enforced="limit"),

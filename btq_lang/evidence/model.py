@@ -42,6 +42,7 @@ class Mark(int):
 
 GAP: Final = Mark(-1)  # transitions before this one were not seen
 PAUSE: Final = Mark(-2)  # for a while there has been none
+UNTIL: Final = Mark(-3)  # up to this time there has been no other
 
 
 class LoggedNode(Record):
@@ -76,6 +77,10 @@ class LoggedTree:
                 self.last[parent] = max(self.last[parent], self.last[uid])
         self.leaves: Final = frozenset(uid for uid, last in self.last.items() if uid == last)
         self.nodes: Final = {uid: LoggedNode(uid, kind, path) for uid, kind, path, _ in nodes}
+
+    def is_like(self, other: LoggedTree) -> bool:
+        """Whether the other has the same nodes."""
+        return (self.nodes, self.parent) == (other.nodes, other.parent)
 
     def above(self, uid: int) -> Iterator[int]:
         """The ancestors of a node, the nearest first."""
