@@ -5,6 +5,7 @@ One invariant: a clause that cannot be judged is unknown with the reason, and ne
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Collection, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.explain import Explainer
     from btq_lang.evidence.guards import Guard, Refusal
     from btq_lang.evidence.identity import Joined
+    from btq_lang.evidence.model import Outcome
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
     from btq_lang.evidence.verdicts import Timeline, Verdict
@@ -67,6 +69,7 @@ class ClauseFindings:
         missing: why it cannot be judged at all its nodes; empty if it can.
         has_run: whether one of its nodes has.
         timeline: the run with the worst violation; None if none is kept.
+        left_out: as `failed`, `halted` and `idle` of `ClauseVerdict`.
     """
 
     def __init__(self, requirement: Requirement, limits: Limits) -> None:
@@ -77,6 +80,7 @@ class ClauseFindings:
         self.missing = ""
         self.has_run = False
         self.timeline: Timeline | None = None
+        self.left_out: Final[Counter[str]] = Counter()
 
     def add(self, other: ClauseFindings, runs: int) -> None:
         """Add what was found in later logs; `runs`: how many runs were before them."""
@@ -88,6 +92,7 @@ class ClauseFindings:
         self.paths.update(other.paths)
         self.missing = self.missing or other.missing
         self.has_run = self.has_run or other.has_run
+        self.left_out.update(other.left_out)
 
 
 class JudgedClause:
@@ -132,6 +137,7 @@ class JudgedClause:
         self._nearby: Callable[[int], Nearby]
         self._waiting: Final[list[tuple[Activation, Observed, str]]] = []  # until it is known what else ran meanwhile
         self._waits = False
+        self._has_started = False  # in the open run
         self._records: Final[list[Callable[[Judgement, int, int, str], None]]] = []
         self._looked: Final[dict[int, tuple[Moment, Moment]]] = {}  # of open activations: their start, and up to when
         self.broken: Final[dict[int, tuple[Judgement, str]]] = {}
@@ -169,7 +175,7 @@ class JudgedClause:
 
     def judge(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
         """Count an activation of one of its nodes, which a guard may have stopped, by what was observed during it."""
-        self.found.has_run = True
+        self.found.has_run = self._has_started = True
         if activation.timing in BEGUN_BEFORE:
             return
         self._waits = self._waits or activation.started[1] != activation.ended[1]
@@ -229,6 +235,8 @@ class JudgedClause:
             self._margins.add(margins.UNKNOWN, margins.UNKNOWN, None)
         self._tally.end_run(run)
         self._margins.end_run(run.number)
+        self.found.left_out["idle"] += self._judge is not None and self._is_judged and not self._has_started
+        self._has_started = False
         self.broken.clear()
         self._looked.clear()
 
@@ -306,6 +314,8 @@ class JudgedClause:
     def _count(self, judgement: Judgement | None, of: Activation, path: str) -> None:
         if judgement is None:
             self._tally.cut_off += of.outcome == "O"
+            if self.claim.verb == "leaves" and of.outcome in _WITHOUT_SUCCESS:
+                self.found.left_out[_WITHOUT_SUCCESS[of.outcome]] += 1
         else:
             chain = self.explainer.chain(self.claim, judgement, path) if judgement.holds is False else ()
             since = judgement.since if judgement.since is not None else of.begin
@@ -398,6 +408,9 @@ class JudgedClause:
             histogram=tally.distribution.histogram(goal if isinstance(goal, Value) else None),
             timeline=found.timeline if verdict == VIOLATED else None,
             measures=self._measures() if self._with_measures else None,
+            failed=found.left_out["failed"],
+            halted=found.left_out["halted"],
+            idle=found.left_out["idle"],
             **tally.fields(),
         )
 
@@ -464,6 +477,7 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
     return Judgement(None, judgement.at, CLOCK_SET_BACK)
 
 
+_WITHOUT_SUCCESS: Final[dict[Outcome, str]] = {"F": "failed", "H": "halted"}
 _AT_ANY_TIME: Final = ("keeps", "never")
 _FINAL: Final = ("takes", "succeeds", "needs", *_AT_ANY_TIME)  # verbs whose violation stays one, whatever follows
 # The kinds of guards that halt a node for each verb; other guards around it belong to other clauses.

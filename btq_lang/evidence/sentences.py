@@ -20,7 +20,15 @@ def result(clause: ClauseVerdict) -> str:
         parts.append(f"worst {clause.worst.text} in run {run}" if run is not None else f"worst {clause.worst.text}")
     if clause.cut_off and clause.verdict != NEVER:
         parts.append(f"{clause.cut_off} cut off by the end of a log")
+    left_out = [f"{number} that {how}" for number, how in _left_out(clause) if number]
+    if left_out and clause.verdict != UNKNOWN:
+        number = clause.failed + clause.halted
+        parts.append(f"{' and '.join(left_out)} {'was' if number == 1 else 'were'} not counted")
     return ", ".join(parts)
+
+
+def _left_out(clause: ClauseVerdict) -> tuple[tuple[int, str], ...]:
+    return (clause.failed, "failed"), (clause.halted, f"{'was' if clause.halted == 1 else 'were'} halted")
 
 
 def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:

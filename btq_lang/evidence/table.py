@@ -69,7 +69,10 @@ def requirement_rows(
         name = requirement.id
         for clause in sorted(requirement.clauses, key=lambda each: _ORDER.index(each.verdict)):
             hint = "give them with --signals FILE" if clause.why.startswith(NO_SAMPLES) else ""
-            texts = [name, title, _clause(clause, requirement), result(clause), hint]
+            found = result(clause)
+            if clause.idle and clause.verdict != NEVER and not _is_lone(clause, requirement):
+                found += f", not started in {counted(clause.idle, 'run')}"
+            texts = [name, title, _clause(clause, requirement), found, hint]
             below: Sequence[str] = [*_explanation(clause, medians, verbose)] if clause.verdict == VIOLATED else []
             rows.append((clause.verdict, [printable(text) for text in texts], below))
             name = title = ""  # shown once
@@ -94,8 +97,11 @@ def requirement_rows(
 
 def _clause(clause: ClauseVerdict, requirement: RequirementVerdict) -> str:
     """The clause, with its node if the requirement has the same clause at another one."""
-    is_lone = sum(each.text == clause.text for each in requirement.clauses) == 1
-    return clause.text if is_lone or not clause.path else f"{clause.text} at {clause.path}"
+    return clause.text if _is_lone(clause, requirement) or not clause.path else f"{clause.text} at {clause.path}"
+
+
+def _is_lone(clause: ClauseVerdict, requirement: RequirementVerdict) -> bool:
+    return sum(each.text == clause.text for each in requirement.clauses) == 1
 
 
 def _explanation(clause: ClauseVerdict, medians: Mapping[str, float], verbose: bool) -> Iterator[str]:

@@ -174,6 +174,8 @@ class ClauseVerdict(Record):
         histogram: of the measures; None without any.
         timeline: the run of the worst violation; None without any.
         measures: to judge it again; None: not kept.
+        failed, halted: activations left out because the clause is about those that succeed.
+        idle: in how many runs its node did not start, if it is about activations of one.
     """
 
     text: str
@@ -195,6 +197,9 @@ class ClauseVerdict(Record):
     histogram: Histogram | None
     timeline: Timeline | None = None
     measures: Measures | None = None
+    failed: int = 0
+    halted: int = 0
+    idle: int = 0
 
 
 class RequirementVerdict(Record):
