@@ -103,8 +103,8 @@ part of a signal
     gauge | signal speed : m/s gauge | a plain value | a value that is not used up
     fresh within | signal speed : m/s fresh within 200 ms | its age | \
         in a log an older reading counts as unknown; guards read the latest one, whatever its age
-    initially | signal speed : m/s initially 0 m/s | before the first reading | \
-        its value before the first reading, which guards read at first
+    initially | signal speed : m/s initially 0 m/s | for guards | \
+        what a guard reads before the first sample; no measurement, so no verdict follows from it
 part of a model
     input | input goal : Pose | a port | a port that the node reads
     output | output path : Path | a port | a port that the node writes

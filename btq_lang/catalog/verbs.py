@@ -92,7 +92,15 @@ VERBS: Final = {
             operand="deadline",
             measures="its result, and the time",
             judged=_END,
-            phrases=(("succeeds", "succeeds within 30 s", "result, and when", "it fails, or succeeds later"),),
+            phrases=(
+                (
+                    "succeeds",
+                    "succeeds within 30 s",
+                    "result, and when",
+                    "it fails, or succeeds later. A run is kept if all activations in it are. For a success at any "
+                    "try, write `from mission starts to X succeeds takes at most 30 s`",
+                ),
+            ),
             forms=(("succeeds", None), ("succeeds within", "succeeds within ${0:30 s}")),
             limits="success",
             enforced="limit",
@@ -154,7 +162,7 @@ VERBS: Final = {
                     "leaves",
                     "leaves battery >= 3 %",
                     "a condition when it has succeeded",
-                    "it is false when the node has succeeded",
+                    "it is false when the node has succeeded. Activations that fail or are halted are not counted",
                 ),
             ),
             enforced="check",
@@ -211,13 +219,16 @@ VERBS: Final = {
                         word,
                         f"{word} within 2 s after Batch succeeds",
                         "reaction",
-                        "it starts (ends) later than that, or not at all",
+                        f"it {word} later than that, or not at all. {more}",
                     ),
                 ),
                 forms=((f"{word} within", f"{word} within ${{1:1 s}} after $0"),),
                 why_monitored=_NOTHING_STARTS_NODES,
             )
-            for word, past in (("starts", "started"), ("ends", "ended"))
+            for word, past, more in (
+                ("starts", "started", "A node that is active when the event happens has to start again"),
+                ("ends", "ended", "Only a node that is active when the event happens counts"),
+            )
         ),
         Verb(
             word="follows",

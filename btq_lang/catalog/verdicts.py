@@ -38,7 +38,7 @@ Something is missing, and the table says what: samples of a signal, a node in a 
 mission, or the time of a halt that the log does not have. One unknown activation is enough, unless another one
 breaks the clause; with odds, it matters only where it could change the verdict.""",
             """\
-Give samples with `--signals FILE` or `[evidence.signals]`, or declare the signal with `initially`. Verify with
+Give samples with `--signals FILE` or `[evidence.signals]`; `initially` gives none. Verify with
 the mission that was built, whose side file is beside the log. Let the logger write changes to IDLE.""",
         ),
         Verdict(
@@ -67,6 +67,16 @@ Its node did not start in any run, or was halted before the clause could be judg
 for all.""",
             """\
 Look whether the logs are of the right mission, and whether a run can lead to the node. `--strict` makes it a
+failure.""",
+        ),
+        Verdict(
+            "open",
+            "no log can show it",
+            """\
+People verify it (`verified by review`, `test` or `analysis`), or it has no clause that can be measured, only a
+title. No log changes that.""",
+            """\
+Keep the record of the review beside the report, or write a clause that logs can show. `--strict` makes it a
 failure.""",
         ),
     )

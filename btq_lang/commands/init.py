@@ -20,7 +20,9 @@ include-paths = ["."]
 [rules]
 # unknown-node = "error"
 
-# Logs of what the robots did: `btq verify` gives each requirement a verdict.
+# Logs of what the robots did: `btq verify` gives each requirement a verdict.  What is demanded of a signal is unknown
+# without samples of it: from a topic of a bag, from a file as in {{ file = "battery.csv", time = "t", column = "%" }},
+# or from `btq verify --signals battery.csv`.
 # [evidence]
 # logs = ["logs/**/*.btlog"]
 #
@@ -43,6 +45,7 @@ Condition BatteryGood "True above the level that the way home needs"
 _MISSION = """\
 include "skills.btq"
 
+# `initially` is what a guard reads before the first sample; a verdict needs samples (btq.toml: [evidence.signals]).
 signal battery : % from {battery_level} initially 100 %
 
 # Late design: measurable, and checked or enforced.

@@ -47,7 +47,14 @@ def run(options: Namespace) -> int:
     stream = sys.stdout if form == "table" and options.output is None else sys.stderr
     shown = Screen(stream, is_coloured(options, True)) if is_screen(stream) else Lines(stream)
     with stopped_by_signals() as stop, shown:
-        robot = sessions(address, entries, stop, lambda text: watched.tell(text), lambda: shown.refresh(watched))
+        robot = sessions(
+            address,
+            entries,
+            stop,
+            lambda text: watched.tell(text),
+            lambda: shown.refresh(watched),
+            lambda time: watched.look(time),
+        )
         watched = Watched(own.of(robot, address) if missions is own.missions else robot, address, shown.show)
         means = Means(missions, with_timelines=form == "html", keeping=keeping)
         found = judged_live(watched, address, means, options.mission)

@@ -24,6 +24,7 @@ from btq_lang.evidence.model import (
     UNKNOWN_BEGIN,
     Activation,
     LoggedTree,
+    Moment,
 )
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.over_run import OverRun, target_of
@@ -36,7 +37,7 @@ from btq_lang.evidence.verbs import JUDGES, Judgement, agreed
 from btq_lang.evidence.verbs import duration as lasted
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Link, Measures
 from btq_lang.evidence.wording import duration
-from btq_lang.requirements.model import Mission, Running, Span, Target, Total, Value, parts_in
+from btq_lang.requirements.model import Aggregate, Mission, Running, Span, Target, Total, Value, parts_in
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
 
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.explain import Explainer
     from btq_lang.evidence.guards import Guard, Refusal
     from btq_lang.evidence.identity import Joined
+    from btq_lang.evidence.model import Outcome
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
     from btq_lang.evidence.verdicts import Timeline, Verdict
@@ -75,6 +77,7 @@ class ClauseFindings:
         has_run: whether one of its nodes has.
         missed: how many events happened while its node was not active.
         timeline: the run with the worst violation; None if none is kept.
+        left_out: as `failed`, `halted` and `idle` of `ClauseVerdict`.
     """
 
     def __init__(self, requirement: Requirement, limits: Limits) -> None:
@@ -86,6 +89,7 @@ class ClauseFindings:
         self.has_run = False
         self.missed = 0
         self.timeline: Timeline | None = None
+        self.left_out: Final[Counter[str]] = Counter()
 
     def add(self, other: ClauseFindings, runs: int) -> None:
         """Add what was found in later logs; `runs`: how many runs were before them."""
@@ -98,6 +102,7 @@ class ClauseFindings:
         self.missing = self.missing or other.missing
         self.has_run = self.has_run or other.has_run
         self.missed += other.missed
+        self.left_out.update(other.left_out)
 
 
 class JudgedClause:
@@ -106,6 +111,7 @@ class JudgedClause:
     Attributes:
         found: what was found of it in the logs so far.
         judged: the claim as it is judged.
+        broken: the open activations that break it already, by node, each with the path.
         explainer: of the current log.
     """
 
@@ -133,17 +139,24 @@ class JudgedClause:
         self._is_about_mission: Final = any(isinstance(each, Mission) for each in subjects)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [each.target for each in parts_in(parts) if isinstance(each, Running)]
+        is_whole = any(scope.word == "while" for scope in requirement.scopes) and claim.verb not in _AT_ANY_TIME
+        is_of_all = any(isinstance(each, Aggregate) for each in parts_in(parts))
+        self._is_final: Final = claim.verb in _FINAL and not (self._running or is_whole or is_of_all)
         self.found.missing = self._why_not()
         self._is_judged: Final = not self.found.missing
         self._nodes: Final[list[int]] = []  # of the current log, as are these:
         self._places: Final[list[_Place]] = []
         self._signals: Signals
         self._history: History
+        self._nearby: Callable[[int], Nearby]
         self._waiting: Final[list[tuple[Activation, Observed, str]]] = []  # until it is known what else ran meanwhile
         self._refused: Final[list[Refusal]] = []  # in the open run, of the clause's nodes
         self._notes: Final[Counter[str]] = Counter()
         self._waits = False
+        self._has_started = False  # in the open run
         self._records: Final[list[Callable[[Judgement, int, int, str], None]]] = []
+        self._looked: Final[dict[int, tuple[Moment, Moment]]] = {}  # of open activations: their start, and up to when
+        self.broken: Final[dict[int, tuple[Judgement, str]]] = {}
         self.explainer: Explainer
 
     def record(self, record: Callable[[Judgement, int, int, str], None]) -> None:
@@ -156,7 +169,7 @@ class JudgedClause:
         Args:
             nearby: resolves the other nodes that a clause names, relative to its node.
         """
-        self._signals, self._history = signals, history
+        self._signals, self._history, self._nearby = signals, history, nearby
         self._nodes.clear()
         self._places.clear()
         self._notes.clear()
@@ -179,7 +192,7 @@ class JudgedClause:
 
     def judge(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
         """Count an activation of one of its nodes, which a guard may have stopped, by what was observed during it."""
-        self.found.has_run = True
+        self.found.has_run = self._has_started = True
         if activation.timing in BEGUN_BEFORE:
             return
         self._waits = self._waits or activation.shown != activation.ended
@@ -190,6 +203,28 @@ class JudgedClause:
             self._waiting.append((activation, observed, path))
         elif self._judge is not None:
             self._judge_one(activation, observed, path)
+        self.broken.pop(activation.uid, None)
+
+    def look(self, activation: Activation, path: str) -> bool:
+        """Judge an activation that is still open; returns whether it breaks the clause, whatever comes later, and was
+        not seen to before.
+        """
+        uid, verb = activation.uid, self.claim.verb
+        if self._judge is None or not self._is_final or uid in self.broken or uid not in self._nodes:
+            return False
+        observed = Observed(self._signals, self._nearby(uid), activation.started, activation.ended)
+        starts = [scope for scope in self.requirement.scopes if scope.word == "when"]
+        if in_scope(starts, verb, observed) is not True:
+            return False
+        started, until = self._looked.get(uid, (None, activation.started))
+        if verb in _AT_ANY_TIME and started == activation.started:
+            observed = observed.between(until, activation.ended)
+        self._looked[uid] = activation.started, activation.ended
+        judgement = self._judge(self.judged, activation, observed)
+        if judgement is None or judgement.holds is not False:
+            return False
+        self.broken[uid] = judgement, path
+        return True
 
     def refuse(self, refusal: Refusal, path: str) -> None:
         """Count a start that a guard refused: it violates the demand that the guard enforces, and for `succeeds` it is
@@ -235,6 +270,10 @@ class JudgedClause:
         self._refused.clear()
         self._tally.end_run(run)
         self._margins.end_run(run.number)
+        self.found.left_out["idle"] += self._judge is not None and self._is_judged and not self._has_started
+        self._has_started = False
+        self.broken.clear()
+        self._looked.clear()
 
     def _judge_over(self, root: Activation) -> None:
         """Count what is judged over the run, in order of time for all uses of a subtree together: a window may keep
@@ -337,6 +376,8 @@ class JudgedClause:
     def _count(self, judgement: Judgement | None, of: Activation, path: str) -> None:
         if judgement is None:
             self._tally.cut_off += of.outcome == "O"
+            if self.claim.verb == "leaves" and of.outcome in _WITHOUT_SUCCESS:
+                self.found.left_out[_WITHOUT_SUCCESS[of.outcome]] += 1
         else:
             if judgement.note:
                 self._notes[judgement.note] += 1
@@ -419,7 +460,7 @@ class JudgedClause:
     def verdict(self, open_run: Run | None = None) -> ClauseVerdict:
         """The verdict on all judgements so far, with those of the open run if that is given."""
         found = self.found
-        tally = self._tally.result() if open_run is None else self._tally.so_far(open_run)
+        tally = self._tally.result() if open_run is None else self._tally.so_far(open_run, self.broken.values())
         verdict, why = verdict_of(tally, found.missing, found.has_run)
         if verdict == NEVER and found.missed and self.claim.event is not None:
             after = self.claim.text.partition(" after ")[2]
@@ -438,6 +479,9 @@ class JudgedClause:
             histogram=tally.distribution.histogram(goal if isinstance(goal, Value) else None),
             timeline=found.timeline if verdict == VIOLATED else None,
             measures=self._measures() if self._with_measures else None,
+            failed=found.left_out["failed"],
+            halted=found.left_out["halted"],
+            idle=found.left_out["idle"],
             **tally.fields(),
         )
 
@@ -456,11 +500,8 @@ class JudgedClause:
 
     @property
     def text(self) -> str:
-        """The clause as typed, with all that counts for its requirement."""
-        requirement = self.requirement
-        of_all = (*requirement.scopes, requirement.odds, requirement.window)
-        parts = [self.claim.text, *(each.text for each in of_all if each is not None)]
-        return " ".join([*parts, f"goal {requirement.goal.text}"] if requirement.goal is not None else parts)
+        """As of its demand."""
+        return self.demand.text
 
 
 def _kind(judgement: Judgement | None, of: Activation) -> int:
@@ -505,3 +546,8 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
     if judgement is None or root is None or root.timing != "broken":
         return judgement
     return Judgement(None, judgement.at, CLOCK_SET_BACK)
+
+
+_WITHOUT_SUCCESS: Final[dict[Outcome, str]] = {"F": "failed", "H": "halted"}
+_AT_ANY_TIME: Final = ("keeps", "never")
+_FINAL: Final = ("takes", "succeeds", "needs", *_AT_ANY_TIME)  # verbs whose violation stays one, whatever follows

@@ -3,13 +3,13 @@
 The columns, which later versions add to but do not change:
 
     requirement, title, mission, clause, path
-    verdict         violated | unknown | undecided | satisfied | never exercised
+    verdict         violated | unknown | undecided | satisfied | never exercised | open
     unit            activations | runs
     counted, violated, unknown, cut_off
     worst, worst_si, worst_run
     low, high       limits of the probability
     more            how many more without a violation decide
-    result          in words
+    result          in words, of an open requirement the reason
     look_at         what to look at, for a violated clause
     limits          which limits low and high are: one look | window | every look
 """

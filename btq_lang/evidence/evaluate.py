@@ -19,6 +19,7 @@ from btq_lang.evidence.history import History, Nearby
 from btq_lang.evidence.model import ROOT, Activation, Outcome, Series, Session
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.odds import Limits
+from btq_lang.evidence.open_verdicts import open_clauses
 from btq_lang.evidence.outline import demands, outline
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signals import Signals
@@ -239,6 +240,8 @@ class MissionEvaluation:
         by_requirement: dict[str, list[ClauseVerdict]] = {name: [] for name in found.all}
         for clause in self._clauses:
             by_requirement[clause.requirement.name].append(clause.verdict(open_run))
+        for name, clauses in by_requirement.items():
+            clauses.extend(() if clauses else open_clauses(found.all[name]))
         return tuple(
             RequirementVerdict(
                 name,
@@ -247,7 +250,6 @@ class MissionEvaluation:
                 tuple(clauses),
             )
             for name, clauses in by_requirement.items()
-            if clauses
         )
 
     def result(self) -> MissionVerdicts:
@@ -264,8 +266,5 @@ class MissionEvaluation:
             contexts=tuple(ContextSummary(name, runs, unknown[name]) for name, runs in held.items()),
             retries=found.coverage.retries.summary(),
             recoveries=found.coverage.recoveries.summary(),
-            by_people=tuple(
-                each.name for each in requirements.all.values() if each.claims and each.is_verified_by_people
-            ),
             outline=outline(requirements) if self._with_measures else "",
         )

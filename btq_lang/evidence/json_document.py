@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
 FORMAT: Final = "btq-verdicts"
-VERSION: Final = 1
+VERSION: Final = 2
 
 
 def render(report: Report) -> str:

@@ -10,7 +10,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from btq_lang.evidence.sentences import explained, headline, result
-from btq_lang.evidence.verdicts import SATISFIED, VIOLATED, ClauseVerdict, MissionVerdicts, Report, RequirementVerdict
+from btq_lang.evidence.verdicts import (
+    NEVER,
+    SATISFIED,
+    VIOLATED,
+    ClauseVerdict,
+    MissionVerdicts,
+    Report,
+    RequirementVerdict,
+)
 from btq_lang.evidence.wording import timestamp
 from btq_lang.render.junit import escaped
 
@@ -54,9 +62,14 @@ def _case(requirement: RequirementVerdict, mission: MissionVerdicts) -> Iterator
         message = escaped(f"{requirement.verdict}: {result(worst)}")
         yield f'      <skipped type="{requirement.verdict}" message="{message}"/>'
     else:
-        lines = [f"{clause.text}: {result(clause)}" for clause in requirement.clauses]
+        lines = [f"{clause.text}{_at(clause)}: {result(clause)}" for clause in requirement.clauses]
         yield f"      <system-out>{escaped('; '.join(lines))}</system-out>"
     yield "    </testcase>"
+
+
+def _at(clause: ClauseVerdict) -> str:
+    """The node of a clause at which nothing was exercised, though the requirement is satisfied."""
+    return f" at {clause.path}, {NEVER}" if clause.verdict == NEVER and clause.path else ""
 
 
 def _details(clause: ClauseVerdict, mission: MissionVerdicts) -> Iterator[str]:

@@ -38,7 +38,7 @@ def _lines(mission: MissionVerdicts) -> Iterator[str]:
         (
             f"**{clause.verdict}**" if clause.verdict == WORST_FIRST[0] else clause.verdict,
             "<br>".join(filter(None, (f"**{escaped(requirement.id)}**", escaped(requirement.title)))),
-            code(clause.text) + (f"<br>{code(clause.path)}" if clause.path else ""),
+            "<br>".join(code(text) for text in (clause.text, clause.path) if text),
             escaped(result(clause)),
         )
         for requirement, clause in clauses

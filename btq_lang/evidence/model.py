@@ -44,6 +44,7 @@ class Mark(int):
 
 GAP: Final = Mark(-1)  # transitions before this one were not seen
 PAUSE: Final = Mark(-2)  # for a while there has been none
+UNTIL: Final = Mark(-3)  # up to this time there has been no other
 
 
 class LoggedNode(Record):
@@ -95,6 +96,10 @@ class LoggedTree:
     def has_tree(self, uid: int) -> bool:
         """Whether a node is a SubTree, by the paths below it; its kind is the name of the tree."""
         return self.last[uid] > uid and self.nodes[uid + 1].path.startswith(f"{self.nodes[uid].path}/")
+
+    def is_like(self, other: LoggedTree) -> bool:
+        """Whether the other has the same nodes."""
+        return (self.nodes, self.parent) == (other.nodes, other.parent)
 
     def above(self, uid: int) -> Iterator[int]:
         """The ancestors of a node, the nearest first."""

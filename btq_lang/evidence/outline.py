@@ -30,6 +30,14 @@ class Demand(Record):
     applied: Applied | None
     place: str
 
+    @property
+    def text(self) -> str:
+        """The clause as typed, with all that counts for its requirement."""
+        requirement = self.requirement
+        of_all = (*requirement.scopes, requirement.odds, requirement.window)
+        parts = [self.claim.text, *(each.text for each in of_all if each is not None)]
+        return " ".join([*parts, f"goal {requirement.goal.text}"] if requirement.goal is not None else parts)
+
 
 def demands(found: Requirements) -> Iterator[Demand]:
     """The clauses that logs can show, in the order in which they are judged."""

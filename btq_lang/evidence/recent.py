@@ -6,6 +6,7 @@ One invariant: only the judgements in the window, the latest ones, are kept, wha
 from __future__ import annotations
 
 from bisect import insort
+from collections.abc import Iterable
 from operator import itemgetter
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -61,7 +62,7 @@ class Recent:
         """Unknown until all logs are read."""
         return False
 
-    def so_far(self, run: Run) -> Tally:
+    def so_far(self, run: Run, broken: Iterable[tuple[Judgement, str]] = ()) -> Tally:
         """The tally without the open run."""
         return self.result()
 

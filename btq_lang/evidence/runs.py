@@ -20,7 +20,19 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.begins import Begin, Begins
-from btq_lang.evidence.model import FAILURE, GAP, ROOT, RUNNING, SKIPPED, SUCCESS, Activation, LoggedTree, Mark, Session
+from btq_lang.evidence.model import (
+    FAILURE,
+    GAP,
+    ROOT,
+    RUNNING,
+    SKIPPED,
+    SUCCESS,
+    UNTIL,
+    Activation,
+    LoggedTree,
+    Mark,
+    Session,
+)
 from btq_lang.evidence.wording import timestamp
 
 if TYPE_CHECKING:
@@ -41,6 +53,7 @@ def activations(session: Session) -> Iterator[Activation]:
     done: set[int] = set()  # the nodes that have completed and have not been reset since
     is_reset_written = False
     row, now = 0, (0, 0)
+    until = now  # nodes that are active at `now` are still active then
     for number, (time, uid, status) in enumerate(session.transitions, 1):
         row = 2 * number  # so that there are moments between rows
         if uid not in parent or status not in _STATUSES:
@@ -48,9 +61,11 @@ def activations(session: Session) -> Iterator[Activation]:
                 if idle is not None:
                     yield from nodes.end(*idle, "H")
                     idle = None
+                if uid is UNTIL:
+                    until = time, row
                 if uid is GAP:
                     if ROOT in begun:
-                        yield from nodes.end(ROOT, now, "O", "lost", below="O")
+                        yield from nodes.end(ROOT, max(now, until), "O", "lost", below="O")
                     done.clear()
                     unseen.update(parent)
                     begins.lose()
@@ -112,7 +127,7 @@ def activations(session: Session) -> Iterator[Activation]:
     if idle is not None:
         yield from nodes.end(*idle, "H")
     if ROOT in begun:
-        yield from nodes.end(ROOT, (now[0], row), "O", below="O")
+        yield from nodes.end(ROOT, (max(now, until)[0], row), "O", below="O")
     session.remarks.extend(odd.remarks())
 
 

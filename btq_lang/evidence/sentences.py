@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from btq_lang.evidence.tally import USUAL_CONFIDENCE
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Violation
+from btq_lang.evidence.verdicts import NEVER, OPEN, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Violation
 from btq_lang.evidence.wording import duration, moment, share
 from btq_lang.util.text import counted
 
@@ -22,8 +22,16 @@ def result(clause: ClauseVerdict) -> str:
         parts.append(f"{known}{worst}")
     if clause.cut_off and clause.verdict != NEVER:
         parts.append(f"{clause.cut_off} cut off by the end of a log")
+    left_out = [f"{number} that {how}" for number, how in _left_out(clause) if number]
+    if left_out and clause.verdict != UNKNOWN:
+        number = clause.failed + clause.halted
+        parts.append(f"{' and '.join(left_out)} {'was' if number == 1 else 'were'} not counted")
     bounded = f"; {clause.bounded.number} bounded by {clause.bounded.text}" if clause.bounded is not None else ""
     return f"{', '.join(parts)}{bounded}"
+
+
+def _left_out(clause: ClauseVerdict) -> tuple[tuple[int, str], ...]:
+    return (clause.failed, "failed"), (clause.halted, f"{'was' if clause.halted == 1 else 'were'} halted")
 
 
 def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
@@ -81,7 +89,7 @@ def _counted(clause: ClauseVerdict) -> str:
     if clause.verdict == UNKNOWN:
         others = f" ({clause.unknown} of {clause.counted + clause.unknown} {clause.unit})" if clause.unknown else ""
         return f"{clause.why}{others}"
-    if clause.verdict == NEVER:
+    if clause.verdict in (NEVER, OPEN):
         return clause.why
     why = f" ({clause.why})" if clause.why else ""
     unknown = f", {clause.unknown} unknown{why}" if clause.unknown else ""

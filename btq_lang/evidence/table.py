@@ -11,7 +11,7 @@ from btq_lang.evidence.folding import folded, folded_sources
 from btq_lang.evidence.node_rows import node_rows
 from btq_lang.evidence.sentences import explained, headline, result, worst_violation
 from btq_lang.evidence.signals import NO_SAMPLES
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
+from btq_lang.evidence.verdicts import NEVER, OPEN, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
 from btq_lang.evidence.wording import duration, first_of, period
 from btq_lang.render.cells import broken, cells_of, narrowed, printable
 from btq_lang.render.colour import Paint, painter
@@ -75,7 +75,10 @@ def requirement_rows(
         name = requirement.id
         for clause in sorted(requirement.clauses, key=lambda each: _ORDER.index(each.verdict)):
             hint = "give them with --signals FILE" if clause.why.startswith(NO_SAMPLES) else ""
-            texts = [name, title, _clause(clause, requirement), result(clause), hint]
+            found = result(clause)
+            if clause.idle and clause.verdict != NEVER and not _is_lone(clause, requirement):
+                found += f", not started in {counted(clause.idle, 'run')}"
+            texts = [name, title, _clause(clause, requirement), found, hint]
             below: Sequence[str] = [*_explanation(clause, medians, verbose)] if clause.verdict == VIOLATED else []
             rows.append((clause.verdict, [printable(text) for text in texts], below))
             name = title = ""  # shown once
@@ -100,8 +103,11 @@ def requirement_rows(
 
 def _clause(clause: ClauseVerdict, requirement: RequirementVerdict) -> str:
     """The clause, with its node if the requirement has the same clause at another one."""
-    is_lone = sum(each.text == clause.text for each in requirement.clauses) == 1
-    return clause.text if is_lone or not clause.path else f"{clause.text} at {clause.path}"
+    return clause.text if _is_lone(clause, requirement) or not clause.path else f"{clause.text} at {clause.path}"
+
+
+def _is_lone(clause: ClauseVerdict, requirement: RequirementVerdict) -> bool:
+    return sum(each.text == clause.text for each in requirement.clauses) == 1
 
 
 def _explanation(clause: ClauseVerdict, medians: Mapping[str, float], verbose: bool) -> Iterator[str]:
@@ -128,8 +134,6 @@ def _summary(mission: MissionVerdicts) -> Iterator[str]:
             runs.append(f"{word} {repeats.total}, at most {repeats.most} in {run}")
     yield " · ".join(map(printable, runs))
     yield from _nodes(mission) if mission.nodes else ()  # the summary of a store has none
-    if mission.by_people:
-        yield printable(f"verified by people: {', '.join(mission.by_people)}")
 
 
 def _nodes(mission: MissionVerdicts) -> Iterator[str]:
@@ -168,5 +172,12 @@ _NARROWEST: Final = 12  # columns of a node's path
 _FURTHER: Final = 4  # violations explained in addition to the worst
 _NAMED: Final = 3  # nodes where failures began
 _LONG_TICK: Final = 0.01  # s, the period in which Nav2 ticks its trees
-_ORDER: Final = (VIOLATED, SATISFIED, UNDECIDED, UNKNOWN, NEVER)
-VERDICT_STYLES: Final = {VIOLATED: "error", SATISFIED: "hint", UNDECIDED: "warning", UNKNOWN: "info", NEVER: "warning"}
+_ORDER: Final = (VIOLATED, SATISFIED, UNDECIDED, UNKNOWN, NEVER, OPEN)
+VERDICT_STYLES: Final = {
+    VIOLATED: "error",
+    SATISFIED: "hint",
+    UNDECIDED: "warning",
+    UNKNOWN: "info",
+    NEVER: "warning",
+    OPEN: "warning",
+}

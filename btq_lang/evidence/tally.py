@@ -5,6 +5,7 @@ One invariant: counts are enough for the verdict, so the only judgements kept ar
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from copy import copy
 from typing import TYPE_CHECKING, Any, Final
 
@@ -87,14 +88,17 @@ class Tally:
             self._kept += 1
         else:
             self._broken.append((judgement, path, chain))
-        measure = judgement.measure
         if judgement.most is not None:
             self._bound(judgement.most)
-        if measure is not None and (judgement.most is None or not judgement.holds):
-            self.distribution.add(measure)
-            if measure.excess > self._worst_excess:
-                self._worst_excess = measure.excess
-                self._worst_now = measure
+        if judgement.measure is not None and (judgement.most is None or not judgement.holds):
+            self.distribution.add(judgement.measure)
+            self._note_worst(judgement)
+
+    def _note_worst(self, judgement: Judgement) -> None:
+        measure = judgement.measure
+        if measure is not None and measure.excess > self._worst_excess:
+            self._worst_excess = measure.excess
+            self._worst_now = measure
 
     def _bound(self, most: Measure) -> None:
         before = self.bounded or Bounded(0, most.si, "")
@@ -164,11 +168,18 @@ class Tally:
         """The tally itself; `Recent` computes one."""
         return self
 
-    def so_far(self, run: Run) -> Tally:
-        """The tally as if the open run ended now; where runs are counted, only if it is violated already."""
+    def so_far(self, run: Run, broken: Iterable[tuple[Judgement, str]] = ()) -> Tally:
+        """The tally as if the open run ended now; where runs are counted, only if it is violated already.
+
+        Args:
+            broken: the violations of activations that are still open, with their paths.
+        """
         found = copy(self)
-        vars(found).update(violations=[*self.violations], _broken=[*self._broken])
-        if self.counts_runs and not self._broken:
+        still = [(judgement, path, ()) for judgement, path in broken]
+        vars(found).update(violations=[*self.violations], _broken=[*self._broken, *still])
+        for judgement, _, _ in still:
+            found._note_worst(judgement)
+        if self.counts_runs and not found._broken:
             found._kept = found._unclear = 0
         found.end_run(run)
         return found

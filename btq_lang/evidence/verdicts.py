@@ -18,13 +18,14 @@ if TYPE_CHECKING:
     from btq_lang.requirements.model import Value
     from btq_lang.workspace.resolved import ResolvedNode
 
-Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised"]
+Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised", "open"]
 VIOLATED: Final = "violated"
 UNKNOWN: Final = "unknown"
 UNDECIDED: Final = "undecided"
 SATISFIED: Final = "satisfied"
 NEVER: Final = "never exercised"
-WORST_FIRST: Final[tuple[Verdict, ...]] = (VIOLATED, UNKNOWN, UNDECIDED, SATISFIED, NEVER)
+OPEN: Final = "open"
+WORST_FIRST: Final[tuple[Verdict, ...]] = (VIOLATED, UNKNOWN, UNDECIDED, SATISFIED, NEVER, OPEN)
 OUTCOMES: Final[dict[Outcome, str]] = {"S": "succeeded", "F": "failed", "H": "halted", "O": "interrupted"}
 
 
@@ -169,10 +170,11 @@ class ClauseVerdict(Record):
     """A clause at a written node.
 
     Attributes:
-        text: as typed, with its scopes and odds.
+        text: as typed, with its scopes and odds; empty if an open requirement has no clause.
         path: of the node, as the engine names it; all paths for a subtree that is used several times.
         of: what it measures if that is more than a node: `from … to …`, `sum of …`; else empty.
-        why: why the verdict is unknown or never exercised, or why parts of an undecided one are unknown; else empty.
+        why: why the verdict is unknown, never exercised or open, or why parts of an undecided one are unknown; else
+            empty.
         unit: what is counted: `activations` or `runs`.
         counted: how many activations (or runs, for odds of runs, sums, and tries in a run) were judged true or false.
         violated, unknown: how many of these are violations, and how many more are unknown.
@@ -187,6 +189,8 @@ class ClauseVerdict(Record):
         histogram: of the measures; None without any.
         timeline: the run of the worst violation; None without any.
         measures: to judge it again; None: not kept.
+        failed, halted: activations left out because the clause is about those that succeed.
+        idle: in how many runs its node did not start, if it is about activations of one.
     """
 
     text: str
@@ -209,6 +213,9 @@ class ClauseVerdict(Record):
     timeline: Timeline | None = None
     measures: Measures | None = None
     bounded: Bounded | None = None
+    failed: int = 0
+    halted: int = 0
+    idle: int = 0
 
 
 class RequirementVerdict(Record):
@@ -305,7 +312,6 @@ class MissionVerdicts(Record):
         contexts: of the mission, in the order of definition.
         retries: by Retry nodes and Nav2's RecoveryNodes.
         recoveries: by RecoveryNodes between two tries.
-        by_people: the requirements verified by review, test or analysis, which are not judged.
         outline: of its trees; empty without measures.
     """
 
@@ -318,7 +324,6 @@ class MissionVerdicts(Record):
     contexts: tuple[ContextSummary, ...]
     retries: Repeats
     recoveries: Repeats
-    by_people: tuple[str, ...]
     outline: str = ""
 
     @property

@@ -12,7 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.clause import JudgedClause, verdict_of
-from btq_lang.evidence.model import Activation, NamedLog, Session
+from btq_lang.evidence.model import GAP, RUNNING, Activation, Moment, NamedLog, Session, Transition
 from btq_lang.evidence.sentences import result
 from btq_lang.evidence.tally import Run
 from btq_lang.evidence.verbs import Judgement
@@ -51,12 +51,15 @@ class Watched:
 
     def __init__(self, sessions: Iterable[Session | NamedLog], address: str, tell: Callable[[News], None]) -> None:
         self.id: Final = secrets.token_hex(32)
-        self.sessions: Final = sessions
+        self.sessions: Final = map(self._followed, sessions)
         self.mission = ""
         self.address: Final = address
         self._tell: Final = tell
         self._missions: Final[list[tuple[MissionEvaluation, _Listener]]] = []
         self.outcomes: Final[Counter[str]] = Counter()
+        self._listener: _Listener | None = None  # of the current session
+        self._open: Final[dict[int, Moment]] = {}  # when each active node wrote that it is
+        self._rows = 0  # of the current session
 
     def judged_by(self, evaluation: MissionEvaluation) -> None:
         """Tell what the evaluation of a mission finds, by which no session before was judged."""
@@ -69,10 +72,51 @@ class Watched:
         self.mission = ""
         self.tell(f"its tree belongs to no known mission{f': {difference}' if difference else ''}; it is not judged")
 
+    def enter(self, listener: _Listener, mission: str) -> None:
+        """Begin a session of a mission, and tell which, unless the session before was of the same."""
+        self._listener = listener
+        if mission != self.mission:
+            self.mission = mission
+            self.tell(mission)
+
+    def look(self, time: int) -> None:
+        """Tell which clauses are broken by nodes that are still active.
+
+        Args:
+            time: until when all that the robot did is known.
+        """
+        for uid, began in self._open.items():
+            if self._listener is not None:
+                self._listener.look(Activation(uid, began, (time, self._rows), "O"))
+
     def so_far(self) -> Iterator[tuple[RequirementVerdict, ...]]:
         """The verdicts of each mission that was judged, including the open run."""
         for evaluation, listener in self._missions:
             yield evaluation.verdicts(listener.open_run())
+
+    def _followed(self, session: Session | NamedLog) -> Session | NamedLog:
+        """The session, with transitions that are noted while they are read."""
+        if not isinstance(session, Session):
+            return session
+        self._listener = None
+        noted = self._noted(session)
+        return Session(session.tree, noted, session.samples, session.remarks, session.signals, session.robot)
+
+    def _noted(self, session: Session) -> Iterator[Transition]:
+        last, latest = session.tree.last, 0
+        self._open.clear()
+        for number, row in enumerate(session.transitions, 1):
+            self._rows = 2 * number  # as of an activation
+            time, uid, status = row
+            if uid is GAP or (uid in last and time < latest):  # who is active is unknown, or since when
+                self._open.clear()
+            if uid in last:
+                latest = time
+                for each in [each for each in self._open if uid <= each <= last[uid]]:
+                    del self._open[each]
+                if status == RUNNING:
+                    self._open[uid] = time, self._rows
+            yield row
 
     def tell(self, text: str, time: int | None = None, verdict: Verdict | None = None) -> None:
         """Tell something."""
@@ -93,14 +137,24 @@ class _Listener:
         watched = self._watched
         self._paths = {node.uid: node.path for node in joined.tree.nodes.values()}
         nodes = f"{joined.number} of {len(self._paths)} nodes"
-        watched.mission = f"mission {joined.mission.name} ({joined.how}, {nodes})"
-        watched.tell(watched.mission)
+        watched.enter(self, f"mission {joined.mission.name} ({joined.how}, {nodes})")
         for clause in clauses if not self._clauses else ():
             self._clauses[clause] = NEVER
             if clause.requirement.odds is None:
                 clause.record(partial(self._judged, clause))
 
+    def look(self, activation: Activation) -> None:
+        """Tell which clauses an activation breaks that is still open."""
+        path = self._paths[activation.uid]
+        self._note(activation)
+        for clause in self._clauses:
+            if clause.requirement.odds is None and clause.look(activation, path):
+                self._tell(clause, clause.broken[activation.uid][0], path, "; it is still active")
+
     def see(self, activation: Activation) -> None:
+        self._note(activation)
+
+    def _note(self, activation: Activation) -> None:
         if self._begin is None:
             self._begin = activation.begin
         self._end = activation.end
@@ -129,14 +183,16 @@ class _Listener:
         return Run(self._watched.outcomes.total() + 1, self._watched.address, self._begin, self._end)
 
     def _judged(self, clause: JudgedClause, judgement: Judgement, begin: int, end: int, path: str) -> None:
-        if judgement.holds is not False:
-            return
+        if judgement.holds is False and path not in [known for _, known in clause.broken.values()]:
+            self._tell(clause, judgement, path)
+
+    def _tell(self, clause: JudgedClause, judgement: Judgement, path: str, more: str = "") -> None:
         measure = judgement.measure
         value = measured(measure.si, measure.unit, measure.bound.si) if measure is not None else ""
         bound = f", bound {measure.bound.text}" if measure is not None else ""
         sentence = judgement.sentence.replace("{}", value)
         self._clauses[clause] = VIOLATED
-        self._watched.tell(f"{_named(clause)}: {path} {sentence}{bound}", judgement.at, VIOLATED)
+        self._watched.tell(f"{_named(clause)}: {path} {sentence}{bound}{more}", judgement.at, VIOLATED)
 
 
 def _named(clause: JudgedClause) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, Final
 
 from btq_lang.evidence.json_document import FORMAT, VERSION
 from btq_lang.evidence.margins import Margins
@@ -54,7 +54,7 @@ def read_verdicts(text: str) -> tuple[WrittenMission, ...]:
     """
     try:
         found = json.loads(text)
-        if found["format"] != FORMAT or found["version"] != VERSION:
+        if found["format"] != FORMAT or found["version"] not in _VERSIONS:
             raise NotVerdicts(f"expected {FORMAT} {VERSION}, found {found['format']} {found['version']}")
         return tuple(
             WrittenMission(
@@ -106,3 +106,6 @@ def _measures(found: dict[str, Any]) -> Measures:
 def _violation(found: dict[str, Any]) -> Violation:
     words = {"measured": found["measured"] or "", "bound": found["bound"] or "", "start": time_of(found["start"])}
     return Violation(**{**found, **words, "chain": tuple(Link(**each) for each in found["chain"])})
+
+
+_VERSIONS: Final = range(1, VERSION + 1)  # what an older one has, this one has too

@@ -12,11 +12,13 @@ from weakref import ReferenceType, ref
 
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import RULES
+from btq_lang.evidence.open_verdicts import open_clauses, open_reason
 from btq_lang.evidence.outline import Demand, outline
 from btq_lang.evidence.rejudging import Shown, shown_now
 from btq_lang.evidence.sentences import explained, result, worst_violation
 from btq_lang.evidence.verdicts import (
     NEVER,
+    OPEN,
     SATISFIED,
     UNDECIDED,
     UNKNOWN,
@@ -29,6 +31,7 @@ from btq_lang.evidence.written_verdicts import WrittenMission
 from btq_lang.ide.clause_enforcement import MOST_MISSIONS, missions_of
 from btq_lang.ide.meaning import Subject, definition
 from btq_lang.render.gfm import code, escaped, table
+from btq_lang.requirements.model import Requirement
 from btq_lang.requirements.resolve import requirements
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span, counted
@@ -43,11 +46,13 @@ class Judged(Record):
 
     Attributes:
         shown: its clauses.
+        open: its requirements that no log can show.
         is_earlier: the logs were judged by, or are of, other trees.
     """
 
     written: WrittenMission
     shown: tuple[Shown, ...]
+    open: tuple[Requirement, ...]
     is_earlier: bool
 
 
@@ -85,7 +90,8 @@ class Evidence:
         found = requirements(workspace, mission)
         is_whole = all(source.is_whole for source in written.sources)
         is_earlier = not is_whole or outline(found) != written.outline
-        judged = Judged(written, tuple(shown_now(found, written.requirements)), is_earlier)
+        shown = tuple(shown_now(found, written.requirements))
+        judged = Judged(written, shown, tuple(each for each in found.all.values() if open_reason(each)), is_earlier)
         self._known[mission] = ref(workspace), judged
         return judged
 
@@ -93,19 +99,25 @@ class Evidence:
 def verdict_titles(
     workspace: Workspace, path: str, evidence: Evidence
 ) -> Iterator[tuple[Span, str, tuple[tuple[str, Span], ...]]]:
-    """For each requirement in a file that logs show something of: the place of its name, its worst verdict in a few
+    """For each requirement in a file of whose mission there are logs: the place of its name, its worst verdict in a few
     words, and its nodes.
     """
     found: dict[Place, list[tuple[Shown, Judged]]] = {}
+    unseen: dict[Place, str] = {}
     for judged in _on_missions(workspace, path, evidence):
         for shown in judged.shown:
             if shown.demand.requirement.place.path == path:
                 found.setdefault(shown.demand.requirement.place, []).append((shown, judged))
+        for requirement in judged.open:
+            if requirement.place.path == path:
+                unseen[requirement.place] = f"{OPEN}: {open_reason(requirement)}"
     for place, clauses in found.items():
         shown, judged = min(clauses, key=lambda each: _rank(each[0]))
         nodes = [node for each, _ in clauses for node in _nodes(each.demand)]
         places = [(node.path, workspace.files[node.path].span_of(node.place)) for node in nodes]
         yield workspace.files[path].span_of(place), _title(shown, judged), tuple(dict.fromkeys(places))
+    for place, title in unseen.items():
+        yield workspace.files[path].span_of(place), title, ()
 
 
 def verdict_table(workspace: Workspace, path: str, wanted: Subject, evidence: Evidence) -> str:
@@ -113,18 +125,18 @@ def verdict_table(workspace: Workspace, path: str, wanted: Subject, evidence: Ev
     place = definition(workspace, path, wanted)
     lines: list[str] = []
     for judged in _on_missions(workspace, path, evidence):
-        rows = [
-            each
-            for each in judged.shown
-            if place is not None
-            and (each.demand.requirement.name, each.demand.requirement.place.path) == (wanted.name, place.path)
-        ]
+        if place is None:
+            break
+        defined = wanted.name, place.path
+        shown = [each for each in judged.shown if _defined(each.demand.requirement) == defined]
+        rows = [_row(each) for each in sorted(shown, key=_rank)]
+        unseen = (clause for each in judged.open if _defined(each) == defined for clause in open_clauses(each))
+        rows += [(OPEN, code(clause.text) if clause.text else "", escaped(clause.why)) for clause in unseen]
         if rows:
             runs, logs = judged.written.runs, judged.written.sources
             seen = f"{counted(runs, 'run')} in {logs[0].file if len(logs) == 1 else counted(len(logs), 'log')}"
             lines += ["", f"**{escaped(seen)}**" + (f", {_EARLIER}" if judged.is_earlier else ""), ""]
-            rows.sort(key=_rank)
-            lines += table(("Verdict", "Clause", "Result"), map(_row, rows[:_ROWS]))
+            lines += table(("Verdict", "Clause", "Result"), rows[:_ROWS])
             lines += ["", f"and {len(rows) - _ROWS} more"] if len(rows) > _ROWS else []
     return "\n".join(lines).strip()
 
@@ -185,6 +197,10 @@ def _finding(shown: Shown, node: ResolvedNode, judged: Judged, root: str) -> Dia
 
 def _nodes(demand: Demand) -> Sequence[ResolvedNode]:
     return demand.applied.nodes if demand.applied is not None else ()
+
+
+def _defined(requirement: Requirement) -> tuple[str, str | None]:
+    return requirement.name, requirement.place.path
 
 
 def _rank(shown: Shown) -> int:

@@ -43,7 +43,7 @@ small { color: var(--soft); }
 .verdict::before { content: "\\25CB\\00A0"; }
 .verdict.violated { color: var(--missing); } .verdict.violated::before { content: "\\2716\\00A0"; }
 .verdict.satisfied { color: var(--enforced); } .verdict.satisfied::before { content: "\\2714\\00A0"; }
-.verdict.undecided, .verdict.unknown, .verdict.never-exercised { color: var(--reviewed); }
+.verdict.undecided, .verdict.unknown, .verdict.never-exercised, .verdict.open { color: var(--reviewed); }
 .empty { color: var(--soft); }
 .legend { margin: .25rem 0; font-size: .85rem; }
 .scroll { overflow: auto; border: 1px solid var(--line); border-radius: 6px; background: var(--ground); }

@@ -7,7 +7,8 @@ The document, format 1; a later btq adds keys but changes none without a new num
                        "how": TEXT, "clauses": [TEXT], "at": PLACE,
                        "clauses_without_nodes": [TEXT],
                        "evidence": [{"mission": PATH, "clause": TEXT, "path": PATH IN THE ENGINE,
-                                     "verdict": "violated" | "unknown" | "undecided" | "satisfied" | "never exercised",
+                                     "verdict": "violated" | "unknown" | "undecided" | "satisfied" | "never exercised"
+                                                | "open",
                                      "result": TEXT}] | null,
                        "holds_for": [{"subject": TEXT, "nodes": [KEY], "arguments": TEXT, "at": PLACE,
                                       "attached_by": "subject" | "satisfies" | "apply" | "link",

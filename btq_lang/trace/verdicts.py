@@ -94,10 +94,11 @@ def _row(requirement: RequirementVerdict, clause: ClauseVerdict, mission: Missio
     name = f'<a class="name" href="#{key}">{escape(requirement.id)}</a>' if key else escape(requirement.id)
     run = f'<p><a href="#run-{clause.timeline.run}">Show the run</a></p>' if clause.timeline is not None else ""
     verdict = clause.verdict.replace(" ", "-")
+    text = f"<code>{escape(clause.text)}</code>" if clause.text else ""
     return (
         f'<tr data-note="{key}">'
         f'<td><span class="verdict {verdict}">{clause.verdict}</span></td>'
-        f'<th scope="row">{name}<p>{escape(requirement.title)}</p><code>{escape(clause.text)}</code></th>'
+        f'<th scope="row">{name}<p>{escape(requirement.title)}</p>{text}</th>'
         f"<td>{escape(result(clause))}{look}{run}</td>"
         f"<td>{_histogram(clause.histogram) if clause.histogram is not None else ''}</td></tr>"
     )

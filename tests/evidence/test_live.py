@@ -8,6 +8,7 @@ import os
 import re
 import select
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -20,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import zmq
 from evidence_logs import MAIN, MAIN_XML, Verify
 from groot2_robot import KEPT, Robot
 
@@ -93,6 +95,7 @@ def live(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest
 def plain(text: str, robot: Robot) -> list[str]:
     """The lines of a text, without times and ports."""
     text = text.replace(robot.address, "ROBOT")
+    text = re.sub(r"took [\d.]+ ms(?=, bound 100 ms; it is still active)", "took MORE", text)
     text = re.sub(r"\d{4}-\d\d-\d\d\s+\d\d:\d\d:\d\d\.\d{3} UTC\)", "DAY", text)
     text = re.sub(r"\d\d:\d\d:\d\d\.\d{3}", "TIME", text)
     text = re.sub(r"\d{4}-\d\d-\d\d \d\d:\d\d(–\d\d:\d\d)? UTC", "DAY", text)
@@ -108,7 +111,7 @@ def test_verdicts_are_printed_as_they_fall_and_then_the_table(live: Live) -> Non
         "TIME  mission main (as built now, 3 of 3 nodes)",
         "TIME  run 1 succeeded after 10 ms",
         "TIME  satisfied        quick  Move takes at most 100 ms: held so far in 1 activation, worst 5 ms in run 1",
-        "TIME  violated         quick  Move takes at most 100 ms: Move::2 took 200 ms, bound 100 ms",
+        "TIME  violated         quick  Move takes at most 100 ms: Move::2 took MORE, bound 100 ms; it is still active",
         "TIME  run 2 succeeded after 205 ms",
         "2 runs in ROBOT, DAY, mission main (as built now, 3 of 3 nodes)",
         "",
@@ -165,12 +168,12 @@ def test_what_a_gap_hides_is_unknown(live: Live) -> None:
         robot.play(GOOD)
 
     with Robot(MAIN_XML) as robot:
-        printed = live.watch(robot, flood, "--strict")
+        printed = live.watch(robot, flood, "--strict", mission=MISSION.replace("100 ms", "9 s"))
     assert live.code == 1
     gap = "gap: more transitions than the publisher keeps came between two requests; what happened meanwhile is unknown"
     assert gap in printed
     assert (
-        "  unknown          quick  Move takes at most 100 ms  transitions were lost meanwhile (1 of 2 activations)"
+        "  unknown          quick  Move takes at most 9 s  transitions were lost meanwhile (1 of 2 activations)"
         in printed
     )
     assert (
@@ -185,10 +188,10 @@ def test_a_violation_after_a_gap_is_still_one(live: Live) -> None:
         robot.wait_for("t", "t")
         robot.change(2, 2)
         robot.drain()
-        robot.play("2R 200 2S")
+        robot.play("2R 700 2S")
 
     with Robot(MAIN_XML) as robot:
-        found = json.loads(live.watch(robot, take, "--format", "json"))
+        found = json.loads(live.watch(robot, take, "--format", "json", mission=MISSION.replace("100 ms", "500 ms")))
     (clause,) = found["requirements"][0]["clauses"]
     assert (clause["verdict"], clause["counted"], clause["violated"], clause["unknown"]) == ("violated", 1, 1, 1)
 
@@ -231,6 +234,90 @@ def test_no_robot_is_an_error(live: Live) -> None:
     assert live.code == 2
     assert plain(printed, robot) == ["TIME  no publisher yet; waiting for one at ROBOT"]
     assert plain(live.errors, robot) == ["btq verify: no robot answered at ROBOT, so there is nothing to judge"]
+
+
+def listening(does: Callable[[socket.socket], object]) -> tuple[str, socket.socket]:
+    """The address of a server that does this with each connection, and its socket, which ends it."""
+    server = socket.create_server(("127.0.0.1", 0))
+
+    def serve() -> None:
+        with suppress(OSError):
+            while True:
+                connection, _ = server.accept()
+                threading.Thread(target=does, args=(connection,), daemon=True).start()
+
+    threading.Thread(target=serve, daemon=True).start()
+    return f"tcp://127.0.0.1:{server.getsockname()[1]}", server
+
+
+def web_server(connection: socket.socket) -> None:
+    text = b""
+    with suppress(OSError):
+        while not text.endswith(b"\r\n\r\n") and (more := connection.recv(1000)):
+            text += more
+        connection.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+    connection.close()
+
+
+def says_at_once(connection: socket.socket) -> None:
+    connection.sendall(b"SSH-2.0-OpenSSH_9.6\r\n" + bytes(range(256)))
+
+
+EXPECTED = "expected a Groot2Publisher of BehaviorTree.CPP 4, found"
+PORT = "Groot2Publisher has the port 1667 unless the program names another one"
+
+
+@pytest.mark.parametrize(
+    ("does", "told"),
+    [
+        (web_server, f"{EXPECTED} something else, which says 'HTTP/1.1 400 Bad Request'"),
+        (says_at_once, f"{EXPECTED} something else, which says 'SSH-2.0-OpenSSH_9.6'"),
+        (lambda connection: None, f"{EXPECTED} something that does not answer; {PORT}"),
+    ],
+)
+def test_another_protocol_is_an_error(does: Callable[[socket.socket], object], told: str, live: Live) -> None:
+    kept: list[socket.socket] = []
+    address, server = listening(lambda connection: (kept.append(connection), does(connection)))
+    (live.folder / "main.btq").write_text(MISSION, encoding="utf-8")
+    with server:
+        live.text("--live", address, "--mission", "main.btq")
+        server.shutdown(socket.SHUT_RDWR)
+    for each in kept:
+        each.close()
+    assert (live.code, live.errors) == (2, f"btq verify: {address}: {told}\n")
+
+
+@pytest.mark.parametrize("kind", [zmq.PUB, zmq.PULL, zmq.DEALER, zmq.ROUTER])
+def test_another_socket_of_zeromq_is_an_error(kind: int, live: Live) -> None:
+    """PUB is that of the port 1666 of BehaviorTree.CPP 3."""
+    (live.folder / "main.btq").write_text(MISSION, encoding="utf-8")
+    with zmq.Context() as context, context.socket(kind) as other:
+        address = f"tcp://127.0.0.1:{other.bind_to_random_port('tcp://127.0.0.1')}"
+        live.text("--live", address, "--mission", "main.btq")
+    told = f"{EXPECTED} a ZeroMQ socket of another type that does not answer; {PORT}"
+    assert (live.code, live.errors) == (2, f"btq verify: {address}: {told}\n")
+
+
+def test_a_server_of_another_protocol_over_zeromq_is_an_error(live: Live) -> None:
+    """As that of the port 1667 of BehaviorTree.CPP 3, which replies to whatever it is asked."""
+    with Robot(MAIN_XML) as robot:
+        robot.answer = lambda parts: [b"\x0c\0\0\0flatbuffer"]
+        (live.folder / "main.btq").write_text(MISSION, encoding="utf-8")
+        live.text("--live", robot.address, "--mission", "main.btq")
+    told = "expected a reply of a Groot2Publisher, found one that begins with 14 bytes"
+    assert (live.code, live.errors) == (2, f"btq verify: {robot.address}: {told}\n")
+
+
+def test_what_hangs_up_is_waited_for(live: Live) -> None:
+    """As the end of a tunnel to a robot that does not run yet."""
+    address, server = listening(lambda connection: connection.close())
+    (live.folder / "main.btq").write_text(MISSION, encoding="utf-8")
+    threading.Timer(6, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    with server:
+        printed = live.text("--live", address, "--mission", "main.btq")
+        server.shutdown(socket.SHUT_RDWR)
+    assert printed.endswith(f"no publisher yet; waiting for one at {address}\n")
+    assert live.errors == f"btq verify: no robot answered at {address}, so there is nothing to judge\n"
 
 
 def test_samples_are_those_of_the_blackboard(live: Live) -> None:
@@ -358,20 +445,21 @@ def test_on_a_terminal_the_verdicts_are_drawn_in_place(tmp_path: Path) -> None:
         robot.play("3S 1S 2I 3I 1I")
         terminal.wait_for("run 2 succeeded")
         code, left = terminal.end()
-    assert plain("\n".join(running), robot) == [
+    changing = r"(?<=worst )[\d.]+ ms|(?<= )[\d.]+ ms(?= in run 2| after its)|(?<=took )[\d.]+( ms)?(?=,|$)"
+    assert plain(re.sub(changing, "MORE", "\n".join(running), flags=re.MULTILINE), robot) == [
         "ROBOT",
         "mission main (as built now, 3 of 3 nodes)",
         "runs: 1 succeeded",
         "",
         "  violated         quick  Move takes at most 100 ms  1 of 2 activations, worst",
-        "                                                     200 ms in run 2",
-        "                   Move::2: took 200 ms, bound 100 ms (run 2 of",
-        "                   ROBOT, 200 ms after its start at DAY",
+        "                                                     MORE in run 2",
+        "                   Move::2: took MORE, bound 100 ms (run 2 of",
+        "                   ROBOT, MORE after its start at DAY",
         "",
         "TIME  mission main (as built now, 3 of 3 nodes)",
         "TIME  run 1 succeeded after 10 ms",
         "TIME  satisfied        quick  Move takes at most 100 ms: held so far in ",
-        "TIME  violated         quick  Move takes at most 100 ms: Move::2 took 20",
+        "TIME  violated         quick  Move takes at most 100 ms: Move::2 took MORE",
         "",
         "Ctrl+C ends with the table",
     ]

@@ -329,7 +329,8 @@ def test_an_entry_with_its_readers_and_writers() -> None:
         ),
         (
             "QualityReq r\n    <hover>lea$0ves</hover> v > 3 m\n",
-            "**leaves** (claim) · `leaves battery >= 3 %`\n\nViolated when it is false when the node has succeeded.",
+            "**leaves** (claim) · `leaves battery >= 3 %`\n\nViolated when it is false when the node has succeeded."
+            " Activations that fail or are halted are not counted.",
         ),
         (
             "QualityReq r\n    takes at most 3 s\n    <hover>on viol$0ation</hover> fail\n",

@@ -64,11 +64,16 @@ PICK = QUICK | {
     "path": "Pick::3",
     "result": "1 of 2 activations, worst 40 ms in run 1",
 }
+LOOKED_AT = QUICK | {"clause": "mission succeeds", "path": "", "verdict": "open", "result": "verified by review"}
 ALIKE = QUICK | {"clause": "every Pick succeeds", "path": "Pick::3", "result": "1 of 2 activations"}
 
 
 def test_verdicts_by_logs(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert as_json(capsys, "--evidence", "run.btlog") == {"quick": [QUICK, PICK], "alike": [ALIKE], "looked_at": []}
+    assert as_json(capsys, "--evidence", "run.btlog") == {
+        "quick": [QUICK, PICK],
+        "alike": [ALIKE],
+        "looked_at": [LOOKED_AT],
+    }
 
 
 def test_verdicts_of_no_mission_that_is_traced(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -107,7 +112,7 @@ def test_the_table(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
         "violated",
         *("  Pick takes at most 30 ms: 1 of 2 activations, worst 40", "  ms in run 1"),
         *("violated", "  1 of 2 activations", ""),
-        *("none", "", "", ""),
+        *("open", "  verified by review", "", ""),
     ]
 
 
@@ -118,6 +123,7 @@ def test_csv_and_markdown(folder: Path, capsys: pytest.CaptureFixture[str]) -> N
         ("quick", "Move::2", QUICK["clause"], "violated", QUICK["result"]),
         ("quick", "Pick::3", PICK["clause"], "violated", PICK["result"]),
         ("alike", "Pick::3", ALIKE["clause"], "violated", ALIKE["result"]),
+        ("looked_at", "", "mission succeeds", "open", "verified by review"),
     ]
     markdown = trace(capsys, "--evidence", "run.btlog", "--format", "markdown")
     assert "| Requirement | Quality | Holds for | How | Evidence | Defined |" in markdown
@@ -128,7 +134,7 @@ def test_the_page(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     page = trace(capsys, "--evidence", "run.btlog", "--format", "html")
     cells = re.findall(r"<td>(?:<ul>)?(<li><span class=\"verdict.*?|<span class=.*?)(?:</ul>)?</td></tr>", page)
     assert cells[1] == '<li><span class="verdict violated">violated</span> <small>1 of 2 activations</small></li>'
-    assert cells[2] == '<span class="missing">none</span>'
+    assert cells[2] == '<li><span class="verdict open">open</span> <small>verified by review</small></li>'
     assert ".verdict.violated {" in page
 
 
@@ -159,7 +165,7 @@ def test_missions_that_share_a_requirement_are_named() -> None:
     [
         ("{}", "expected what btq verify --format json writes"),
         ("[" * 100_000, "expected what btq verify --format json writes"),
-        ('{"format": "btq-verdicts", "version": 2}', "expected btq-verdicts 1, found btq-verdicts 2"),
+        ('{"format": "btq-verdicts", "version": 3}', "expected btq-verdicts 2, found btq-verdicts 3"),
         ('{"format": "btq-verdicts", "version": 1, "missions": [1]}', "expected what btq verify --format json writes"),
     ],
 )

@@ -12,7 +12,7 @@ from typing import Final, TypeAlias
 from btq_lang.evidence.store.queries import Ask, only
 from btq_lang.evidence.store.summary import summary
 from btq_lang.evidence.store.tables import quoted
-from btq_lang.evidence.verdicts import VIOLATED, ClauseVerdict, RequirementVerdict, worst_of
+from btq_lang.evidence.verdicts import OPEN, VIOLATED, ClauseVerdict, RequirementVerdict, worst_of
 from btq_lang.util.record import Record
 
 Verdicts: TypeAlias = Mapping[str, RequirementVerdict]  # of a mission, by requirement
@@ -53,9 +53,10 @@ class Edited(Record):
 
 
 def verdicts(ask: Ask, by: str, side: str) -> Mapping[str, Verdicts]:
-    """The verdicts of a side, by mission."""
+    """The verdicts of a side that come from its runs, by mission."""
     found = summary(only(ask, f"{by} = {quoted(side)}"), "").missions
-    return {mission.name: {each.id: each for each in mission.requirements} for mission in found}
+    judged = {mission.name: [each for each in mission.requirements if each.verdict != OPEN] for mission in found}
+    return {name: {each.id: each for each in requirements} for name, requirements in judged.items()}
 
 
 def edited(before: Verdicts, after: Verdicts) -> tuple[Edited, ...]:

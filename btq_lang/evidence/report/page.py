@@ -14,7 +14,7 @@ from btq_lang.evidence.compare.requirements import Newly
 from btq_lang.evidence.compare.words import difference, heading, remarks, subject, turn, untestable
 from btq_lang.evidence.report.parts import NO_NAME, REPORT_STYLE, bars
 from btq_lang.evidence.sentences import explained, result, worst_violation
-from btq_lang.evidence.verdicts import NEVER, VIOLATED, WORST_FIRST, ClauseVerdict, RequirementVerdict
+from btq_lang.evidence.verdicts import NEVER, OPEN, VIOLATED, WORST_FIRST, ClauseVerdict, RequirementVerdict
 from btq_lang.evidence.wording import period, share
 from btq_lang.render.page_style import PAGE_STYLE
 from btq_lang.util.record import replace
@@ -232,7 +232,7 @@ class _Mission:
 
     def _coverage(self) -> Iterator[str]:
         yield "<h3>Coverage</h3>"
-        judged = [part.verdicts.requirements for part in self._parts]
+        judged = [[each for each in part.verdicts.requirements if each.verdict != OPEN] for part in self._parts]
         never = [[each.id for each in requirements if each.verdict == NEVER] for requirements in judged]
         rows = [
             self._row(["Nodes", *(_exercised(part) for part in self._parts)]),
@@ -277,7 +277,7 @@ class _Mission:
 
 
 def _demand(requirement: RequirementVerdict, keys: dict[str, str]) -> str:
-    texts = dict.fromkeys(clause.text for clause in requirement.clauses)
+    texts = dict.fromkeys(clause.text for clause in requirement.clauses if clause.text)
     clauses = "".join(f"<p><code>{escape(text)}</code></p>" for text in [*texts][:_CLAUSES])
     more = f"<p>{counted(len(texts) - _CLAUSES, 'more clause')}</p>" if len(texts) > _CLAUSES else ""
     return f"{_link(requirement.id, keys)} {escape(requirement.title)}{clauses}{more}"
@@ -292,7 +292,8 @@ def _standing(requirement: RequirementVerdict | None, is_last: bool = False) -> 
     lines = [f'<span class="verdict {clause.verdict.replace(" ", "-")}">{clause.verdict}</span>']
     if len(requirement.clauses) > 1:
         same = sum(each.verdict == clause.verdict for each in requirement.clauses)
-        text = f"{escape(clause.path)}: {text}; {same} of {counted(len(requirement.clauses), 'clause')}"
+        at = f"{escape(clause.path)}: " if clause.path else ""
+        text = f"{at}{text}; {same} of {counted(len(requirement.clauses), 'clause')}"
     lines.append(f"<small>{text}</small>")
     if is_last and clause.verdict == VIOLATED and clause.violations:
         lines.append(f"<small>{escape(explained(clause, worst_violation(clause), {}))}</small>")

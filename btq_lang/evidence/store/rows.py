@@ -17,13 +17,17 @@ from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.identity import Joined, without_number
 from btq_lang.evidence.model import Activation
+from btq_lang.evidence.open_verdicts import open_clauses, open_reason
 from btq_lang.evidence.store.node_names import node_names
 from btq_lang.evidence.store.tables import ROWS
-from btq_lang.evidence.verdicts import OUTCOMES, SATISFIED, UNKNOWN, VIOLATED
+from btq_lang.evidence.verdicts import OPEN, OUTCOMES, SATISFIED, UNKNOWN, VIOLATED
+from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.clause import JudgedClause
     from btq_lang.evidence.verbs import Judgement
+    from btq_lang.evidence.verdicts import ClauseVerdict
+    from btq_lang.requirements.model import Requirement
 
 
 class Rows(ExitStack):
@@ -56,6 +60,7 @@ class Part:
         self._rows: Final = rows
         self._whose: Final = (mission, robot)
         self._clauses: Final[list[_Clause]] = []
+        self._open: Sequence[Requirement] = ()
         self._tree: tuple[object, ...] = ()
         self._nodes: dict[int, tuple[object, ...]] = {}
         self._names: Final[dict[str, dict[str, None]]] = {}  # of all nodes by their paths, in all trees of the log
@@ -79,6 +84,7 @@ class Part:
                 odds = clause.requirement.odds
                 of_runs = odds is not None and odds.experiments == "runs"
                 clause.record(partial(self._judged, written, of_runs))
+            self._open = [each for each in joined.mission.requirements.all.values() if open_reason(each)]
 
     def see(self, activation: Activation) -> None:
         """Write an activation that has ended."""
@@ -110,18 +116,28 @@ class Part:
         known: Counter[tuple[str, str, str]] = Counter()
         for written, clause in zip(self._clauses, clauses, strict=True):
             found, verdict, requirement = clause.found, clause.verdict(), clause.requirement
-            odds, window = requirement.odds, requirement.window
             paths = [self._names.get(path, {without_number(path): None}) for path in found.paths]
             node = ", ".join(dict.fromkeys(name for names in paths for name in names))
             same = requirement.name, verdict.text, node
             known[same] += 1  # a requirement with parameters may be applied to a node twice
             text = verdict.text if known[same] == 1 else f"{verdict.text} ({known[same]})"
-            named = (requirement.name, " ".join((requirement.title or "").split()), text, node)
-            of_odds = (odds.probability, odds.relation, odds.experiments) if odds is not None else (None, None, None)
-            of_window = (window.count, window.experiments, window.seconds) if window is not None else (None, None, None)
-            means = (verdict.of, verdict.unit, written.unit, *of_odds, requirement.confidence, *of_window)
-            seen = (found.has_run, verdict.cut_off, found.missing)
-            self._rows.write["clauses"]((*self._whose, written.index, *named, *means, *seen))
+            self._write(written, requirement, replace(verdict, text=text, path=node), found.has_run, found.missing)
+        for requirement in self._open:
+            for verdict in open_clauses(requirement):
+                self._write(_Clause(self._rows.clauses), requirement, verdict, False, verdict.why)
+                self._rows.clauses += 1
+
+    def _write(
+        self, clause: _Clause, requirement: Requirement, verdict: ClauseVerdict, has_run: bool, missing: str
+    ) -> None:
+        """Write a clause; `has_run`, `missing`: as of `ClauseFindings`."""
+        odds, window = requirement.odds, requirement.window
+        named = (requirement.name, " ".join((requirement.title or "").split()), verdict.text, verdict.path)
+        of_odds = (odds.probability, odds.relation, odds.experiments) if odds is not None else (None, None, None)
+        of_window = (window.count, window.experiments, window.seconds) if window is not None else (None, None, None)
+        counts = OPEN if verdict.verdict == OPEN else verdict.unit
+        means = (verdict.of, counts, clause.unit, *of_odds, requirement.confidence, *of_window)
+        self._rows.write["clauses"]((*self._whose, clause.index, *named, *means, has_run, verdict.cut_off, missing))
 
     def _judged(self, clause: _Clause, of_runs: bool, judgement: Judgement, begin: int, end: int, path: str) -> None:
         verdict = UNKNOWN if judgement.holds is None else SATISFIED if judgement.holds else VIOLATED

@@ -20,6 +20,7 @@ from btq_lang.evidence.store.queries import QUERIES, Ask, Row
 from btq_lang.evidence.tally import Run, Tally
 from btq_lang.evidence.verbs import Judgement
 from btq_lang.evidence.verdicts import (
+    OPEN,
     OUTCOMES,
     SATISFIED,
     UNKNOWN,
@@ -118,7 +119,6 @@ def _mission(
         contexts=(),
         retries=Repeats(int(part["retries"]), int(part["most_retries"]), None),
         recoveries=Repeats(int(part["recoveries"]), int(part["most_recoveries"]), None),
-        by_people=(),
     )
 
 
@@ -136,13 +136,14 @@ def _verdict(row: Row, counts: Row | None, broken: Sequence[Row], recent: Sequen
     is_windowed = row["last_number"] is not None or row["last_seconds"] is not None
     tally = _recent(row, recent, unit) if is_windowed else _counted(row, counts, broken, unit)
     verdict, why = verdict_of(tally, row["missing"] or "", bool(row["exercised"]))
+    is_open = row["counts"] == OPEN
     return ClauseVerdict(
         text=row["clause"],
         path=row["node"],
         of=row["measures"] or "",
-        verdict=verdict,
+        verdict=OPEN if is_open else verdict,
         why=why,
-        unit=row["counts"],
+        unit="activations" if is_open else row["counts"],
         confidence=row["confidence"],
         histogram=None,
         **tally.fields(),

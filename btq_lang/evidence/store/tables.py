@@ -66,8 +66,9 @@ ROWS: Final = {
         "earliest_us": "BIGINT",
     },
     # A clause at a node, whether something was judged or not.  `node`: all nodes at which it is counted together;
-    # `counts`: `activations` or `runs`; `unit`: of what is measured; `exercised`: whether its node ran; `cut_off`:
-    # activations that the end of the log left undecided; `missing`: why it cannot be judged at all its nodes.
+    # `counts`: `activations`, `runs`, or `open` if no log can show it; `unit`: of what is measured; `exercised`:
+    # whether its node ran; `cut_off`: activations that the end of the log left undecided; `missing`: why it cannot be
+    # judged, or not at all its nodes.
     "clauses": {
         **_WHOSE,
         "clause_index": "INTEGER",

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from evidence_logs import MAIN_XML, START, rows
+from evidence_logs import MAIN, MAIN_XML, START, rows
 from groot2_robot import KEPT, Publisher
 
 from btq_lang.cli import main
@@ -17,11 +17,12 @@ from btq_lang.evidence.json_document import render
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.model import GAP, PAUSE, Session
 from btq_lang.evidence.readers import read
-from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Notice, Sampled
+from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Notice, Passed, Sampled
 from btq_lang.evidence.readers.groot2.messages import reply, request
 from btq_lang.evidence.readers.groot2.publisher import NoAnswer
 from btq_lang.evidence.readers.groot2.sessions import sessions_of
 from btq_lang.evidence.readers.tree import read_tree
+from btq_lang.evidence.verdicts import ClauseVerdict
 from btq_lang.evidence.verifying import judged_live
 from btq_lang.evidence.watching import Watched
 
@@ -340,3 +341,178 @@ def _reduced(found: dict[str, object]) -> object:
 
 def test_read_tree_of_the_publisher_is_that_of_a_log() -> None:
     assert [node.path for node in read_tree(MAIN_XML).nodes.values()] == ["Sequence::1", "Move::2", "Pick::3"]
+
+
+class Judged:
+    """What is told while the steps of a robot are judged.
+
+    Attributes:
+        news: the verdicts and texts so far, each with the number of the step after which it was told.
+        tables: after each step, the verdicts so far.
+    """
+
+    def __init__(self, folder: Path, mission: str, steps: Sequence[str | Callable[[Line], object]]) -> None:
+        (folder / "main.btq").write_text(mission, encoding="utf-8")
+        self.news: list[tuple[int, str | None, str]] = []
+        self.tables: list[list[str]] = []
+        means = Means(candidates([str(folder / "main.btq")], (), []))
+        entries = {signal.entry for each in means.missions for signal in each.requirements.signals.values()}
+        self._line = Line(entries=tuple(entries))
+        self._step = 0
+        told = sessions_of(self._events(steps), lambda text: watched.tell(text), lambda time: watched.look(time))
+        watched = Watched(
+            told, "tcp://robot:1667", lambda each: self.news.append((self._step, each.verdict, each.text))
+        )
+        self._watched = watched
+        self.found = judged_live(watched, "tcp://robot:1667", means, [str(folder / "main.btq")])
+
+    def _events(self, steps: Sequence[str | Callable[[Line], object]]) -> Iterator[Event]:
+        yield from self._line.step()
+        for self._step, each in enumerate(steps, 1):
+            if callable(each):
+                each(self._line)
+            yield from self._line.step(each if isinstance(each, str) else "")
+            if self._line.following.passed is not None:
+                yield Passed(self._line.following.passed)
+            self.tables.append([one.verdict for requirements in self._watched.so_far() for one in requirements])
+
+    @property
+    def violations(self) -> list[tuple[int, str]]:
+        """Those that were told, each with its step."""
+        return [(step, text.partition(": ")[2]) for step, verdict, text in self.news if verdict == "violated"]
+
+    @property
+    def clause(self) -> ClauseVerdict:
+        """The only clause, at the end."""
+        ((requirement,),) = [each.requirements for each in self.found.report.missions]
+        return requirement.clauses[0]
+
+
+def sets(**values: object) -> Callable[[Line], object]:
+    """A step in which entries of the blackboard get values."""
+
+    def act(line: Line) -> None:
+        assert line.robot is not None
+        line.robot.boards.setdefault("Main", {}).update(values)
+
+    return act
+
+
+END = "2S 3R 3S 1S 2I 3I 1I"
+BATTERY = "signal battery : % from {battery}\n"
+
+
+@pytest.mark.parametrize(
+    ("demand", "broken"),
+    [
+        ("Move takes at most 120 ms", "Move::2 took 150 ms, bound 120 ms; it is still active"),
+        ("Move succeeds within 120 ms", "Move::2 had not succeeded after 150 ms, bound 120 ms; it is still active"),
+        ("mission takes at most 120 ms", "Sequence::1 took 150 ms, bound 120 ms; it is still active"),
+    ],
+)
+def test_a_time_that_is_over_is_told_while_the_node_runs(demand: str, broken: str, tmp_path: Path) -> None:
+    """At the first poll after it is over, and not again when the node ends, by which its whole time counts."""
+    mission = f"QualityReq rq : safety\n    {demand}\n{MAIN}"
+    judged = Judged(tmp_path, mission, ["1R 2R", "", "", "", "", "", END, "1R 2R 2S 3R 3S 1S 2I 3I 1I", ""])
+    assert judged.violations == [(3, broken)]
+    assert judged.tables == [["never exercised"]] * 2 + [["violated"]] * 7
+    assert (judged.clause.counted, judged.clause.violated) == (2, 1)
+    assert judged.clause.worst is not None
+    assert judged.clause.worst.text == "300 ms"
+    assert [text for _, _, text in judged.news if text.startswith("run ")] == [
+        "run 1 succeeded after 300 ms",
+        "run 2 succeeded after 0 ms",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("demand", "broken"),
+    [
+        ("keeps battery >= 20 %", "`battery` was 15 %, bound 20 %"),
+        ("never battery < 20 %", "`battery` was 15 %, bound 20 %"),
+    ],
+)
+def test_a_sample_that_breaks_a_condition_is_told_while_the_node_runs(demand: str, broken: str, tmp_path: Path) -> None:
+    mission = f"{BATTERY}QualityReq rq : safety\n    Move {demand}\n{MAIN}"
+    steps = [sets(battery=50), "1R 2R", sets(battery=30), sets(battery=15), "", sets(battery=5), END, ""]
+    judged = Judged(tmp_path, mission, steps)
+    ((step, told),) = judged.violations
+    assert step == 4
+    assert told.endswith("; it is still active")
+    assert "`battery` was 15 %" in told
+    assert judged.tables[step - 2 :] == [["never exercised"]] + [["violated"]] * (len(steps) - step + 1)
+    assert (judged.clause.counted, judged.clause.violated) == (1, 1)
+
+
+def test_what_a_node_needed_at_its_start_is_told_while_it_runs(tmp_path: Path) -> None:
+    mission = f"{BATTERY}QualityReq rq : safety\n    Move needs battery >= 20 %\n{MAIN}"
+    judged = Judged(tmp_path, mission, [sets(battery=15), "1R 2R", "", "", END, ""])
+    assert [step for step, _ in judged.violations] == [2]
+
+
+@pytest.mark.parametrize(
+    ("demand", "steps", "at"),
+    [
+        ("takes at most 120 ms\n    while battery > 20 %", [END], 8),  # it might still not count
+        ("takes at most 120 ms\n    while battery > 20 %", [sets(battery=10), END], None),
+        ("takes at most 120 ms\n    when battery > 60 %", [END], None),
+        ("takes at most 120 ms\n    when battery > 20 %", [END], 4),
+        ("takes at most 120 ms if battery > 60 % else 200 ms", [END], 6),
+        ("keeps mean(battery) < 60 %", [sets(battery=90), END], 9),
+        ("takes at most 120 ms\n    in at least 50 % of runs\n    confidence 95 %", [END], None),
+    ],
+)
+def test_only_what_stays_a_violation_is_told_early(
+    demand: str, steps: list[str | Callable[[Line], object]], at: int | None, tmp_path: Path
+) -> None:
+    mission = f"{BATTERY}QualityReq rq : safety\n    Move {demand}\n{MAIN}"
+    judged = Judged(tmp_path, mission, [sets(battery=50), "1R 2R", "", "", "", "", "", *steps, ""])
+    assert [step for step, _ in judged.violations] == ([at] if at is not None else [])
+
+
+def test_what_was_told_counts_when_nobody_watches_any_more(tmp_path: Path) -> None:
+    """The node is still active then; also if transitions were lost meanwhile."""
+    mission = f"QualityReq rq : safety\n    Move takes at most 120 ms\n{MAIN}"
+    judged = Judged(tmp_path, mission, ["1R 2R", "", "", "", ""])
+    assert len(judged.violations) == 1
+    assert (judged.clause.verdict, judged.clause.violated) == ("violated", 1)
+
+    def taken(line: Line) -> None:
+        assert line.robot is not None
+        line.robot.change(2, 2)
+        line.robot.drain()
+
+    judged = Judged(tmp_path, mission, ["1R 2R", "", "", "", "", taken, "2R", "2S 3R 3S 1S", ""])
+    assert len(judged.violations) == 1
+    assert (judged.clause.verdict, judged.clause.violated) == ("violated", 1)
+
+
+def test_what_another_program_may_have_taken_is_not_told(tmp_path: Path) -> None:
+    """Only the statuses show that the node has ended."""
+    mission = f"QualityReq rq : safety\n    Move takes at most 120 ms\n{MAIN}"
+
+    def taken(line: Line) -> None:
+        assert line.robot is not None
+        line.robot.change(2, 2)
+        line.robot.drain()
+
+    judged = Judged(tmp_path, mission, ["1R 2R", taken, "", "", "", "3R", "3S 1S", ""])
+    assert judged.violations == []
+    assert judged.clause.verdict == "unknown"
+
+
+def test_a_robot_that_restarts_with_the_same_tree_goes_on(tmp_path: Path) -> None:
+    mission = f"QualityReq rq : safety\n    Move takes at most 120 ms\n{MAIN}"
+
+    def restart(line: Line) -> None:
+        line.robot = line.another()
+
+    judged = Judged(tmp_path, mission, [f"1R 2R {END}", "", restart, f"1R 2R {END}", ""])
+    assert [text for _, verdict, text in judged.news if verdict is None] == [
+        "mission main (as built now, 3 of 3 nodes)",
+        "run 1 succeeded after 0 ms",
+        "the robot has been started again",
+        "run 2 succeeded after 0 ms",
+    ]
+    ((source,),) = [each.sources for each in judged.found.report.missions]
+    assert (source.runs, judged.clause.counted) == (2, 2)

@@ -14,7 +14,7 @@ from btq_lang.btcpp.reader import read as read_xml
 from btq_lang.evidence.model import GAP, IDLE, PAUSE, RUNNING, LoggedTree, SampleValue, Transition
 from btq_lang.evidence.readers.groot2 import messages
 from btq_lang.evidence.readers.groot2.messages import BadReply, Reply
-from btq_lang.evidence.readers.groot2.publisher import NoAnswer
+from btq_lang.evidence.readers.groot2.publisher import NoAnswer, NotAPublisher
 from btq_lang.evidence.readers.tree import NotALog, read_tree
 from btq_lang.util.record import Record
 
@@ -52,11 +52,23 @@ class Notice(Record):
     text: str
 
 
-Event: TypeAlias = Began | Came | Sampled | Lost | Notice
+class Passed(Record):
+    """All that the robot had done by this time, on its clock, has been said."""
+
+    time: int
+
+
+Event: TypeAlias = Began | Came | Sampled | Lost | Notice | Passed
 
 
 class Following:
-    """What a publisher said so far; `pause`: how long to wait before the next step, in seconds."""
+    """What a publisher said so far.
+
+    Attributes:
+        pause: how long to wait before the next step, in seconds.
+        passed: until when all that the robot did is known, on its clock; None: without a publisher.
+        refused: why the first that answered is not a publisher; empty if it is one, or none has answered.
+    """
 
     def __init__(
         self, ask: Callable[..., Reply], clock: Callable[[], int], entries: Collection[str], address: str
@@ -68,6 +80,8 @@ class Following:
             entries: those of the blackboard that are wanted.
         """
         self.pause = _PAUSE
+        self.passed: int | None = None
+        self.refused = ""
         self._ask: Final = ask
         self._clock: Final = clock
         self._entries: Final = frozenset(entries)
@@ -78,6 +92,7 @@ class Following:
         self._boards: Sequence[str] = ()  # none if they cannot be read
         self._started = 0  # when the recording began, on the robot's clock
         self._ahead = 0  # how far that is ahead of ours
+        self._at_least = 0  # likewise, at least
         self._asked = 0  # when transitions were last asked for
         self._statuses: dict[int, int] = {}  # of the nodes where it is known
         self._at_rest: dict[int, int] | None = None  # all statuses, after the last transitions
@@ -92,11 +107,14 @@ class Following:
                 yield from self._connect()
             else:
                 yield from self._poll()
+        except NotAPublisher:
+            raise
         except (NoAnswer, BadReply, NotALog) as error:
             self.pause = _PAUSE_WITHOUT
             yield from self._gone(str(error))
 
     def _gone(self, why: str) -> Iterator[Event]:
+        self.passed = None
         text = why or ("the publisher does not answer any more" if self._publisher else "no publisher yet")
         self._is_there = False
         if text != self._said:
@@ -105,9 +123,13 @@ class Following:
 
     def _connect(self) -> Iterator[Event]:
         """Take the tree of a publisher, and make it record from now on."""
-        found = self._ask(messages.TREE)
-        text = found.content.decode("utf-8", "replace")
-        tree = read_tree(text)
+        try:
+            found = self._ask(messages.TREE)
+            text = found.content.decode("utf-8", "replace")
+            tree = read_tree(text)
+        except (BadReply, NotALog) as error:
+            self.refused = "" if self._publisher else str(error)
+            raise
         before = self._all_statuses(tree)
         self._record()
         after = self._all_statuses(tree)
@@ -116,7 +138,7 @@ class Following:
         self._publisher, self._tree, self._is_there, self._said = found.publisher, tree, True, ""
         self._boards = [*_boards(text)]
         self._values = {}
-        self.pause = _PAUSE
+        self.pause, self.passed = _PAUSE, None
         if is_same:
             yield from self._lost("the publisher had not answered for a while")
         else:
@@ -130,6 +152,7 @@ class Following:
         asked = self._clock()
         self._started = messages.start_of(self._ask(messages.RECORDING, "start").content)
         self._ahead = self._started - (asked + self._clock()) // 2
+        self._at_least = self._started - self._clock()
         self._asked = asked
         self._statuses, self._at_rest = {}, None
 
@@ -142,9 +165,17 @@ class Following:
         rows = [(self._started + time, uid, status) for time, uid, status in messages.transitions(found.content)]
         since, self._asked = self._asked, asked
         yield from self._new(rows, since) if rows else self._quiet(since)
+        self._pass(asked)
         if self._entries and self._boards:
             yield from self._samples()
         self.pause = 0.0 if len(rows) >= messages.MOST_KEPT // 4 else _PAUSE
+
+    def _pass(self, asked: int) -> None:
+        """Move `passed` to when transitions were asked for, unless another program may have taken some since."""
+        active = [uid for uid, status in self._statuses.items() if status == RUNNING]
+        now = self._at_rest or (self._all_statuses(self._tree) if active else {})
+        if all(now.get(uid) == RUNNING for uid in active):
+            self.passed = asked + self._at_least
 
     def _new(self, rows: Sequence[Transition], since: int) -> Iterator[Event]:
         """Take transitions, which came after they were last asked for, at `since`, and before now."""
@@ -155,6 +186,7 @@ class Following:
             yield from self._begin_again(why, since)
             return
         self._ahead = max(min(self._ahead, rows[0][0] - since), rows[-1][0] - now)
+        self._at_least = max(min(self._at_least, rows[0][0] - since), rows[-1][0] - now)
         if len(rows) >= messages.MOST_KEPT:
             yield from self._lost("more transitions than the publisher keeps came between two requests", rows[0][0])
         elif not self._follow(rows):

@@ -6,13 +6,16 @@ One invariant: `ask` returns or raises within a few seconds, and after either it
 from __future__ import annotations
 
 import random
+import socket
 from collections.abc import Callable
 from contextlib import suppress
 from importlib.util import find_spec
 from time import monotonic
 from typing import Any, Final
+from urllib.parse import urlsplit
 
 from btq_lang.evidence.readers.groot2.messages import Reply, reply, request
+from btq_lang.evidence.readers.tree import NotALog
 
 
 class NoLive(Exception):
@@ -21,6 +24,10 @@ class NoLive(Exception):
 
 class NoAnswer(Exception):
     """The publisher does not answer."""
+
+
+class NotAPublisher(NotALog):
+    """What listens at the address is something else; the message says what came."""
 
 
 def check_installed() -> None:
@@ -49,12 +56,15 @@ class Publisher:
         self._zmq: Final = zmq
         self._context: Final = zmq.Context()
         self._socket: Any = None
+        self._has_answered = False
+        self._silences = 0  # requests that something heard and did not answer
 
     def ask(self, kind: str, argument: str | None = None) -> Reply:
         """The reply to a request.
 
         Raises:
             NoAnswer: none came in time.
+            NotAPublisher: none has ever come, but from something else.
             BadReply: as `messages.reply`.
         """
         if self._socket is None:
@@ -69,7 +79,10 @@ class Publisher:
             found = self._socket.recv_multipart(self._zmq.NOBLOCK)
         except self._zmq.ZMQError as error:
             self._forget()
+            if not (self._has_answered or self._is_over()):
+                self._look_who_is_there()
             raise NoAnswer from error
+        self._has_answered = True
         return reply(found, parts[0])
 
     def close(self) -> None:
@@ -87,6 +100,20 @@ class Publisher:
             if monotonic() - begin > patience:
                 return
 
+    def _look_who_is_there(self) -> None:
+        """Find out what does not answer, by a connection of its own."""
+        found = _greeted(self._address)
+        if found is None:
+            self._silences = 0
+            return
+        self._silences += 1
+        if found and not (found[:1] == _SIGNATURE[:1] and found[9:10] == _SIGNATURE[9:]):
+            line = found.splitlines()[0].decode("utf-8", "replace")
+            raise NotAPublisher(f"{_EXPECTED}, found something else, which says {line!r}")
+        if self._silences > 1:
+            what = "a ZeroMQ socket of another type" if found else "something"
+            raise NotAPublisher(f"{_EXPECTED}, found {what} that does not answer; {_OTHER_PORTS}")
+
     def _forget(self) -> None:
         """Drop the socket: one that waits for a reply cannot ask again."""
         with suppress(self._zmq.ZMQError):
@@ -95,7 +122,28 @@ class Publisher:
         self._socket = None
 
 
+def _greeted(address: str) -> bytes | None:
+    """What comes from an address after ZeroMQ's greeting and an empty line, empty if nothing does; None if it takes no
+    connection, or ends it, as a tunnel does to a robot on which nothing runs yet.
+    """
+    parts = urlsplit(address)
+    try:
+        with socket.create_connection((parts.hostname or "", parts.port or 0), _GREETING) as connection:
+            connection.sendall(_SIGNATURE + b"\r\n\r\n")
+            try:
+                return connection.recv(_SHOWN) or None
+            except TimeoutError:
+                return b""
+    except OSError:
+        return None
+
+
 MOST: Final = 1 << 24  # bytes of a part of a reply; larger ones end the connection
 _SLICE: Final = 100  # ms between two looks at whether to go on waiting
 _PATIENCE: Final = 2.0  # s
 _LAST_PATIENCE: Final = 0.3  # s, when nothing more will be asked
+_SIGNATURE: Final = b"\xff\0\0\0\0\0\0\0\1\x7f"  # the first bytes that a ZeroMQ socket says
+_EXPECTED: Final = "expected a Groot2Publisher of BehaviorTree.CPP 4"
+_OTHER_PORTS: Final = "Groot2Publisher has the port 1667 unless the program names another one"
+_SHOWN: Final = 60  # bytes
+_GREETING: Final = 1.0  # s

@@ -12,14 +12,19 @@ from threading import Event as Flag
 from threading import Thread
 from typing import Final
 
-from btq_lang.evidence.model import Series, Session, Transition
-from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Notice, Sampled
-from btq_lang.evidence.readers.groot2.publisher import Publisher
+from btq_lang.evidence.model import IDLE, UNTIL, LoggedTree, Series, Session, Transition
+from btq_lang.evidence.readers.groot2.following import Began, Came, Event, Following, Lost, Notice, Passed, Sampled
+from btq_lang.evidence.readers.groot2.publisher import NotAPublisher, Publisher
 from btq_lang.evidence.runs import Oddities
 
 
 def sessions(
-    address: str, entries: Collection[str], stop: Flag, tell: Callable[[str], None], wait: Callable[[], None]
+    address: str,
+    entries: Collection[str],
+    stop: Flag,
+    tell: Callable[[str], None],
+    wait: Callable[[], None],
+    look: Callable[[int], None] = lambda time: None,
 ) -> Iterator[Session]:
     """The sessions of the robots that publish at an address, until it is stopped.
 
@@ -28,47 +33,66 @@ def sessions(
         stop: ends the last session.
         tell: given what happens to the connection.
         wait: called several times a second.
+        look: as of `sessions_of`.
     """
-    yield from sessions_of(_followed(address, entries, stop, wait), tell)
+    yield from sessions_of(_followed(address, entries, stop, wait), tell, look)
 
 
-def sessions_of(events: Iterator[Event], tell: Callable[[str], None]) -> Iterator[Session]:
-    """The sessions that the events of a `Following` make; each must be read before the next is requested."""
+def sessions_of(
+    events: Iterator[Event], tell: Callable[[str], None], look: Callable[[int], None] = lambda time: None
+) -> Iterator[Session]:
+    """The sessions that the events of a `Following` make; each must be read before the next is requested.
+
+    Args:
+        look: given the times until when all that the robot did has been read.
+    """
     for event in events:
         began = [event] if isinstance(event, Began) else []
         while began:
-            yield _session(began.pop(), events, began, tell)
+            yield _session(began.pop(), events, began, tell, look)
         if isinstance(event, Notice):
             tell(event.text)
 
 
-def _session(began: Began, events: Iterator[Event], after: list[Began], tell: Callable[[str], None]) -> Session:
+def _session(
+    began: Began,
+    events: Iterator[Event],
+    after: list[Began],
+    tell: Callable[[str], None],
+    look: Callable[[int], None],
+) -> Session:
     samples: dict[str, Series] = {}
     remarks: list[str] = []
     if began.is_amid:
         remarks.append("it was running already, so what was active then is left out")
         tell("a run is open already; what is active now is left out")
-    return Session(began.tree, _transitions(events, samples, remarks, after, tell), samples, remarks)
+    return Session(began.tree, _transitions(began.tree, events, samples, remarks, after, tell, look), samples, remarks)
 
 
 def _transitions(
+    tree: LoggedTree,
     events: Iterator[Event],
     samples: dict[str, Series],
     remarks: list[str],
     after: list[Began],
     tell: Callable[[str], None],
+    look: Callable[[int], None],
 ) -> Iterator[Transition]:
     """The transitions of a session; samples and remarks are appended while they are read, and at the end the next
     session.
     """
-    gaps, silent_until = Oddities(), 0.0
+    gaps, silent_until, passed = Oddities(), 0.0, 0
     for event in events:
         if isinstance(event, Came):
             yield from event.transitions
         elif isinstance(event, Sampled):
             for entry, value in event.values.items():
                 samples.setdefault(entry, Series()).add(event.time, value)
+        elif isinstance(event, Passed):
+            passed = event.time
+            look(passed)
         elif isinstance(event, Lost):
+            yield passed, UNTIL, IDLE
             before = gaps.count(f"gaps: {event.why}", event.time)
             if time.monotonic() >= silent_until:
                 silent_until = time.monotonic() + _BETWEEN
@@ -76,10 +100,11 @@ def _transitions(
                 tell(f"gap: {event.why}{times}; what happened meanwhile is unknown")
         elif isinstance(event, Began):
             after.append(event)
-            tell("another tree")
+            tell("the robot has been started again" if event.tree.is_like(tree) else "another tree")
             break
         else:
             tell(event.text)
+    yield passed, UNTIL, IDLE
     remarks.extend(gaps.remarks())
 
 
@@ -113,14 +138,19 @@ def _follow(address: str, entries: Collection[str], stop: Flag, events: queue.Qu
         publisher = Publisher(address, stop.is_set)
         try:
             following = Following(publisher.ask, lambda: time.monotonic_ns() // 1000, entries, address)
-            is_last = False
+            is_last, passed = False, following.passed
             while not is_last:
                 is_last = stop.wait(following.pause)
                 for event in following.step():
+                    if following.refused:
+                        raise NotAPublisher(following.refused)
                     events.put(event)
+                if following.passed is not None and following.passed != passed:
+                    events.put(Passed(following.passed))
+                passed = following.passed
         finally:
             publisher.close()
-    except Exception as error:  # a bug: it is raised where people see it
+    except Exception as error:  # no publisher, or a bug: it is raised where people see it
         events.put(error)
 
 
