@@ -77,6 +77,10 @@ MISTAKES: dict[str, Callable[[int], str]] = {
         'Go (satisfices Quality = safety (QualityReq ID = "same" description = "a{i}"))'
     ),
     "circles": items("BehaviorTree T{i}\n    SubTree T{i}\n", ""),
+    "circles that run another one": lambda count: "".join(
+        f"BehaviorTree T{i}\n    ->\n        SubTree T{i}\n        SubTree T{max(i - 1, 0)}\n" for i in range(count)
+    ),
+    "contexts of themselves": items("context c{i} : c{i}\n"),
     "circles of contexts": lambda count: "".join(f"context c{i} : c{(i + 1) % count}\n" for i in range(count)),
     "unused": items("signal s{i} : m from {s{i}}\ncontext c{i} : s{i} > 3 m\n"),
     "unknown in contexts": items("context c{i} : nothing{i}\n"),
