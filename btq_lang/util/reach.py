@@ -24,7 +24,7 @@ def knots(graph: Mapping[T, Iterable[T]]) -> Iterator[set[T]]:
     """All that reach themselves, those together that reach each other (Tarjan's strongly connected components).
 
     Args:
-        graph: what follows each; what is no key of it is left out.
+        graph: what follows each; what is not a key of it is ignored.
     """
     numbers: dict[T, int] = {}  # in the order in which they are met
     lowest: dict[T, int] = {}  # that each is known to reach, while its knot is open

@@ -6,7 +6,6 @@ import sys
 from collections import Counter
 
 import pytest
-from by_day import of_the_day
 from kept_checks import Kept
 
 from btq_lang.checks import check
@@ -36,7 +35,7 @@ MANY = [
         pytest.param(DECLARED, {"recursive-tree": 1}, id="through a model"),
         pytest.param(chain(1, "SubTree T0"), {"recursive-tree": 1}, id="itself"),
         pytest.param(chain(2, "SubTree T0 (a = {a})"), {"recursive-tree": 1}, id="two"),
-        *of_the_day(MANY, 2),
+        *MANY,
     ],
 )
 def test_all_is_found_afresh_and_after_an_edit(text: str, rules: dict[str, int]) -> None:

@@ -7,14 +7,11 @@ from collections.abc import Callable, Iterable
 from typing import TypeVar
 
 import pytest
-from by_day import of_the_day
 from kept_checks import Kept
 
 from btq_lang.checks import check
 from btq_lang.render import Finding, Report, render
 from btq_lang.workspace.workspace import Workspace
-
-pytestmark = pytest.mark.by_turns
 
 T = TypeVar("T")
 MAIN = "main.btq"
@@ -136,7 +133,7 @@ def calls(text: str) -> list[int]:
     return counted.counts
 
 
-@pytest.mark.parametrize("mistake", of_the_day(MISTAKES, 3))
+@pytest.mark.parametrize("mistake", MISTAKES)
 def test_more_mistakes_take_as_much_longer(mistake: str) -> None:
     calls(MISTAKES[mistake](3))  # what is made once for all
     most = MORE.get(mistake, MANY)
