@@ -1,6 +1,6 @@
 """The lexer and the parser take every text: no exception, nothing lost, no time beyond what the length asks for.
 
-The usual run invents the same texts every time, the thorough profile (`tests/README.md`) looks for new ones.
+Each run invents the same texts, and other ones with another seed (`tests/README.md`).
 """
 
 from __future__ import annotations
