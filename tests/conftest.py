@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import gc
 import os
+from collections.abc import Generator
 from pathlib import Path
 
 import pytest
 from build_command import btq as btq  # a fixture of every folder
-from by_day import DAY, is_its_day
 from hypothesis import settings
+from seeds import SEED, takes_all
 from strict_queries import strict_queries as strict_queries  # a fixture of some tests
 
-# Without a deadline: how long one example takes on a busy machine says nothing about the code.  The usual run invents
-# the same inputs every time, so that what failed fails again; the thorough one looks for new ones.
-settings.register_profile("usual", deadline=None, derandomize=True, max_examples=50)
-settings.register_profile("thorough", deadline=None, max_examples=2_000)
+# Without a deadline: how long one example takes on a busy machine says nothing about the code.  Without a database of
+# what failed in earlier runs: what is invented follows from the seed alone.
+for name, examples in (("usual", 50), ("thorough", 2_000)):
+    settings.register_profile(name, deadline=None, database=None, derandomize=SEED == 0, max_examples=examples)
 settings.load_profile("usual")
 
 # On a code host, `btq check` would choose its format by these.
@@ -51,8 +52,11 @@ LONGEST = (
 )
 
 
+@pytest.hookimpl(tryfirst=True)  # before Hypothesis reads its option
 def pytest_configure(config: pytest.Config) -> None:
     """Each worker begins to collect in another folder: in a new clone it compiles some tests and reads the others."""
+    if SEED:
+        config.option.hypothesis_seed = SEED
     worker = getattr(config, "workerinput", None)
     if worker is not None and config.args == ["tests"]:
         folders = sorted({f"tests/{file.parent.name}" for file in Path(__file__).parent.glob("*/test_*.py")})
@@ -60,18 +64,20 @@ def pytest_configure(config: pytest.Config) -> None:
         config.args = [*folders[begin:], *folders[:begin]]
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """The same order in every worker; in CI, of what goes by turns what has its day."""
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The same order in every worker."""
     longest = {stem: place for place, stem in enumerate(LONGEST)}
     items.sort(key=lambda item: (longest.get(item.path.stem, len(LONGEST)), item.path))
-    if "BTQ_CI" in os.environ:
-        left = {item for item in items if item.get_closest_marker("by_turns") and not is_its_day(item.nodeid)}
-        config.hook.pytest_deselected(items=[*left])
-        items[:] = [item for item in items if item not in left]
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    terminalreporter.write_line(f"inputs of the day: BTQ_DAY={DAY}")
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """What failed says how to do it again."""
+    report = yield
+    if report.failed:
+        profile = " --hypothesis-profile=thorough" if takes_all() else ""
+        report.sections.append(("the same again", f"BTQ_SEED={SEED} .venv/bin/pytest -m ''{profile} '{item.nodeid}'"))
+    return report
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

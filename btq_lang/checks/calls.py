@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
-from graphlib import CycleError, TopologicalSorter
 from itertools import chain
 from typing import TypeAlias
 
@@ -11,7 +10,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nav2 import TREE_OF_GOAL
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
-from btq_lang.util.reach import reached
+from btq_lang.util.reach import knots, reached
 from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.symbols import Use
 from btq_lang.workspace.workspace import Workspace
@@ -65,13 +64,12 @@ def _callers(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ..
 @hub
 def _circles(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ...]]:
     """All circles: hardly any mission has one, so that after an edit no tree looks for its own again."""
+    graph = {name: called for name, (called, _) in store.ask(_graph, viewpoint)}
+    places = {name: place for place, name in enumerate(graph)}
     found: dict[str, tuple[str, ...]] = {}
-    left = {name: called for name, (called, _) in store.ask(_graph, viewpoint)}
-    while (start := _on_circle(left)) is not None:
-        knot = _reached(start, left) & _reached(start, _turned(left.items()))
-        first = next(name for name in left if name in knot)
-        found[first] = _way_back(first, {name: [each for each in left[name] if each in knot] for name in knot})
-        left = {name: called for name, called in left.items() if name not in knot}
+    for knot in knots(graph):
+        first = min(knot, key=places.__getitem__)
+        found[first] = _way_back(first, {name: [each for each in graph[name] if each in knot] for name in knot})
     return found
 
 
@@ -102,19 +100,6 @@ def _uncreated(store: Store[Workspace], viewpoint: str) -> Set[str]:
 def _run_from(mains: tuple[str, ...], known: Mapping[str, Runs]) -> Set[str]:
     """Trees and all that they run, directly or not, including those that they probably mean to run."""
     return {*reached(mains, lambda name: chain(*known.get(name, ())))}
-
-
-def _reached(start: str, graph: Mapping[str, tuple[str, ...]]) -> Set[str]:
-    return {*reached([start], lambda name: graph.get(name, ()))}
-
-
-def _on_circle(graph: Mapping[str, Iterable[str]]) -> str | None:
-    """A tree that runs itself, directly or not, if there is one."""
-    try:
-        TopologicalSorter(graph).prepare()
-    except CycleError as error:
-        return str(error.args[1][0])
-    return None
 
 
 def _way_back(start: str, graph: Mapping[str, Iterable[str]]) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from by_day import of_the_day
+from seeds import share_of
 
 from btq_lang.btcpp.exact_edits import declares_version_4, exact_edits
 from btq_lang.btcpp.opening import file_of
@@ -103,13 +103,12 @@ def test_what_declares_version_4(xml: str, expected: bool) -> None:
     assert declares_version_4(xml) is expected
 
 
-@pytest.mark.by_turns
 def test_words_of_published_files(shared: Path) -> None:
     """Every word of real trees, as another: what is placed is placed exactly."""
     placed = 0
     for path in sorted((shared / "corpus").rglob("*.xml"))[::60]:
         file = file_of("tree.xml", path.read_text(encoding="utf-8", errors="replace"))
-        for start, end, *_ in of_the_day(file.origin.places.pieces[::7], 2) if file.origin else ():
+        for start, end, *_ in share_of(file.origin.places.pieces[::7], 2) if file.origin else ():
             edit = Edit(Span(start, end), f"{file.text[start:end]}x")
             if (edits := exact_edits(file, edit)) is not None:
                 placed += 1

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from lxml import etree
 from mission_strategies import odd_missions
 from missions import mission
+from seeds import seeds
 
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
@@ -18,14 +19,12 @@ from btq_lang.syntax.tree import Tree
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
 
-pytestmark = pytest.mark.by_turns
-
 VERSIONS = ("4.6", "4.8", "4.10")
 
 
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("spelling", ["classic", "short"])
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", seeds(4))
 def test_missions_made_up_keep_the_engines_rules(version: str, spelling: str, seed: int) -> None:
     workspace = Workspace.of({"m.btq": mission(150, seed, spelling)}, Project(engines=(version,)))
     done = export(workspace, "m.btq")

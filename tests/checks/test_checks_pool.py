@@ -98,7 +98,7 @@ def test_nothing_else_is_checked_across_a_pool() -> None:
     assert problems(pool(main, other)) == problems(pool(main))
 
 
-@pytest.mark.by_turns
+@pytest.mark.scheduled
 def test_public_files_find_their_trees_in_one_folder_and_not_alone(shared: Path) -> None:
     folder = shared / "corpus" / "dev"
     texts = {f"corpus/{path.name}": path.read_text("utf-8-sig") for path in sorted(folder.iterdir())}

@@ -172,7 +172,6 @@ def test_a_file_that_cannot_be_written(check: Check, tmp_path: Path, monkeypatch
     assert os.listdir(tmp_path) == ["main.btq"]
 
 
-@pytest.mark.by_turns
 def test_comments_silence_published_trees(check: Check, tmp_path: Path, shared: Path) -> None:
     """Only comments and blanks are added: without them, the trees are the same."""
     paths = sorted((shared / "corpus").rglob("*.xml"))[::60]

@@ -10,12 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from missions import mission
+from seeds import seeds
 
 from btq_lang.diff import Change, compare
 from btq_lang.formatter import format_text
 from btq_lang.workspace.workspace import Workspace
-
-pytestmark = pytest.mark.by_turns
 
 INNER = ("->", "?", "R->")
 LEAVES = ("Pick", "Place", "MoveBase")
@@ -29,7 +28,7 @@ def compare_texts(old: str, new: str) -> tuple[Change, ...]:
 
 
 @pytest.mark.parametrize("spelling", ["short", "classic"])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", seeds(3))
 def test_a_mission_and_itself(seed: int, spelling: str) -> None:
     text = mission(300, seed, spelling)
     assert compare_texts(text, text) == ()

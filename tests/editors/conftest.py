@@ -10,13 +10,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 from chromium import CHROMIUM
-from installed import ARTIFACTS, FAILED, STORE, missing, there
+from installed import ARTIFACTS, FAILED, NVIMS, STORE, missing, there
 from workbench import FLAGS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
-
-by_turns = pytest.mark.by_turns
 
 
 @pytest.hookimpl(wrapper=True)
@@ -40,8 +38,7 @@ def node() -> Path:
 
 
 @pytest.fixture(
-    scope="session",
-    params=["system", *(pytest.param(suite, marks=pytest.mark.by_turns) for suite in ("trixie", "sid"))],
+    scope="session", params=[NVIMS[0], *(pytest.param(suite, marks=pytest.mark.scheduled) for suite in NVIMS[1:])]
 )
 def nvim(request: pytest.FixtureRequest) -> Path:
     """Neovim of the system and of Debian's newer suites."""

@@ -10,6 +10,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 STORE = Path(os.environ.get("BTQ_EDITORS") or Path.home() / ".cache" / "btq-editors")
+NVIMS = ("system", "trixie", "sid")  # the newer ones are those of Debian's suites
 ARTIFACTS = Path(__file__).parent / "artifacts"
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 from chromium import CHROMIUM
 from forked_server import relay
-from installed import ROOT, there
+from installed import NVIMS, ROOT, there
 
 PLUGIN = ROOT / "editors" / "nvim"
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce  # größer\n            Dock\n"
@@ -48,12 +48,16 @@ class Neovim:
         return json.loads(run.stdout.splitlines()[-1])
 
 
+every_nvim = pytest.mark.parametrize("nvim", NVIMS, indirect=True)
+
+
 @pytest.fixture
 def neovim(nvim: Path, tmp_path: Path) -> Neovim:
     (tmp_path / "btq.toml").write_text("")
     return Neovim(nvim, tmp_path)
 
 
+@every_nvim
 def test_installed_as_the_page_says(nvim: Path, tmp_path: Path) -> None:
     """A new user's home: the two lines of docs/editors.md, `btq-lsp` on the PATH, and the line that formats on save."""
     page = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8").partition("\n## Neovim\n")[2]
@@ -97,6 +101,7 @@ def test_both_endings_are_missions(neovim: Neovim) -> None:
     assert neovim.run({"a.btq": ""}, "return {vim.bo.filetype, vim.bo.commentstring}", lsp=False) == ["btq", "# %s"]
 
 
+@every_nvim
 def test_diagnostics_come_and_go(neovim: Neovim) -> None:
     script = """
     local before = btq.diagnostics(1)

@@ -12,7 +12,6 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from by_day import of_the_day
 from installed import ROOT, STORE, there
 
 from btq_lang.btcpp import recognition
@@ -117,8 +116,8 @@ def test_the_bundled_commands_run(unpacked: Path, tmp_path: Path) -> None:
     assert (checked.returncode, checked.stderr) == (0, b"")
 
 
-@pytest.mark.by_turns
-@pytest.mark.parametrize("page", of_the_day(["docs/editors.md", "README.md"], 2))
+@pytest.mark.scheduled
+@pytest.mark.parametrize("page", ["docs/editors.md", "README.md"])
 def test_the_commands_of_the_pages_pack_and_install(page: str, node: Path, unpacked: Path, tmp_path: Path) -> None:
     """In a copy of this checkout, with npm, vsce and the command line of VS Code.
 

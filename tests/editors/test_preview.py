@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 # On a busy machine the first picture may come again between a focus and a key: what fails is tried once more.
-pytestmark = [pytest.mark.flaky(reruns=1), pytest.mark.by_turns]
+pytestmark = pytest.mark.flaky(reruns=1)
 
 MISSION = """\
 QualityReq soon "In time"
@@ -106,6 +106,7 @@ def test_a_subtree_is_folded_by_its_handle_and_stays_folded(page: Page, tmp_path
     see_boxes(page, "->", "Undock", "? Way", "Dock", "Rest", "Charge")
 
 
+@pytest.mark.scheduled
 def test_all_are_folded_and_unfolded(page: Page) -> None:
     page.get_by_role("button", name="Fold all", exact=True).click()
     see_boxes(page, "->", "Ready", "? Way … 2 nodes", "Charge")
@@ -180,6 +181,7 @@ def test_searching(page: Page) -> None:
     assert (page.locator("#said").text_content(), page.locator(".box.other").count()) == ("", 0)
 
 
+@pytest.mark.scheduled
 def test_searching_finds_what_is_folded_away(page: Page) -> None:
     page.get_by_role("button", name="Fold all", exact=True).click()
     see_boxes(page, "->", "Ready", "? Way … 2 nodes", "Charge")
@@ -247,6 +249,7 @@ def test_it_opens_fitted_with_the_root_in_the_middle(page: Page, tmp_path: Path,
             page.screenshot(path=str(artifacts / f"preview-{nodes}-nodes-{size['width']}-{scheme}.png"))
 
 
+@pytest.mark.scheduled
 def test_f_and_a_button_fit_it_again(page: Page) -> None:
     whole = rectangle(page, PICTURE)
     for fit in (lambda: keys(page, "f"), lambda: page.get_by_role("button", name="Fit").click()):
@@ -258,6 +261,7 @@ def test_f_and_a_button_fit_it_again(page: Page) -> None:
         see_fitted(page)
 
 
+@pytest.mark.scheduled
 def test_a_click_twice_makes_a_hundred_nodes_readable_and_shows_all_again(page: Page, tmp_path: Path) -> None:
     load(page, tmp_path, 100)
     x, y = middle(page, ".box:nth-last-of-type(20) .outline")
@@ -270,6 +274,7 @@ def test_a_click_twice_makes_a_hundred_nodes_readable_and_shows_all_again(page: 
     see_fitted(page)
 
 
+@pytest.mark.scheduled
 def test_a_turn_of_the_wheel_makes_a_hundred_nodes_readable(page: Page, tmp_path: Path) -> None:
     load(page, tmp_path, 100)
     page.mouse.move(*middle(page, ".box:nth-last-of-type(20) .outline"))
@@ -278,6 +283,7 @@ def test_a_turn_of_the_wheel_makes_a_hundred_nodes_readable(page: Page, tmp_path
     page.wait_for_function("() => document.querySelector('text.title').getBoundingClientRect().height >= 13")
 
 
+@pytest.mark.scheduled
 @pytest.mark.parametrize("key", [None, "Control"])
 def test_the_wheel_and_a_touchpad_zoom_at_the_pointer(page: Page, key: str | None) -> None:
     x, y = middle(page, "[data-name$='Dock'] .outline")
@@ -295,6 +301,7 @@ def test_the_wheel_and_a_touchpad_zoom_at_the_pointer(page: Page, key: str | Non
     assert middle(page, "[data-name$='Dock'] .outline") == pytest.approx((x, y), abs=1)
 
 
+@pytest.mark.scheduled
 def test_two_fingers_zoom_between_them_and_one_pans(page: Page) -> None:
     touch = page.context.new_cdp_session(page)
 
@@ -324,6 +331,7 @@ def test_two_fingers_zoom_between_them_and_one_pans(page: Page) -> None:
     assert middle(page, "[data-name$='Dock'] .outline") == pytest.approx((x - 60, y - 30), abs=4)
 
 
+@pytest.mark.scheduled
 def test_dragging_pans_and_is_no_click(page: Page) -> None:
     keys(page, "+")
     x, y = middle(page, "[data-name$='Dock'] .outline")
@@ -349,6 +357,7 @@ def test_buttons_and_keys_zoom_where_the_reader_is(page: Page) -> None:
     assert middle(page, "[data-name$='Charge'] .outline") == pytest.approx(at, abs=2)
 
 
+@pytest.mark.scheduled
 def test_what_is_drawn_anew_stays_where_it_is_once_the_reader_has_zoomed(page: Page, tmp_path: Path) -> None:
     page.locator(".box").first.focus()
     keys(page, "+", "+")
@@ -385,6 +394,7 @@ def test_notes_are_folded_above_sixty_nodes_and_shown_by_their_button(page: Page
     assert set(notes()) == {"soon +1"}
 
 
+@pytest.mark.scheduled
 @pytest.mark.parametrize("width", [500, 640, 700, 1400])
 def test_the_tools_stand_in_one_line(page: Page, width: int) -> None:
     page.set_viewport_size({"width": width, "height": 600})

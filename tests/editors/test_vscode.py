@@ -11,7 +11,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from by_day import of_the_day
 from chromium import CHROMIUM
 from evidence_logs import MAIN, MAIN_XML, btlog, rows
 from installed import ROOT, STORE, has_failed, there
@@ -19,7 +18,7 @@ from workbench import Windows, Workbench, workbench
 
 # A workbench loses a click or a change of its settings now and then, on a busy machine: what fails is tried once more,
 # in a window of its own, and the run says so.
-pytestmark = [pytest.mark.flaky(reruns=1), pytest.mark.by_turns]
+pytestmark = pytest.mark.flaky(reruns=1)
 
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
 ENVIRONMENT = {
@@ -173,6 +172,7 @@ def test_completion_offers_qualities_and_hover_explains_them(code: Workbench, ar
     code.save()
 
 
+@pytest.mark.scheduled
 def test_a_quality_is_found_by_either_name_and_after_its_dot(code: Workbench) -> None:
     code.write("concerns.btq", "BehaviorTree Main\n    Dock\n        satisfices \n")
     code.open("concerns.btq")
@@ -188,6 +188,7 @@ def test_a_quality_is_found_by_either_name_and_after_its_dot(code: Workbench) ->
     code.save()
 
 
+@pytest.mark.scheduled
 def test_the_light_bulb_mends(code: Workbench) -> None:
     code.write("wrong.btq", WRONG)
     code.open("wrong.btq")
@@ -201,6 +202,7 @@ def test_the_light_bulb_mends(code: Workbench) -> None:
     code.on_disk("wrong.btq", WRONG.replace("Sequnce", "Sequence"))
 
 
+@pytest.mark.scheduled
 def test_auto_fix_takes_the_only_near_name(code: Workbench) -> None:
     """Without a list to choose from: the fix is preferred."""
     code.write("wrong.btq", WRONG)
@@ -213,6 +215,7 @@ def test_auto_fix_takes_the_only_near_name(code: Workbench) -> None:
     code.on_disk("wrong.btq", WRONG.replace("Sequnce", "Sequence"))
 
 
+@pytest.mark.scheduled
 def test_a_save_applies_the_source_actions_that_are_asked_for(code: Workbench) -> None:
     actions = {"source.fixAll": "explicit", "source.organizeImports": "explicit"}
     code.settings(**{**ENVIRONMENT, "editor.codeActionsOnSave": actions})
@@ -233,6 +236,7 @@ def test_a_save_applies_the_source_actions_that_are_asked_for(code: Workbench) -
     code.settings(**ENVIRONMENT)
 
 
+@pytest.mark.scheduled
 def test_a_code_lens_shows_the_uses(code: Workbench) -> None:
     code.write("demands.btq", REQUIREMENTS)
     code.write("visit.btq", MISSION)
@@ -244,6 +248,7 @@ def test_a_code_lens_shows_the_uses(code: Workbench) -> None:
     code.keys("Escape")
 
 
+@pytest.mark.scheduled
 def test_enter_indents_below_what_has_a_block_and_leaves_it_at_the_second(code: Workbench) -> None:
     code.write("typed.btq", "")
     code.open("typed.btq")
@@ -268,6 +273,7 @@ def test_enter_indents_below_what_has_a_block_and_leaves_it_at_the_second(code: 
     )
 
 
+@pytest.mark.scheduled
 def test_a_snippet_writes_a_requirement(code: Workbench) -> None:
     code.write("snippet.btq", "")
     code.open("snippet.btq")
@@ -285,6 +291,7 @@ def test_a_snippet_writes_a_requirement(code: Workbench) -> None:
     )
 
 
+@pytest.mark.scheduled
 @pytest.mark.parametrize("served", [True, False])
 def test_checking_all_missions_finds_what_is_wrong_in_files_that_are_not_open(code: Workbench, served: bool) -> None:
     """Each mistake stands there once: what the server tells, the task does not tell again."""
@@ -296,6 +303,7 @@ def test_checking_all_missions_finds_what_is_wrong_in_files_that_are_not_open(co
     code.settings(**ENVIRONMENT)
 
 
+@pytest.mark.scheduled
 def test_a_task_takes_nothing_from_the_problems_and_knows_which_rules_are_off(code: Workbench) -> None:
     code.write("seen.btq", WRONG)
     code.open("seen.btq")
@@ -310,6 +318,7 @@ def test_a_task_takes_nothing_from_the_problems_and_knows_which_rules_are_off(co
     code.settings(**ENVIRONMENT)
 
 
+@pytest.mark.scheduled
 @pytest.mark.parametrize("gone", ["robot", "robot/mission.btq"])
 def test_problems_go_with_the_file_or_its_folder(code: Workbench, gone: str) -> None:
     code.write("robot/mission.btq", WRONG)
@@ -363,6 +372,7 @@ def test_the_tree_beside_follows_the_text_and_the_cursor_and_leads_back(code: Wo
     assert symbol.evaluate("e => getComputedStyle(e).color") == keyword.evaluate("e => getComputedStyle(e).color")
 
 
+@pytest.mark.scheduled
 def test_the_tree_beside_is_fitted_and_zoomed_at_the_pointer(code: Workbench) -> None:
     leaves = "".join(f"        Act{number} satisfices safety\n" for number in range(70))
     code.write("tree.btq", f"BehaviorTree Main\n    -> Root\n{leaves}")
@@ -400,6 +410,7 @@ def test_the_tree_beside_is_fitted_and_zoomed_at_the_pointer(code: Workbench) ->
     assert rectangle("#tree svg")[:3:2] == pytest.approx((x, width), abs=1)
 
 
+@pytest.mark.scheduled
 def test_the_tree_beside_is_folded_and_saved_as_it_is_shown(code: Workbench) -> None:
     code.write("tree.btq", "BehaviorTree Main\n    ->\n        ? Way\n            Dock\n        Charge\n")
     code.open("tree.btq")
@@ -466,6 +477,7 @@ COLUMNS = """[...document.querySelectorAll(".editor-group-container")].map(colum
   [column.clientWidth, ...[...column.querySelectorAll(".tab")].map(tab => tab.innerText.replaceAll("\\n", ""))])"""
 
 
+@pytest.mark.scheduled
 def test_the_overview_takes_at_most_half_of_the_pane_and_no_text_away(code: Workbench) -> None:
     def columns(count: int) -> list[list[object]]:
         code.page.wait_for_function(f"count => {COLUMNS}.length === count", arg=count)
@@ -537,6 +549,7 @@ def test_the_overview_beside_follows_what_is_saved_and_leads_to_the_text(code: W
     code.see(".monaco-workbench.vs-dark")
 
 
+@pytest.mark.scheduled
 def test_saving_writes_the_xml_where_that_is_asked_for(code: Workbench) -> None:
     code.settings(**{**ENVIRONMENT, "btq.buildOnSave": True})
     code.write("built.btq", "BehaviorTree Main\n    Dock\n")
@@ -549,6 +562,7 @@ def test_saving_writes_the_xml_where_that_is_asked_for(code: Workbench) -> None:
     code.settings(**ENVIRONMENT)
 
 
+@pytest.mark.scheduled
 def test_the_settings_of_the_server_hold_at_once(code: Workbench) -> None:
     code.write("demands.btq", REQUIREMENTS)
     code.write("visit.btq", MISSION)
@@ -570,6 +584,7 @@ def test_the_settings_of_the_server_hold_at_once(code: Workbench) -> None:
         code.see(gone)
 
 
+@pytest.mark.scheduled
 def test_the_server_is_told_what_to_trace(code: Workbench, tmp_path: Path) -> None:
     """This build of VS Code writes no logs: what is said is kept by a program before the server."""
     recorder = tmp_path / "recorder"
@@ -601,6 +616,7 @@ def test_building_all_missions_writes_their_xml(code: Workbench) -> None:
         path.unlink()
 
 
+@pytest.mark.scheduled
 def test_the_path_of_a_node_is_copied(code: Workbench) -> None:
     code.write("path.btq", "BehaviorTree Main\n    -> Way\n        Dock\n        Charge\n")
     code.open("path.btq")
@@ -609,6 +625,7 @@ def test_the_path_of_a_node_is_copied(code: Workbench) -> None:
     code.see(".statusbar-item:has-text('Main/Way/Dock')")
 
 
+@pytest.mark.scheduled
 def test_the_tree_of_the_active_editor_can_be_saved(code: Workbench) -> None:
     code.write("saved.btq", "BehaviorTree Main\n    Dock\n")
     code.open("saved.btq")
@@ -619,6 +636,7 @@ def test_the_tree_of_the_active_editor_can_be_saved(code: Workbench) -> None:
     code.gone(".quick-input-widget")
 
 
+@pytest.mark.scheduled
 def test_a_python_is_chosen_in_a_dialog(code: Workbench) -> None:
     code.command("btq: Choose Python Interpreter…")
     code.see(".quick-input-titlebar:has-text('The Python, 3.10 or newer, that runs btq')")
@@ -626,6 +644,7 @@ def test_a_python_is_chosen_in_a_dialog(code: Workbench) -> None:
     code.gone(".quick-input-widget")
 
 
+@pytest.mark.scheduled
 def test_the_server_starts_again(code: Workbench) -> None:
     """A server that was ended for good, as by an error, serves again."""
     code.write("wrong.btq", WRONG)
@@ -690,7 +709,8 @@ ORIGINS = [
 ]
 
 
-@pytest.mark.parametrize("origin", of_the_day(ORIGINS, 4))
+@pytest.mark.scheduled
+@pytest.mark.parametrize("origin", ORIGINS)
 def test_the_server_is_of(code: Workbench, origin: Callable[[Workbench, Path], None], tmp_path: Path) -> None:
     origin(code, tmp_path)
 
@@ -744,11 +764,13 @@ def folder_that_is_not_open(code: Workbench, tmp_path: Path) -> None:
     assert {path.name for path in (tmp_path / "robot").iterdir()} == {"btq.toml", "mission.btq", "skills.btq"}
 
 
-@pytest.mark.parametrize("begin", of_the_day([walkthrough, folder_that_is_not_open], 2))
+@pytest.mark.scheduled
+@pytest.mark.parametrize("begin", [walkthrough, folder_that_is_not_open])
 def test_a_project_begins_in(code: Workbench, begin: Callable[[Workbench, Path], None], tmp_path: Path) -> None:
     begin(code, tmp_path)
 
 
+@pytest.mark.scheduled
 @pytest.mark.parametrize("theme", ["dark", "light"])
 def test_how_a_mission_looks(code: Workbench, theme: str, artifacts: Path) -> None:
     # Every word of the file on one screen, and nothing between them but the colours.

@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from by_day import NUMBER, of_the_day
 from chromium import CHROMIUM
 from installed import ROOT, STORE, there
 from person import type_text
@@ -126,10 +125,8 @@ def test_the_tree_is_shown_and_the_xml_converted(window: Workbench) -> None:
     (window.folder / "trees.btq").unlink()
 
 
-@pytest.mark.by_turns
-@pytest.mark.parametrize(
-    ("closing", "pause"), of_the_day([("languageDefined", 0), ("never", 0), ("languageDefined", 300)], 3)
-)
+@pytest.mark.scheduled
+@pytest.mark.parametrize(("closing", "pause"), [("languageDefined", 0), ("never", 0), ("languageDefined", 300)])
 def test_the_xml_that_is_typed_is_saved(window: Workbench, shared: Path, closing: str, pause: int) -> None:
     """The laboratory's, key by key, with and without quotes and braces that close by themselves; what is found at last
     is what a check finds."""
@@ -212,11 +209,15 @@ def code(served: Workbench) -> Iterator[Workbench]:
     served.clean()
 
 
-@pytest.mark.by_turns
-@pytest.mark.parametrize("piece", of_the_day(range(len(PIECES)), len(PIECES)))
-def test_a_mission_that_is_typed_is_saved(code: Workbench, piece: int) -> None:
-    """The first piece, the mission of the README, with another pause each time."""
-    pause = 0 if piece else PAUSES[NUMBER // len(PIECES) % len(PAUSES)]
+@pytest.mark.parametrize(
+    ("piece", "pause"),
+    [
+        (0, 0),
+        *(pytest.param(0, pause, marks=pytest.mark.scheduled) for pause in PAUSES[1:]),
+        *(pytest.param(piece, 0, marks=pytest.mark.scheduled) for piece in range(1, len(PIECES))),
+    ],
+)
+def test_a_mission_that_is_typed_is_saved(code: Workbench, piece: int, pause: int) -> None:
     path = code.write("typed.btq", "")
     code.open(path.name)
 
@@ -246,27 +247,24 @@ def shows_no_list(code: Workbench) -> bool:
     return not code.page.locator(LIST).count()
 
 
-@pytest.mark.by_turns
+@pytest.mark.scheduled
 @pytest.mark.parametrize(
     ("text", "typed", "asked"),
-    of_the_day(
-        [
-            ("QualityReq soon : safety ", '"Soon"', None),  # the quote closes it
-            ('BehaviorTree Main\n    Dock (at = "a" by = ', '"b"', None),
-            ("", "BehaviorTree Mi", None),  # a name is declared
-            ("", "QualityReq ti", None),
-            ("", "signal re", None),
-            ("BehaviorTree Main\n    -> ", "Sa", None),
-            ('QualityReq soon "Soon"\n    takes at most ', "30", "s"),
-            ('QualityReq soon "Soon"\n    takes at most ', "30 ", "s"),
-            ('QualityReq soon "Soon"\n    takes at most 30 ', "s", "s"),
-            ('QualityReq soon "Soon"\n    keeps ok\n    on violation ', "fail", "fail"),
-            (f"{SKILLS}BehaviorTree Main\n    ", "Charge", "Charge"),
-            (f"{SKILLS}BehaviorTree Main\n    ", "MoveBase", "MoveBase"),  # which has a port to fill in
-            ("", "BehaviorTree", None),
-        ],
-        2,
-    ),
+    [
+        ("QualityReq soon : safety ", '"Soon"', None),  # the quote closes it
+        ('BehaviorTree Main\n    Dock (at = "a" by = ', '"b"', None),
+        ("", "BehaviorTree Mi", None),  # a name is declared
+        ("", "QualityReq ti", None),
+        ("", "signal re", None),
+        ("BehaviorTree Main\n    -> ", "Sa", None),
+        ('QualityReq soon "Soon"\n    takes at most ', "30", "s"),
+        ('QualityReq soon "Soon"\n    takes at most ', "30 ", "s"),
+        ('QualityReq soon "Soon"\n    takes at most 30 ', "s", "s"),
+        ('QualityReq soon "Soon"\n    keeps ok\n    on violation ', "fail", "fail"),
+        (f"{SKILLS}BehaviorTree Main\n    ", "Charge", "Charge"),
+        (f"{SKILLS}BehaviorTree Main\n    ", "MoveBase", "MoveBase"),  # which has a port to fill in
+        ("", "BehaviorTree", None),
+    ],
 )
 def test_no_list_opens_by_itself(code: Workbench, text: str, typed: str, asked: str | None) -> None:
     """But one that is asked for, over a complete word, too."""
@@ -289,7 +287,7 @@ def test_a_quote_that_opens_a_string_shows_what_belongs_there(code: Workbench) -
     code.see(f"{LIST} .monaco-list-row:has-text('demands.btq')")
 
 
-@pytest.mark.parametrize("typed", of_the_day([": string", ": double", ": int", ": bool"], 4))
+@pytest.mark.parametrize("typed", [": string", ": double", ": int", ": bool"])
 def test_enter_after_the_type_of_a_port_is_a_line_break(code: Workbench, typed: str) -> None:
     """VS Code finds `string` in `std::vector<string>`, too."""
     path = begin(code, "Action Read\n    output label ")
@@ -310,18 +308,15 @@ def test_enter_after_a_word_that_begins_another_is_a_line_break(code: Workbench)
     assert path.read_text(encoding="utf-8").rstrip(" ") == "BehaviorTree Main\n    Retry\n"
 
 
-@pytest.mark.by_turns
+@pytest.mark.scheduled
 @pytest.mark.parametrize(
     ("text", "typed", "label", "after"),
-    of_the_day(
-        [
-            ("BehaviorTree Main\n    Dock\n        satisfices ", "reliab", "reliability", "reliability"),
-            (f"{SKILLS}BehaviorTree Main\n    ", "Mov", "MoveBase", "MoveBase (station = {=})"),
-            ("BehaviorTree Main\n    ", "ret", "retry", "Retry (num_attempts = 3)\n        "),
-            ("BehaviorTree Main\n    Dock satisfies ", "soo", "soon", "soon"),  # and the include of its file
-        ],
-        2,
-    ),
+    [
+        ("BehaviorTree Main\n    Dock\n        satisfices ", "reliab", "reliability", "reliability"),
+        (f"{SKILLS}BehaviorTree Main\n    ", "Mov", "MoveBase", "MoveBase (station = {=})"),
+        ("BehaviorTree Main\n    ", "ret", "retry", "Retry (num_attempts = 3)\n        "),
+        ("BehaviorTree Main\n    Dock satisfies ", "soo", "soon", "soon"),  # and the include of its file
+    ],
 )
 def test_undo_after_an_accepted_item_is_one_step(
     code: Workbench, text: str, typed: str, label: str, after: str

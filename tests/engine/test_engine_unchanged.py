@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 import pytest
 from engine_loader import Answer, Engine, job
+from seeds import seeds
 
 from btq_lang.btcpp.document import Document, write
 from btq_lang.btcpp.enforcement import enforced
@@ -103,7 +104,7 @@ def parts(chance: random.Random) -> dict[str, list[object]]:
     return found
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", seeds(4))
 def test_random_trees_do_the_same(engine: Engine, seed: int) -> None:
     chance = random.Random(seed)
     cases = []

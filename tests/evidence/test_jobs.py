@@ -8,9 +8,9 @@ import shutil
 from pathlib import Path
 
 import pytest
-from by_day import of_the_day
 from in_process import run_btq
 from random_runs import Case, case
+from seeds import seeds, share_of
 
 from btq_lang.evidence import parallel
 from btq_lang.evidence.evaluate import Findings, MissionEvaluation
@@ -18,8 +18,6 @@ from btq_lang.evidence.judging import JudgedLog, Means, judge
 from btq_lang.evidence.model import Session
 from btq_lang.evidence.verdicts import MissionVerdicts
 from btq_lang.util.record import replace
-
-pytestmark = pytest.mark.by_turns
 
 HERE = Path(__file__).parent
 
@@ -54,7 +52,7 @@ def without_remarks(found: MissionVerdicts) -> MissionVerdicts:
 
 def test_sessions_that_are_added_up_have_the_verdicts_of_all() -> None:
     several = 0
-    for seed in of_the_day(range(200), 2):
+    for seed in share_of(seeds(200), 2):
         made = case(seed)
         several += len(made.sessions) > 1
         assert without_remarks(added(made)) == without_remarks(together(made)), f"seed {seed}"

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import random
-
 import pytest
 from literal_hunt import Hunt
+from seeds import SEED
 
 from btq_lang.catalog.verbs import VERBS
 
@@ -15,11 +14,8 @@ USUAL = 600  # the first of those in which every verb comes to every verdict
 
 @pytest.fixture(scope="module")
 def hunt(request: pytest.FixtureRequest) -> Hunt:
-    """Cases that were judged twice: always the same ones, so that what failed fails again, and in the thorough run new
-    ones as well."""
-    seeds = [USUAL]
-    if request.config.getoption("--hypothesis-profile") == "thorough":
-        seeds.append(random.randrange(10**6))
+    """Cases that were judged twice: always the same ones, and with another `BTQ_SEED` others as well."""
+    seeds = [USUAL, *([USUAL + SEED * CASES] if SEED else ())]
     made = Hunt()
     for seed in seeds:
         capture = request.config.pluginmanager.getplugin("capturemanager")

@@ -11,6 +11,7 @@ import pytest
 from check_asserts import workspace_of
 from evidence_logs import MAIN, MAIN_XML, btlog, rows
 from random_runs import Case, case
+from seeds import seeds
 
 from btq_lang.evidence import margins
 from btq_lang.evidence.edges import edge_of
@@ -83,7 +84,7 @@ def counts(clause: ClauseVerdict) -> tuple[object, ...]:
 
 def test_a_clause_with_an_edited_bound_is_judged_as_if_the_logs_were_read_again() -> None:
     again = 0
-    for seed in range(60):
+    for seed in seeds(60):
         made = case(seed)
         before = written(judged(made, made.mission))
         text = edited(made.text, random.Random(seed))

@@ -7,19 +7,17 @@ import re
 from pathlib import Path
 
 import pytest
-from by_day import of_the_day
 from hypothesis import given
 from hypothesis import strategies as st
 from layouts import has_errors, places, relaid, said, words
 from missions import mission
+from seeds import share_of
 
 from btq_lang.formatter import FormatOptions, format_range, format_text
 from btq_lang.lexer import tokens
 from btq_lang.parser import parse
 from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT
 from btq_lang.util.text import apply_edits
-
-pytestmark = pytest.mark.by_turns
 
 ROOT = Path(__file__).resolve().parents[2]
 EVERY_FORM = (ROOT / "tests" / "every_form.btq").read_text("utf-8")
@@ -110,7 +108,7 @@ def test_any_text(text: str) -> None:
 
 @pytest.mark.parametrize("item", [pytest.param(text, id=text.split("\n")[0][:30]) for text in top_items()])
 def test_every_beginning_and_every_word_left_out(item: str) -> None:
-    for token in of_the_day([each for each in tokens(item) if each.kind not in (BLANK, INDENT, DEDENT)], 4):
+    for token in share_of([each for each in tokens(item) if each.kind not in (BLANK, INDENT, DEDENT)], 4):
         assert_holds(item[: token.start])
         assert_holds(item[: token.start] + item[token.end :])
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 import pytest
+from seeds import seeds
 
 from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
@@ -135,7 +136,7 @@ def test_every_production_is_a_function_of_the_same_name() -> None:
     assert without == set(WITHOUT_A_FUNCTION)
 
 
-@pytest.mark.parametrize("seed", range(400))
+@pytest.mark.parametrize("seed", seeds(400))
 def test_what_the_grammar_makes_is_read(seed: int) -> None:
     text = sentence(random.Random(seed))
     found = [each for each in parse(text).diagnostics if each.rule == "syntax-error"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 
 import pytest
+from seeds import seeds
 
 from btq_lang.grammar.item_words import item_word_meant, read_as
 from btq_lang.parser import parse
@@ -74,7 +75,7 @@ def test_what_has_none_is_not_parsed() -> None:
     assert not file.is_parsed
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", seeds(20))
 def test_no_include_is_overlooked(seed: int) -> None:
     chance = random.Random(seed)
     for _ in range(200):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 
 import pytest
+from seeds import seeds
 from syntax_asserts import apply_fix, assert_invariants, assert_parse, assert_safe_fixes, show_problems
 
 from btq_lang.lexer import Lexer
@@ -665,7 +666,7 @@ def test_what_would_be_said_instead_of_a_mistake_but_is_not(line: str, said: str
     assert text[only.span.start : only.span.end] == said
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", seeds(4))
 def test_no_text_in_which_the_lexer_finds_a_mistake_passes(seed: int) -> None:
     chance = random.Random(seed)
     for _ in range(2_000):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import missions
 import pytest
-from by_day import of_the_day
+from seeds import seeds, share_of
 
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.util.text import LineIndex, Position, Span, changed
@@ -67,7 +67,7 @@ TEXTS = {
 SHORTEST = {"empty": "", "Root alone": "Root\n"}
 
 
-@pytest.mark.parametrize(("seed", "name"), of_the_day(product(range(4), TEXTS | SHORTEST), 8))
+@pytest.mark.parametrize(("seed", "name"), list(product(share_of(seeds(4), 4), TEXTS | SHORTEST)))
 def test_after_any_edits_it_is_the_parse_of_the_text(seed: int, name: str) -> None:
     text = (TEXTS | SHORTEST)[name]
     chance = random.Random(f"{seed}{text[:40]}")
@@ -82,7 +82,7 @@ def test_after_any_edits_it_is_the_parse_of_the_text(seed: int, name: str) -> No
         assert same(parsed, parse(after)), (step, after)
 
 
-@pytest.mark.parametrize(("seed", "name"), of_the_day(product(range(4), TEXTS), 8))
+@pytest.mark.parametrize(("seed", "name"), list(product(share_of(seeds(4), 4), TEXTS)))
 def test_after_edits_of_damaged_brackets_it_is_the_parse_of_the_text(seed: int, name: str) -> None:
     """What ends brackets early is remembered on the lines that follow: a parse may not begin again among these."""
     text = TEXTS[name]
@@ -115,7 +115,7 @@ LINES = (
 )
 
 
-@pytest.mark.parametrize("seed", of_the_day(range(100), 4))
+@pytest.mark.parametrize("seed", share_of(seeds(100), 4))
 def test_after_edits_of_wrong_lines_behind_open_brackets_it_is_the_parse_of_the_text(seed: int) -> None:
     chance = random.Random(seed)
     lines = chance.choices(LINES, k=chance.randint(3, 12))
@@ -201,7 +201,7 @@ def test_what_an_edit_replaced(before: str, after: str, span: tuple[int, int] | 
     assert changed(before, after) == span
 
 
-@pytest.mark.parametrize("seed", of_the_day(range(4), 4))
+@pytest.mark.parametrize("seed", share_of(seeds(4), 4))
 def test_a_line_index_that_is_patched_is_that_of_the_text(seed: int) -> None:
     chance = random.Random(seed)
     text = "ab\ncd\r\nef\r\n\n"

@@ -1,6 +1,6 @@
 """The lexer and the parser take every text: no exception, nothing lost, no time beyond what the length asks for.
 
-The usual run invents the same texts every time, the thorough profile (`tests/README.md`) looks for new ones.
+Each run invents the same texts, and other ones with another seed (`tests/README.md`).
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from itertools import pairwise, product
 from pathlib import Path
 
 import pytest
-from by_day import of_the_day
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
+from seeds import share_of
 from syntax_asserts import assert_diagnostics, assert_entries, assert_invariants, assert_tokens, show_problems
 
 from btq_lang.parser import parse
@@ -166,7 +166,7 @@ def without_one_line(text: str) -> Iterator[str]:
 @pytest.mark.parametrize("damage", [prefixes, without_one_token])
 @pytest.mark.parametrize("text", list(pieces()))
 def test_every_damage_to_an_item(text: str, damage: Callable[[str], Iterator[str]]) -> None:
-    for damaged in of_the_day(damage(text), 8):
+    for damaged in share_of(damage(text), 8):
         parsed = parse(damaged)
         assert_diagnostics(parsed)
         assert_entries(parsed)
@@ -175,9 +175,9 @@ def test_every_damage_to_an_item(text: str, damage: Callable[[str], Iterator[str
 @pytest.mark.parametrize("name", TEXTS)
 def test_every_example_without_one_line_and_up_to_the_end_of_any(name: str) -> None:
     text = TEXTS[name]
-    for damaged in of_the_day(without_one_line(text), 8):
+    for damaged in share_of(without_one_line(text), 8):
         assert_diagnostics(parse(damaged))
-    for end in of_the_day(LINE_END.finditer(text), 8):
+    for end in share_of(LINE_END.finditer(text), 8):
         assert_diagnostics(parse(text[: end.start()]))
 
 
@@ -232,7 +232,7 @@ def test_what_is_nested_too_deep_is_one_diagnostic(text: str, problem: str) -> N
 def test_blocks_without_end() -> None:
     """Items inside items, requirements inside models, …: whatever a level begins with, it costs no stack."""
     words = ("Root a", "signal a : m", "QualityReq a", "Action a", "TreeNodesModel", "X", "satisfies QualityReq a")
-    for word in of_the_day(words, 4):
+    for word in words:
         text = "".join(f"{' ' * level}{word}\n" for level in range(DEEP))
         parsed = parse(text)
         assert_entries(parsed)
@@ -274,7 +274,7 @@ HEADS = (
 )
 
 
-@pytest.mark.parametrize("unit", of_the_day(HOSTILE, 4))
+@pytest.mark.parametrize("unit", HOSTILE)
 def test_a_hostile_line_without_end(unit: str) -> None:
     """They end at all: what is quadratic takes minutes.  And they do not drown anybody in diagnostics."""
     parsed = parse(unit * (100_000 // len(unit)))
@@ -283,7 +283,7 @@ def test_a_hostile_line_without_end(unit: str) -> None:
 
 @pytest.mark.parametrize("unit", HOSTILE)
 def test_hostile_lines_behind_something_else(unit: str) -> None:
-    for head in of_the_day(HEADS, 4):
+    for head in HEADS:
         parsed = parse(head + unit * (10_000 // len(unit)))
         assert_tokens(parsed)
         assert len(parsed.diagnostics) <= (21 if unit == "30sek " else 2)
@@ -292,7 +292,7 @@ def test_hostile_lines_behind_something_else(unit: str) -> None:
 HOSTILE_LINES = ("/* a", '"a', "'a", "a (b", ")", "X (", "30sek,", "a = 1", "   a", "\ta", "->", "# a", "x 'a\\")
 
 
-@pytest.mark.parametrize(("line", "end"), of_the_day(product(HOSTILE_LINES, ("\n", "\r", "\n  ", "\n\t")), 8))
+@pytest.mark.parametrize(("line", "end"), list(product(HOSTILE_LINES, ("\n", "\r", "\n  ", "\n\t"))))
 def test_hostile_lines_one_below_another(line: str, end: str) -> None:
     """As items, all of them in one tree, or in one pair of brackets: no line looks at all the lines before it."""
     for head in ("", "BehaviorTree t\n", "BehaviorTree t\n  X (\n"):

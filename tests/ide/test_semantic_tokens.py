@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 from feature_asserts import check_delta, check_tokens, decoded
+from seeds import seeds
 
 from btq_lang.ide.colours import Change, colours, delta
 from btq_lang.lexer import tokens
@@ -97,7 +98,7 @@ def test_a_keyword_may_be_a_name() -> None:
     )
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", seeds(8))
 def test_comments_are_those_of_the_text(seed: int) -> None:
     chance = random.Random(seed)
     for _ in range(300):

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from lsp_editor import Editor, Message, part
+from seeds import seeds
 
 from btq_lang import build, open_workspace
 from btq_lang.btcpp.recognition import is_mission
@@ -167,7 +168,7 @@ PIECES = (
 )
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", seeds(3))
 def test_the_server_finds_in_xml_what_the_command_line_does(shared: Path, tmp_path: Path, seed: int) -> None:
     """In files that others wrote, and after edits in them."""
     chance = random.Random(seed)

@@ -8,6 +8,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from seeds import seeds
 
 from btq_lang.checks import _reported
 from btq_lang.ide.colours import Change, Colours, colours, delta
@@ -134,13 +135,12 @@ def session_of(folder: Path, texts: dict[str, str]) -> Session:
     return session
 
 
-@pytest.mark.by_turns
 @pytest.mark.usefixtures("strict_queries")
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", seeds(4))
 def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("btq_lang.lsp.session._MOST_IDLE", 0 if seed % 2 else 100_000)
     chance = random.Random(seed)
-    if seed > 1:
+    if seed % 4 > 1:
         (folder / "btq.toml").write_text(FACTORIES, encoding="utf-8")
     session = session_of(folder, {})
     told = {path: session.diagnostics(path) for path in session.paths()}
@@ -181,9 +181,8 @@ def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monke
                 known[path] = coloured
 
 
-@pytest.mark.by_turns
 @pytest.mark.usefixtures("strict_queries")
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", seeds(4))
 def test_files_come_and_go_and_the_project_changes(folder: Path, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("btq_lang.workspace.queries._FEW", 0 if seed % 2 else 10_000)
     chance = random.Random(seed)
@@ -380,7 +379,7 @@ def test_an_edit_parses_no_file_as_a_whole(name: str, folder: Path, monkeypatch:
             session.diagnostics(changed)
 
 
-@pytest.mark.by_turns
+@pytest.mark.scheduled
 def test_what_edits_replace_goes_when_it_is_swept(folder: Path) -> None:
     main = f"{folder}/main.btq"
     session = session_of(folder, {})
@@ -457,9 +456,8 @@ def test_a_check_after_all_was_read_again_asks_nothing_again(folder: Path) -> No
 # ---- XML ----
 
 
-@pytest.mark.by_turns
 @pytest.mark.usefixtures("strict_queries")
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", seeds(6))
 def test_what_is_told_of_xml_is_what_a_new_session_finds(
     tmp_path: Path, seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -19,8 +19,6 @@ from btq_lang.render.cells import cut, laid_out, printable
 from btq_lang.render.colour import wants_colour
 from btq_lang.util.text import Span
 
-pytestmark = pytest.mark.by_turns
-
 # Every code point, also those that no file holds (surrogates, controls); often those that renderers trip over.
 TEXTS = st.text(st.characters(codec=None) | st.sampled_from('\n\r\t"&<%:,\x1b\u202e\u0301日🤖'), max_size=60)
 SPANS = st.builds(Span, st.integers(-3, 70), st.integers(-3, 70))

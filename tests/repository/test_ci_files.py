@@ -137,3 +137,46 @@ def test_every_job_tests_the_versions_that_are_promised() -> None:
     matrix = read(".github/workflows/ci.yml")["jobs"]["python"]["strategy"]["matrix"]
     assert matrix["python"] == ["3.10", "3.11", "3.12", "3.13", "3.14"]
     assert matrix["system"] == ["ubuntu-latest", "macos-latest", "windows-latest"]
+
+
+def test_every_job_runs_the_command_of_the_readme() -> None:
+    """Which `.ci/run` does to the letter."""
+    jobs = read(".github/workflows/ci.yml")["jobs"]
+    steps = {name: [step["run"] for step in job["steps"] if "run" in step] for name, job in jobs.items()}
+    install = 'python -m pip install ".[test]"'
+    assert steps == {"python": [install, "python -m pytest -n auto -rs"], "editors": [".ci/run"], "action": []}
+    assert "PYTEST_ADDOPTS" not in (ROOT / ".github/workflows/ci.yml").read_text(encoding="utf-8")
+
+
+def test_each_night_all_tests_run_with_another_seed() -> None:
+    workflow = read(".github/workflows/scheduled.yml")
+    assert workflow[True].keys() == {"schedule", "workflow_dispatch"}  # YAML 1.1 reads `on` as a boolean
+    assert workflow["permissions"] == {"contents": "read"}
+    assert workflow["env"] == {"BTQ_SEED": "${{ inputs.seed || github.run_number }}"}
+    tests, issue = (workflow["jobs"][name] for name in ("tests", "issue"))
+    (step,) = (step for step in tests["steps"] if "run" in step)
+    assert step == {"run": ".ci/run", "env": {"PYTEST_ADDOPTS": '-m "scheduled or not scheduled"'}}
+    assert (issue["needs"], issue["if"], issue["permissions"]) == ("tests", "failure()", {"issues": "write"})
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the steps are for a POSIX shell")
+def test_the_issue_names_the_seed_and_what_does_it_again(tmp_path: Path) -> None:
+    program = tmp_path / "gh"
+    program.write_text('#!/bin/sh\nprintf "%s\\n" "$@"\n')
+    program.chmod(0o755)
+    (step,) = read(".github/workflows/scheduled.yml")["jobs"]["issue"]["steps"]
+    values = {
+        "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}",
+        "BTQ_SEED": "17",
+        "GITHUB_REPOSITORY": "some/btq",
+        "GITHUB_RUN_ID": "4",
+        "GITHUB_SERVER_URL": "https://host",
+        "GITHUB_SHA": "abc",
+    }
+    run = subprocess.run([*BASH, step["run"]], env=values, capture_output=True, text=True)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert run.stdout.splitlines() == [
+        *("issue", "create", "--repo", "some/btq", "--title", "Tests fail with seed 17", "--body"),
+        "[The run](https://host/some/btq/actions/runs/4) names the tests that failed at abc. "
+        "The same inputs again: `BTQ_SEED=17 .venv/bin/pytest -n auto -m 'scheduled or not scheduled'`",
+    ]

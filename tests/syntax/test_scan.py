@@ -6,6 +6,7 @@ import random
 import re
 
 import pytest
+from seeds import seeds
 
 from btq_lang.syntax.scan import is_name, line_opening, maps_of, name_end
 
@@ -14,7 +15,7 @@ OPENING = re.compile(r"(?:[ \t]*[\r\n])*")
 BLANKS = re.compile(r"[ \t]*")
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", seeds(20))
 def test_a_name_ends_where_the_pattern_says(seed: int) -> None:
     draw = random.Random(seed)
     for _ in range(300):
@@ -26,7 +27,7 @@ def test_a_name_ends_where_the_pattern_says(seed: int) -> None:
         assert is_name(text) == (NAME.fullmatch(text) is not None), text
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", seeds(20))
 def test_a_line_opens_where_the_pattern_says(seed: int) -> None:
     draw = random.Random(seed)
     for _ in range(300):
@@ -39,7 +40,7 @@ def test_a_line_opens_where_the_pattern_says(seed: int) -> None:
             assert line_opening(text, maps_of(text).ink, start) == (lines.end(), blanks.end()), (text, start)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", seeds(20))
 def test_maps_after_an_edit_are_those_of_the_new_text(seed: int) -> None:
     draw = random.Random(seed)
     text = ""

@@ -30,10 +30,7 @@ from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 
-pytestmark = [
-    pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: only a browser can tell"),
-    pytest.mark.by_turns,
-]
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: only a browser can tell")
 
 # Every text inside its outline, and no two outlines over each other.
 MEASURE = """
@@ -100,7 +97,16 @@ def keep_screenshot(folder: Path, name: str, page: str, size: str, *more: str) -
     assert target.read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize("example", ["laboratory", "hospital", "navigation", "classic", "200 nodes"])
+@pytest.mark.parametrize(
+    "example",
+    [
+        "laboratory",
+        *(
+            pytest.param(each, marks=pytest.mark.scheduled)
+            for each in ("hospital", "navigation", "classic", "200 nodes")
+        ),
+    ],
+)
 def test_in_the_page_nothing_overlaps_and_every_text_fits(
     example: str, seen: Callable[..., dict[str, Any]], tmp_path: Path
 ) -> None:
@@ -113,6 +119,7 @@ def test_in_the_page_nothing_overlaps_and_every_text_fits(
     keep_screenshot(tmp_path, f"trace-{example.replace(' ', '-')}", page, "1500,1200")
 
 
+@pytest.mark.scheduled
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_in_pictures_nothing_overlaps_and_every_text_fits(
     direction: str, seen: Callable[..., dict[str, Any]], tmp_path: Path
@@ -226,6 +233,7 @@ def test_without_a_script_links_lead_to_nodes_and_back(tmp_path: Path, seen: Cal
     assert seen(page, steps) == {"node": "#n14", "stroke": "3.5px", "row": "r2", "form": True}
 
 
+@pytest.mark.scheduled
 def test_it_prints_and_is_dark_where_the_reader_wants_it(seen: Callable[..., dict[str, Any]], tmp_path: Path) -> None:
     page = write(overview_of("laboratory"), "html")
     target = ARTIFACTS / "trace-laboratory.pdf"

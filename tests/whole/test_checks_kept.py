@@ -11,8 +11,8 @@ from pathlib import Path
 
 import missions
 import pytest
-from by_day import of_the_day
 from kept_checks import Kept
+from seeds import seeds, share_of
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.checks import CHECKS, Check, check
@@ -23,8 +23,6 @@ from btq_lang.workspace.config import Project
 from btq_lang.workspace.factories import Factory
 from btq_lang.workspace.resolved import ResolvedTree
 from btq_lang.workspace.workspace import Workspace
-
-pytestmark = pytest.mark.by_turns
 
 EVERY_FORM = (Path(__file__).parents[1] / "every_form.btq").read_text(encoding="utf-8")
 MAIN = """include "skills.btq"
@@ -153,7 +151,7 @@ EDITED = {
 }
 
 
-@pytest.mark.parametrize(("seed", "name"), of_the_day(product(range(4), EDITED), 8))
+@pytest.mark.parametrize(("seed", "name"), list(product(share_of(seeds(4), 4), EDITED)))
 def test_what_is_kept_is_what_would_be_found(seed: int, name: str) -> None:
     files = EDITED[name]
     chance = random.Random(seed)
@@ -190,7 +188,7 @@ PROJECTS = {
 }
 
 
-@pytest.mark.parametrize(("seed", "name"), of_the_day(product(range(4), PROJECTS), 8))
+@pytest.mark.parametrize(("seed", "name"), list(product(share_of(seeds(4), 4), PROJECTS)))
 def test_what_is_kept_is_found_beyond_includes(seed: int, name: str) -> None:
     project, factory = PROJECTS[name]
     chance = random.Random(seed)
@@ -219,7 +217,7 @@ def test_what_no_quote_closes_is_not_empty() -> None:
     assert [each.rule for each in anew] == [each.rule for each in kept] == ["unclosed-string"]
 
 
-@pytest.mark.parametrize("spelling", of_the_day(["classic", "short"], 2))
+@pytest.mark.parametrize("spelling", ["classic", "short"])
 def test_trees_and_requirements_change_names_and_places(spelling: missions.Spelling) -> None:
     """In a file of so many trees that cached results about all of them are updated instead of recomputed."""
     chance = random.Random(1)

@@ -8,11 +8,11 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from by_day import of_the_day
 from check_asserts import assert_sound
 from damage import case, damaged
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from seeds import share_of
 
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
@@ -20,8 +20,6 @@ from btq_lang.lexer import tokens
 from btq_lang.util.record import replace
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
-
-pytestmark = pytest.mark.by_turns
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SUFFIXES = (".btq", ".qualitybtcpp")
@@ -120,7 +118,7 @@ NUMBERS = range(len(ALL))
 def test_every_prefix(number: int) -> None:
     for path, text in ALL[number].items():
         lines = text.splitlines(keepends=True)
-        for count in of_the_day(range(len(lines)), 8):
+        for count in share_of(range(len(lines)), 8):
             examine_torn(number, path, "".join(lines[:count]))
 
 
@@ -129,7 +127,7 @@ def test_a_line_missing(number: int) -> None:
     chance = random.Random(number)
     for path, text in ALL[number].items():
         lines = text.splitlines(keepends=True)
-        for index in of_the_day(chance.sample(range(len(lines)), min(TORN, len(lines))), 8):
+        for index in share_of(chance.sample(range(len(lines)), min(TORN, len(lines))), 8):
             examine_torn(number, path, "".join(lines[:index] + lines[index + 1 :]))
 
 
@@ -138,7 +136,7 @@ def test_a_token_missing(number: int) -> None:
     chance = random.Random(number)
     for path, text in ALL[number].items():
         words = [token for token in tokens(text) if token.text.strip()]
-        for token in of_the_day(chance.sample(words, min(TORN, len(words))), 8):
+        for token in share_of(chance.sample(words, min(TORN, len(words))), 8):
             examine_torn(number, path, text[: token.start] + text[token.end :])
 
 

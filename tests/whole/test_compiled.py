@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from by_day import of_the_day
 from missions import mission
 from rule_pages import blocks
+from seeds import SEED, share_of
 from torn_texts import CLASSIC, EXAMPLES, SHORT, torn
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -123,15 +123,14 @@ def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.by_turns
 def test_what_is_compiled_reads_and_checks_as_the_pure_form(compiled: Path) -> None:
-    draw = random.Random(1)
+    draw = random.Random(SEED)
     texts = [path.read_bytes().decode("utf-8") for path in EXAMPLES]
     texts += [text for _, language, text in blocks() if language == "btq"]
     texts += [mission(1_000, 2, "classic"), mission(1_000, 2, "short")]
     texts += [deep(60), f"context c : {' * '.join('a' * 80)}"]
     torn_texts = [torn(draw.choice((CLASSIC, SHORT, *texts[: len(EXAMPLES)])), draw) for _ in range(150)]
-    texts += of_the_day(torn_texts, 4)
+    texts += share_of(torn_texts, 4)
     pure_files, pure = answers(ROOT, texts)
     compiled_files, by_compiled = answers(compiled, texts, PYTHONMALLOC="debug")  # writing beside an object is fatal
     names = ("parser.py", "syntax/tree.py", "syntax/script/parser.py")

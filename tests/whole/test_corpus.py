@@ -8,8 +8,8 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from by_day import of_the_day
 from lxml import etree
+from seeds import share_of
 from xml_elements import elements
 
 from btq_lang.btcpp.document import write
@@ -28,7 +28,7 @@ from btq_lang.parser import parse
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
 
-pytestmark = pytest.mark.by_turns
+pytestmark = pytest.mark.scheduled
 
 # What does not come back, and why.
 LOST = {
@@ -83,7 +83,7 @@ def test_an_import_has_no_mistake_and_is_formatted(imported: Callable[[bool], di
     texts = {each.text: name for keep_v3 in (True, False) for name, each in imported(keep_v3).items()}
     for text in texts:
         assert parse(text).diagnostics == (), texts[text]
-    for text in of_the_day(texts, 2):
+    for text in share_of(texts, 2):
         assert format_text(text).edits == (), texts[text]
 
 

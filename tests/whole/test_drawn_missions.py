@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 import pytest
-from by_day import of_the_day
 from drawn_missions import mission, missions
+from seeds import seeds, share_of
 
 from btq_lang.parser import parse
 
@@ -18,7 +18,7 @@ def nodes(text: str) -> int:
     return sum(1 for tree in parse(text).trees for _ in tree.walk())
 
 
-@pytest.mark.parametrize("seed", of_the_day(range(60), 4))
+@pytest.mark.parametrize("seed", share_of(seeds(60), 4))
 def test_a_drawn_mission_has_no_syntax_error(seed: int) -> None:
     text = mission(80, seed)
     found = [(text[each.span.start :].split("\n")[0], each.message) for each in parse(text).diagnostics]

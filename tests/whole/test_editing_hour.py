@@ -1,6 +1,7 @@
 """An hour of editing, key by key: after every key the server answers as a new one would of the same texts.
 
-The usual run compares after one key in forty, of other keys every day, and `--every-key` after each (some minutes).
+The usual run compares after one key in forty, of other keys with another seed, and
+`--every-key` after each (some minutes).
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from by_day import of_the_day
 from lsp_editor import Editor, Message
+from seeds import share_of
 from typist import Typist
 
 from btq_lang.ide.calls import prepare_calls
@@ -38,10 +39,9 @@ def hospital(tmp_path: Path) -> Path:
     return Path(shutil.copytree(HERE.parents[1] / "examples" / "hospital", tmp_path / "hospital"))
 
 
-@pytest.mark.by_turns
 def test_after_every_key_it_is_what_a_new_server_says(hospital: Path, request: pytest.FixtureRequest) -> None:
     numbers = range(1, KEYS + 1)
-    sample = set(numbers if request.config.getoption("--every-key") else of_the_day(numbers, SHARE))
+    sample = set(numbers if request.config.getoption("--every-key") else share_of(numbers, SHARE))
     typist = Typist(hospital)
     keys = compared = 0
     for keys, line in enumerate(typist.play(HOUR), 1):

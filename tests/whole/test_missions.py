@@ -11,6 +11,7 @@ import ceilings
 import missions
 import pytest
 from missions import Spelling, mission, plan
+from seeds import seeds
 
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import Node, Tree
@@ -39,7 +40,7 @@ def test_a_plan_has_the_nodes_asked_for(nodes: int) -> None:
     assert sum(1 for _ in plan(nodes).steps()) == nodes
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", seeds(20))
 @pytest.mark.parametrize("spelling", SPELLINGS)
 def test_every_seed_parses_without_a_diagnostic(seed: int, spelling: Spelling) -> None:
     parsed = parse(mission(150, seed, spelling))

@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from random_edits import Drift
+from seeds import SEED
 
 
 def test_random_edits_keep_in_step(tmp_path: Path) -> None:
-    drift = Drift(tmp_path, seed=7)
+    drift = Drift(tmp_path, seed=7 + SEED)
     drift.edits(300)
     assert drift.editor.close() == ""

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import missions
 import pytest
-from by_day import of_the_day
 from kept_checks import Kept
 from requirement_problems import problems_of
+from seeds import seeds, share_of
 
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Place
@@ -26,8 +26,6 @@ from btq_lang.workspace.inputs import advance
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
-
-pytestmark = pytest.mark.by_turns
 
 MAIN = """include "skills.btq"
 include "requirements.btq"
@@ -179,7 +177,7 @@ LINES = (
 EDITED = {"includes": FILES, "guards": GUARDS, "classic": CLASSIC, "short": SHORT, "every form": EXAMPLE}
 
 
-@pytest.mark.parametrize(("seed", "name"), of_the_day(product(range(2), EDITED), 4))
+@pytest.mark.parametrize(("seed", "name"), list(product(share_of(seeds(2), 2), EDITED)))
 def test_what_is_kept_is_what_would_be_found(seed: int, name: str) -> None:
     files = EDITED[name]
     chance = random.Random(seed)

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 from lsp_editor import Editor, Message
+from seeds import seeds
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.recognition import is_mission
@@ -119,7 +120,7 @@ def test_every_word(tmp_path: Path) -> None:
     assert {name for name, often in asked.answered.items() if not often} == NOT_IN_XML
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", seeds(4))
 def test_written_and_damaged_xml(tmp_path: Path, seed: int) -> None:
     chance = random.Random(seed)
     texts = [TREES, *(path.read_bytes().decode() for path in chance.sample(GOLDEN, 3))]
@@ -130,8 +131,8 @@ def test_written_and_damaged_xml(tmp_path: Path, seed: int) -> None:
     asked.end()
 
 
-@pytest.mark.by_turns
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.scheduled
+@pytest.mark.parametrize("seed", seeds(2))
 def test_xml_of_others(shared: Path, tmp_path: Path, seed: int) -> None:
     chance = random.Random(seed)
     paths = sorted((shared / "corpus").rglob("*.xml"))

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from random import Random
 
 import pytest
-from by_day import of_the_day
+from seeds import seeds, share_of
 
 from btq_lang.workspace.queries import Cancelled, Store, hub, on_circle
 
@@ -90,7 +90,7 @@ def edited(random: Random, graph: Graph, *, circles: bool) -> tuple[Graph, list[
     return changed, nodes
 
 
-@pytest.mark.parametrize("seed", of_the_day(range(300), 4))
+@pytest.mark.parametrize("seed", share_of(seeds(300), 4))
 def test_circles_and_edits(seed: int) -> None:
     random = Random(seed)
     graph = drawn(random, random.choice((2, 4, 8, 30)), circles=True, detours=False)
@@ -106,7 +106,7 @@ def test_circles_and_edits(seed: int) -> None:
         store.advance(graph, touched)
 
 
-@pytest.mark.parametrize("seed", of_the_day(range(300), 4))
+@pytest.mark.parametrize("seed", share_of(seeds(300), 4))
 def test_questions_that_depend_on_answers(seed: int) -> None:
     random = Random(seed)
     graph = drawn(random, random.choice((4, 8, 30)), circles=False, detours=True)
@@ -129,7 +129,7 @@ def below_most(store: Store[Graph], node: int) -> int:
     return store.ask(most) - store.ask(total, node)
 
 
-@pytest.mark.parametrize("seed", of_the_day(range(100), 4))
+@pytest.mark.parametrize("seed", share_of(seeds(100), 4))
 def test_what_depends_on_a_hub(seed: int) -> None:
     random = Random(seed)
     graph = drawn(random, random.choice((2, 8, 30)), circles=True, detours=False)
@@ -159,7 +159,7 @@ def test_a_hub_that_stays_equal_leaves_its_dependents_valid() -> None:
     assert RUNS == [1, 0, 1, 2]
 
 
-@pytest.mark.parametrize("seed", of_the_day(range(100), 4))
+@pytest.mark.parametrize("seed", share_of(seeds(100), 4))
 def test_no_query_runs_unless_something_that_it_asked_differs(seed: int) -> None:
     random = Random(seed)
     graph = drawn(random, 30, circles=False, detours=False)

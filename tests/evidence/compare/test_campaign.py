@@ -12,8 +12,6 @@ from in_process import run_btq
 
 from btq_lang.evidence.store import engine
 
-pytestmark = pytest.mark.by_turns
-
 VARIANTS: dict[str, tuple[dict[str, float], dict[str, float]]] = {
     "base": ({}, {}),
     "same": ({}, {}),

@@ -10,9 +10,9 @@ from math import comb
 from pathlib import Path
 
 import pytest
-from by_day import of_the_day, takes_all
 from in_process import run_btq
 from json_schema import violations
+from seeds import share_of, takes_all
 
 from btq_lang.evidence.compare.chance import Shuffles, exact, holm, is_too_few, least, shuffles_for
 from btq_lang.evidence.compare.comparison import compare
@@ -252,7 +252,6 @@ def test_few_runs_say_so(tmp_path: Path) -> None:
     assert run_btq("compare", "kept", "a", "b", cwd=tmp_path) == (0, FEW, "")
 
 
-@pytest.mark.by_turns
 def test_robots_are_shuffled_where_a_label_has_several(tmp_path: Path) -> None:
     """Runs of one robot are alike: 200 runs of two slow robots and of two quick ones are four observations."""
     chance = random.Random(2)
@@ -273,7 +272,6 @@ def keep_robots(store: Path, label: str, chance: random.Random, slower: float = 
         keep(store, label, drawn(chance, 25, 8 + number + slower, 0.1 + 0.2 * number), f"r{number}")
 
 
-@pytest.mark.by_turns
 def test_runs_of_each_robot_are_shuffled_where_the_same_robots_ran_both(tmp_path: Path) -> None:
     chance = random.Random(5)
     keep_robots(tmp_path / "kept", "a", chance)
@@ -287,9 +285,8 @@ def test_runs_of_each_robot_are_shuffled_where_the_same_robots_ran_both(tmp_path
     assert (found.over, found.robots) == ("runs of each robot", (3, 4))
 
 
-@pytest.mark.by_turns
 def test_a_version_compared_with_itself_on_robots_of_different_speed(tmp_path: Path) -> None:
-    for seed in of_the_day(range(12), 4):
+    for seed in share_of(range(12), 4):
         chance = random.Random(seed)
         keep_robots(tmp_path / str(seed), "a", chance)
         keep_robots(tmp_path / str(seed), "b", chance)
@@ -297,7 +294,6 @@ def test_a_version_compared_with_itself_on_robots_of_different_speed(tmp_path: P
         assert [each for each in found.changes if each.finding in ("slower", "faster")] == []
 
 
-@pytest.mark.by_turns
 def test_failures_are_compared_within_each_robot(tmp_path: Path) -> None:
     """A robot that fails half of the time runs more with the second version: neither is less reliable."""
     chance = random.Random(4)
@@ -312,7 +308,6 @@ def test_failures_are_compared_within_each_robot(tmp_path: Path) -> None:
     assert exact([((before, 160), (after, 160))]) < 0.001
 
 
-@pytest.mark.by_turns
 def test_robots_that_ran_several_versions(tmp_path: Path) -> None:
     """Their runs are of several labels unless one is taken, and the report says so."""
     runs = [(10.0, 5.0, True)] * 2
@@ -334,7 +329,6 @@ def test_robots_that_ran_several_versions(tmp_path: Path) -> None:
     assert refused == (2, "", "btq compare: no run has the robot r1; there are r2 with the label v2\n")
 
 
-@pytest.mark.by_turns
 def test_many_runs_are_shuffled_in_groups(tmp_path: Path) -> None:
     chance = random.Random(3)
     keep(tmp_path / "kept", "a", drawn(chance, 600, 10.0))
@@ -344,10 +338,9 @@ def test_many_runs_are_shuffled_in_groups(tmp_path: Path) -> None:
     assert {(each.node, each.what) for each in found.changes if each.finding == "slower"} == {("Move", "median")}
 
 
-@pytest.mark.by_turns
 def test_a_version_compared_with_itself(tmp_path: Path) -> None:
     """Of random splits of the runs of one version, at most the promised share finds something: 70 of 1 000."""
-    seeds = range(1000) if takes_all() else of_the_day(range(12), 4)
+    seeds = range(1000) if takes_all() else share_of(range(12), 4)
     found = [seed for seed in seeds if finds_something(tmp_path / str(seed), seed)]
     assert len(found) <= len(seeds) * 70 // 1000
 

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import msgpack
 import pytest
-from by_day import of_the_day
 from groot2_recording import RECORDINGS, Exchange, exchanges, meaning, read
 from groot2_robot import Publisher
+from seeds import seeds, share_of
 
 from btq_lang.evidence.readers.groot2.following import Began, Came, Following, Lost, Notice, Sampled
 from btq_lang.evidence.readers.groot2.messages import reply, request
@@ -63,7 +63,7 @@ def test_the_recordings_are_followed() -> None:
 def test_damaged_replies_do_no_harm() -> None:
     recordings = [read(path) for path in RECORDED]
     kinds = set()
-    for seed in of_the_day(range(5000), 16):
+    for seed in share_of(seeds(5000), 16):
         chance = random.Random(seed)
         recorded = chance.choice(recordings)
         at = chance.randrange(12)

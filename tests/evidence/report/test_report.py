@@ -20,8 +20,6 @@ from btq_lang.evidence.store import engine
 from btq_lang.evidence.store.fleet import asked_by
 from btq_lang.evidence.store.queries import OVERVIEW
 
-pytestmark = pytest.mark.by_turns
-
 MISSION = 'QualityReq quick : safety "Be <quick>"\n    Move takes at most 15 ms\n' + MAIN
 SLOW, QUICK = "1R 2R 20 2S 3R 25 3S 1S 26 2I 3I 1I", "1R 2R 12 2S 3R 25 3S 1S 26 2I 3I 1I"
 FAILED = "1R 2R 12 2S 3R 25 3F 1F 26 2I 3I 1I"
@@ -161,6 +159,7 @@ def test_the_page_can_be_read_aloud(robots: Path) -> None:
     assert text.count('<svg class="trend"') == len(Page(text).labels)
 
 
+@pytest.mark.scheduled
 def test_the_same_store_gives_the_same_page(robots: Path) -> None:
     assert run_btq("report", "evidence", cwd=robots) == (1, page_of(robots), "")
 
@@ -184,6 +183,7 @@ def test_the_page_is_no_wider_than_the_window(width: int, robots: Path, tmp_path
     assert re.findall(r'data-wide="(-?\d+)"', dom) == ["0"]
 
 
+@pytest.mark.scheduled
 def test_twins_have_what_their_robot_has(robots: Path, tmp_path: Path) -> None:
     shutil.copytree(robots / "evidence", tmp_path / "evidence")
     fleet.add_twins(tmp_path / "evidence", 2)
@@ -338,6 +338,7 @@ def test_steps_are_as_short_as_their_number_allows(length: int, name: str, numbe
     assert steps.begin(number - 1) <= START + length * 1_000_000 < steps.begin(number)
 
 
+@pytest.mark.scheduled
 def test_a_second_engine_says_the_same(robots: Path, polars: str) -> None:
     store = str(robots / "evidence")
     words = {"by": "mission, label", "origin": START, "step": DAY}

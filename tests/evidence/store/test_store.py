@@ -375,7 +375,7 @@ def writer(folder: Path, logs: list[str]) -> subprocess.Popen[bytes]:
     return subprocess.Popen(command, cwd=folder, env=environment, stdout=null, stderr=null, start_new_session=True)
 
 
-@pytest.mark.by_turns
+@pytest.mark.scheduled
 def test_writers_killed_at_any_moment(tmp_path: Path) -> None:
     logs = logs_of(tmp_path, 16)
     chance = random.Random(7)
@@ -407,7 +407,6 @@ def test_writers_killed_at_any_moment(tmp_path: Path) -> None:
     assert found == expected
 
 
-@pytest.mark.by_turns
 def test_two_writers_at_once(tmp_path: Path) -> None:
     logs = logs_of(tmp_path, 12)
     assert writer(tmp_path, logs).wait() == 1

@@ -7,14 +7,12 @@ from pathlib import Path
 
 import duckdb
 import pytest
-from by_day import of_the_day
 from evidence_logs import MAIN, MAIN_XML, START, btlog, rows
 from in_process import run_btq
+from seeds import seeds, share_of
 
 from btq_lang.evidence.store.engine import NoEngine, asked
 from btq_lang.evidence.store.summary import summary
-
-pytestmark = pytest.mark.by_turns
 
 MISSION = "QualityReq quick : safety\n    Move takes at most 15 ms\n" + MAIN
 CASES, SHARE = 20_000, 400
@@ -55,7 +53,7 @@ def test_damaged_files_are_named(store: Path) -> None:
     paths = sorted(store.glob("*/*.parquet"))
     whole = {path: path.read_bytes() for path in paths}
     expected = summary(asked(str(store)), "kept")
-    for case in of_the_day(range(CASES), SHARE):
+    for case in share_of(seeds(CASES), SHARE):
         chance = random.Random(case)
         path = chance.choice(paths)
         data = damaged(chance, whole[path], [*whole.values()])

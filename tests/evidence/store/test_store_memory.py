@@ -39,7 +39,7 @@ def written(folder: Path, activations: int, name: str = "Move") -> Path:
     return folder
 
 
-@pytest.mark.by_turns
+@pytest.mark.scheduled
 def test_a_set_is_never_in_memory_as_a_whole(tmp_path: Path) -> None:
     command = [sys.executable, "-c", MEASURE, str(written(tmp_path, 1_000_000))]
     run = subprocess.run(command, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True)

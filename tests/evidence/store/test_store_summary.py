@@ -11,11 +11,11 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
-from by_day import of_the_day
 from evidence_logs import MAIN, MAIN_XML, START, btlog, rows
 from in_process import run_btq
 from json_schema import violations
 from random_runs import Case, case
+from seeds import seeds, share_of
 
 from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.model import Session
@@ -65,7 +65,7 @@ def in_order(clauses: Iterable[ClauseVerdict]) -> list[ClauseVerdict]:
 
 def test_a_summary_counts_as_the_judge_does(tmp_path: Path) -> None:
     seen: Counter[str] = Counter()
-    for seed in of_the_day(range(120), 4):
+    for seed in share_of(seeds(120), 4):
         made = case(seed)
         store = tmp_path / str(seed)
         store.mkdir()
@@ -270,16 +270,14 @@ def test_the_question_of_the_page(kept: Path, monkeypatch: pytest.MonkeyPatch) -
     ]
 
 
-@pytest.mark.by_turns
 @pytest.mark.parametrize("parts", [(), ("label",), ("label", "robot")])
 def test_a_second_engine_says_the_same(parts: tuple[str, ...], kept: Path, polars: str) -> None:
     store = str(kept / "kept")
     assert summary(asked_by(polars, store), store, parts) == summary(engine.asked(store), store, parts)
 
 
-@pytest.mark.by_turns
 def test_a_second_engine_counts_windows_and_odds_alike(tmp_path: Path, polars: str) -> None:
-    for seed in of_the_day(range(20), 4):
+    for seed in share_of(seeds(20), 4):
         store = tmp_path / str(seed)
         store.mkdir()
         judged_and_kept(case(seed), store)
