@@ -444,7 +444,7 @@ class JudgedClause:
 
     def remarks(self, tree: LoggedTree, keeping: Collection[int]) -> Iterator[str]:
         """Remarks on the current log, which has been read."""
-        yield from (f"{self.requirement.name}: {note} ({number} times)" for note, number in self._notes.items())
+        yield from (f"{self.requirement.name}: {note} ({counted(number, 'activation')})" for note, number in self._notes.items())
         for uid in self._nodes:
             # A node that completes at once and is not reset leaves a row only when its result changes.
             if VERBS[self.claim.verb].operand in ("count", "rate") and not self._waits and tree.parent[uid] in keeping:

@@ -155,9 +155,9 @@ def _used(claim: Claim, activation: Activation, observed: Observed) -> tuple[flo
         return bound
     if signal.behaviour == "level":
         amount, number = fallen([ends[0], *values], bound.si)
-        return amount, f"`{signal.name}` was recharged, which does not count as negative use" if number else ""
+        return amount, f"`{signal.name}` was recharged meanwhile, and counts on from there" if number else ""
     amount, number = risen([ends[0], *values])
-    return amount, f"`{signal.name}` was restarted, and counts on from there" if number else ""
+    return amount, f"`{signal.name}` was restarted meanwhile, and counts on from there" if number else ""
 
 
 # ---- conditions ----
