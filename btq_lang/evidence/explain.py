@@ -76,7 +76,7 @@ class Explainer:
             self._leaves[uid] = activation
             if self._is_over_run:
                 self.over_run.add(activation)
-            if outcome == "F" and activation.end > activation.begin:
+            if outcome == "F" and activation.ended != activation.shown:
                 self._failed = activation
         parent = self._tree.parent[uid]
         before = self._last.get(parent)

@@ -15,7 +15,6 @@ from btq_lang.ide.runs import logged_run
 from btq_lang.ide.verdicts import Evidence
 from btq_lang.workspace.workspace import Workspace
 
-pytestmark = pytest.mark.by_turns
 
 DEMAND = (
     "QualityReq rq : safety\n    Move takes at most 100 ms\n"

@@ -13,7 +13,6 @@ from btq_lang.evidence.store import engine
 from btq_lang.evidence.store.fleet import asked_by
 from btq_lang.evidence.store.summary import summary
 
-pytestmark = pytest.mark.by_turns
 
 MISSION = "QualityReq rq : safety\n    Move takes at most 100 ms\n" + MAIN
 RUNS = rows(  # three runs: succeeded, failed, succeeded
