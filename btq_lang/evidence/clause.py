@@ -149,7 +149,8 @@ class JudgedClause:
         self._signals: Signals
         self._history: History
         self._nearby: Callable[[int], Nearby]
-        self._waiting: Final[list[tuple[Activation, Observed, str]]] = []  # until it is known what else ran meanwhile
+        # Until it is known what else ran meanwhile.
+        self._waiting: Final[list[tuple[Activation, Observed, str, Guard | None]]] = []
         self._refused: Final[list[Refusal]] = []  # in the open run, of the clause's nodes
         self._notes: Final[Counter[str]] = Counter()
         self._waits = False
@@ -200,9 +201,9 @@ class JudgedClause:
             self._margins.is_exact = False  # with another bound the guard would have done something else
             self._count(self._broken(activation, guard, observed), activation, path)
         elif self._judge is not None and self._running:
-            self._waiting.append((activation, observed, path))
+            self._waiting.append((activation, observed, path, guard))
         elif self._judge is not None:
-            self._judge_one(activation, observed, path)
+            self._judge_one(activation, observed, path, guard)
         self.broken.pop(activation.uid, None)
 
     def look(self, activation: Activation, path: str) -> bool:
@@ -258,8 +259,9 @@ class JudgedClause:
     def end_run(self, run: Run, root: Activation) -> None:
         """Judge the open run, which has ended; `root`: the activation of its root."""
         is_whole = root.timing not in BEGUN_BEFORE  # else it is unknown what ran in its first part
-        for activation, observed, path in self._waiting if is_whole else ():
-            self._judge_one(activation, observed.during(activation), path, root)  # again: a late sample may count
+        for activation, observed, path, guard in self._waiting if is_whole else ():
+            # Observed again: a late sample may count.
+            self._judge_one(activation, observed.during(activation), path, guard, root)
         self._waiting.clear()
         if self._judge_run is not None and is_whole:
             self._judge_over(root)
@@ -319,8 +321,20 @@ class JudgedClause:
             late = [agreed(one, other, root) for one, other in zip(late, early, strict=True)]
         return [_clocked(each, root) for each in late]
 
-    def _judge_one(self, activation: Activation, observed: Observed, path: str, root: Activation | None = None) -> None:
-        """Count an activation; `root`: of the run, if the judgement depends on the order of events."""
+    def _judge_one(
+        self,
+        activation: Activation,
+        observed: Observed,
+        path: str,
+        guard: Guard | None = None,
+        root: Activation | None = None,
+    ) -> None:
+        """Count an activation.
+
+        Args:
+            guard: what stopped it, unless that was halted itself.
+            root: of the run, if the judgement depends on the order of events.
+        """
         ways: list[_Way] = [(activation, observed, in_scope(self.requirement.scopes, self.claim.verb, observed))]
         if self._running or not activation.is_begin_known:
             early = activation.from_earliest()
@@ -328,7 +342,12 @@ class JudgedClause:
             ways.append((early, earlier, in_scope(self.requirement.scopes, self.claim.verb, earlier)))
         if all(counts is False for *_, counts in ways):
             return
-        self._count(_clocked(self._judged_by(self.judged, ways), root), activation, path)
+        judgement = self._judged_by(self.judged, ways)
+        if judgement is None and guard is not None and not guard.requirement:
+            why = f"it was stopped by {guard.path}, which the mission does not have"
+            judgement = Judgement(None, activation.end, why)
+            self._margins.is_exact = False
+        self._count(_clocked(judgement, root), activation, path)
         if self._extremes:
             self._measure([[_clocked(self._judged_by(each, ways), root)] for each in self._extremes], activation)
 
@@ -444,7 +463,9 @@ class JudgedClause:
 
     def remarks(self, tree: LoggedTree, keeping: Collection[int]) -> Iterator[str]:
         """Remarks on the current log, which has been read."""
-        yield from (f"{self.requirement.name}: {note} ({counted(number, 'activation')})" for note, number in self._notes.items())
+        yield from (
+            f"{self.requirement.name}: {note} ({counted(number, 'activation')})" for note, number in self._notes.items()
+        )
         for uid in self._nodes:
             # A node that completes at once and is not reset leaves a row only when its result changes.
             if VERBS[self.claim.verb].operand in ("count", "rate") and not self._waits and tree.parent[uid] in keeping:

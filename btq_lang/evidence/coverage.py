@@ -75,6 +75,10 @@ class Coverage:
         for repeated in (self.retries, self.recoveries):
             repeated.end_run(run)
 
+    def durations(self) -> dict[str, Sequence[int]]:
+        """The known durations of each node of the current log, by its path, in µs."""
+        return {node.path: node.times for node in self._now.values()}
+
     def add_all(self, other: Coverage, runs: int) -> None:
         """Add the statistics of later logs; `runs`: how many runs were before them."""
         for key, node in other._nodes.items():
@@ -103,7 +107,7 @@ class _Node:
         self.began = self.bounded = self.longest = 0
         self.has_longest = True
         self.ticks: Final = array("q")
-        self._path: Final = path
+        self.path: Final = path
         self._kind: Final = kind
         self.is_leaf: Final = is_leaf
         self._written: Final = written
@@ -124,7 +128,7 @@ class _Node:
     def summary(self, written: Sequence[ResolvedNode]) -> NodeSummary:
         times, ticks = sorted(self.times), sorted(self.ticks)
         return NodeSummary(
-            path=self._path,
+            path=self.path,
             kind=self._kind,
             is_leaf=self.is_leaf,
             runs=self.runs,

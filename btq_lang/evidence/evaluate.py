@@ -22,6 +22,7 @@ from btq_lang.evidence.odds import Limits
 from btq_lang.evidence.open_verdicts import open_clauses
 from btq_lang.evidence.outline import demands, outline
 from btq_lang.evidence.runs import activations
+from btq_lang.evidence.session_remarks import clock_remarks, sample_remarks
 from btq_lang.evidence.signals import Signals
 from btq_lang.evidence.tally import Run
 from btq_lang.evidence.timeline import OpenRun
@@ -47,6 +48,7 @@ class Findings:
     Attributes:
         clauses: in the order in which a `MissionEvaluation` has them.
         contexts: in how many runs each context held, and in how many others that is unknown.
+        ended_by: how many failed runs were ended by the guard of which requirement.
     """
 
     def __init__(self, clauses: Sequence[ClauseFindings], contexts: tuple[Counter[str], Counter[str]]) -> None:
@@ -54,6 +56,7 @@ class Findings:
         self.contexts: Final = contexts
         self.sources: Final[list[Source]] = []
         self.outcomes: Final[Counter[Outcome]] = Counter(dict.fromkeys(OUTCOMES, 0))
+        self.ended_by: Final[Counter[str]] = Counter()
         self.coverage: Final = Coverage()
 
     def add(self, other: Findings, runs: int) -> None:
@@ -63,6 +66,7 @@ class Findings:
         for own, theirs in zip(self.contexts, other.contexts, strict=True):
             own.update(theirs)
         self.outcomes.update(other.outcomes)
+        self.ended_by.update(other.ended_by)
         for source in other.sources:
             self.add_source(replace(source, first_run=source.first_run + runs))
         self.coverage.add_all(other.coverage, runs)
@@ -131,6 +135,7 @@ class MissionEvaluation:
         found = mission.requirements
         clauses = [JudgedClause(each, limits, with_measures) for each in demands(found)]
         self._with_measures: Final = with_measures
+        self._signals: Final = found.signals
         self._clauses: Final = clauses
         self._contexts: Final = Contexts(found.contexts)
         self.found: Final = Findings([each.found for each in clauses], self._contexts.counts)
@@ -159,7 +164,8 @@ class MissionEvaluation:
         nearby = cache(lambda uid: Nearby(uid, joined, history))
         at = grouped((uid, each) for each in self._clauses for uid in each.join(joined, signals, history, nearby))
         judged = {uid: (clauses, tree.nodes[uid].path, nearby(uid)) for uid, clauses in at.items()}
-        guards = Guards(tree, joined.enforcing(), at)
+        enforcing = joined.enforcing()
+        guards = Guards(tree, enforcing, at, joined.unjoined())
         over_runs = any(clause.is_over_run for clause in self._clauses)
         explainer = Explainer(tree, at, signals, has_clauses_over_runs=over_runs)
         for clause in self._clauses:
@@ -198,6 +204,9 @@ class MissionEvaluation:
                 end = activation.end
                 self.found.outcomes[activation.outcome] += 1
                 began = origin.uid if origin is not None else None
+                if began in enforcing:
+                    self.found.ended_by[guards.last or enforcing[began]] += 1
+                guards.end_run()
                 repeats = coverage.retries.now, coverage.recoveries.now
                 coverage.end_run(run.number, began)
                 for clause in self._clauses:
@@ -213,6 +222,11 @@ class MissionEvaluation:
                 self._ran(run.number)
                 run_ended(activation)
         session.remarks.extend(remark for each in self._clauses for remark in each.remarks(tree, session.keeping))
+        session.remarks.extend(clock_remarks(coverage.durations()))
+        read = (
+            (name, each.fresh, signals.sampled_times(each, begin or 0, end)) for name, each in self._signals.items()
+        )
+        session.remarks.extend(sample_remarks(read, end))
         self.found.add_source(
             Source(
                 file=source,
@@ -262,6 +276,7 @@ class MissionEvaluation:
             sources=tuple(found.sources),
             requirements=self.verdicts(),
             outcomes=tuple((OUTCOMES[outcome], number) for outcome, number in found.outcomes.items() if number),
+            ended_by=tuple(found.ended_by.items()),
             nodes=found.coverage.summary(requirements.nodes.all),
             contexts=tuple(ContextSummary(name, runs, unknown[name]) for name, runs in held.items()),
             retries=found.coverage.retries.summary(),

@@ -7,7 +7,7 @@ nearest ancestor has ended that was not halted itself, one that succeeded when i
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Set
 from itertools import takewhile
 from typing import Final
 
@@ -22,6 +22,7 @@ class Guard(Record):
 
     Attributes:
         path: of the node that decides: itself, or the condition that it evaluates.
+        requirement: empty: the mission does not have the node.
         verbs: of the clauses that it enforces; none: it halts the whole mission.
         checks: whether it evaluates a condition when the node has succeeded.
     """
@@ -45,21 +46,30 @@ class Guards:
 
     Attributes:
         concerned: those nodes, the guards and the root; other activations need not be passed in.
+        last: the requirement of the guard that last violated something in the open run; empty if none has.
     """
 
-    def __init__(self, tree: LoggedTree, enforcing: Mapping[int, str], judged: Collection[int]) -> None:
-        """Wait for activations; `enforcing`: guards, each with its requirement; `judged`: the nodes with clauses."""
-        self._around: Final = {uid: tuple(takewhile(enforcing.__contains__, tree.above(uid))) for uid in judged}
+    def __init__(
+        self, tree: LoggedTree, enforcing: Mapping[int, str], judged: Collection[int], unjoined: Set[int] = frozenset()
+    ) -> None:
+        """Wait for activations.
+
+        Args:
+            enforcing: guards, each with its requirement.
+            judged: the nodes with clauses.
+            unjoined: nodes that the mission does not have: what they do around others is unknown.
+        """
+        self.last = ""
+        known = {**dict.fromkeys(unjoined, ""), **enforcing}
+        self._around: Final = {uid: tuple(takewhile(known.__contains__, tree.above(uid))) for uid in judged}
         conditions = {tree.parent[uid]: uid for uid in enforcing if tree.nodes[uid].kind == EVALUATING}
-        self._guards: Final = {
-            uid: _guard(tree, uid, conditions.get(uid, uid), name) for uid, name in enforcing.items()
-        }
+        self._guards: Final = {uid: _guard(tree, uid, conditions.get(uid, uid), name) for uid, name in known.items()}
         self._holders: Final = {condition: guard for guard, condition in conditions.items()}
         self._inside: Final = {guard: uid for uid, around in self._around.items() for guard in around}
         self._waiting: list[tuple[Activation, tuple[int, ...]]] = []
         self._failed: Final[dict[int, Moment]] = {}  # when the condition of a guard failed, until the guard ends
         self._shown: Final[dict[int, Moment]] = {}  # when a node inside of guards last began
-        self.concerned: Final = {*judged, *enforcing, ROOT}
+        self.concerned: Final = {*judged, *known, ROOT}
 
     def see(self, activation: Activation) -> tuple[list[tuple[Activation, Guard | None]], Refusal | None]:
         """The activations that can be judged now that this one has ended, each with the guard that stopped it or did
@@ -81,6 +91,8 @@ class Guards:
             further = guards[guards.index(uid) + 1 :] if uid in guards else ()
             is_inside = activation.started <= ended.started  # else it left no row, and this one came later
             guard = self._guards[uid] if uid in guards and is_inside and self._violates(ended, activation) else None
+            if guard is not None and guard.verbs:
+                self.last = guard.requirement
             if guard is None and is_inside and activation.outcome == "H" and ended.outcome == "H" and further:
                 self._waiting.append((ended, further))
             elif guard is None and ended.outcome == "S" and (checks := self._checks(further)):
@@ -102,8 +114,14 @@ class Guards:
         inside = self._inside.get(uid)
         if activation.outcome not in ("F", "O") or at is None or inside is None or not self._guards[uid].verbs:
             return None
-        has_started = inside in self._shown and self._shown[inside] >= activation.shown
-        return Refusal(inside, at, self._guards[uid]) if not has_started else None
+        if inside in self._shown and self._shown[inside] >= activation.shown:
+            return None
+        self.last = self._guards[uid].requirement
+        return Refusal(inside, at, self._guards[uid])
+
+    def end_run(self) -> None:
+        """Begin another run."""
+        self.last = ""
 
     def _checks(self, guards: tuple[int, ...]) -> tuple[int, ...]:
         return tuple(guard for guard in guards if self._guards[guard].checks)
@@ -119,6 +137,8 @@ def _guard(tree: LoggedTree, uid: int, condition: int, requirement: str) -> Guar
     kind = tree.nodes[uid].kind
     what = tree.nodes[uid].path.rpartition("_")[2]  # a build names it
     path = tree.nodes[condition].path
+    if not requirement:
+        return Guard(path, "", frozenset())
     if kind == LIMITING:
         return Guard(path, requirement, words(enforced="limit"))
     if kind == WATCHING:

@@ -76,6 +76,7 @@ def _mission(mission: MissionVerdicts) -> Json:
         "runs": mission.runs,
         **({"outline": mission.outline} if mission.outline else {}),
         "outcomes": dict(mission.outcomes),
+        "ended_by": dict(mission.ended_by),
         "retries": _fields(mission.retries),
         "recoveries": _fields(mission.recoveries),
         "contexts": [_fields(each) for each in mission.contexts],

@@ -7,7 +7,7 @@ until `fresh within` is over.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from btq_lang.catalog.units import Unit, to_si
@@ -102,6 +102,10 @@ class Signals:
         """How many samples of a signal there are from `begin` to `end`."""
         series = self._series(signal)
         return float(len(series.between(begin - 1, end))) if series.times else Unknown(_none_of(signal))
+
+    def sampled_times(self, signal: Signal, begin: int, end: int) -> Sequence[int]:
+        """The times of a signal's samples from `begin` to `end`, as far as they are kept."""
+        return self._series(signal).between(begin - 1, end)
 
     def forget_before(self, time: int) -> None:
         """Drop the samples of the log's entries that are not needed for this time or later ones."""

@@ -124,7 +124,12 @@ def _explanation(clause: ClauseVerdict, medians: Mapping[str, float], verbose: b
 
 def _summary(mission: MissionVerdicts) -> Iterator[str]:
     """The runs and the nodes, a line each."""
-    runs = [f"runs: {', '.join(f'{number} {outcome}' for outcome, number in mission.outcomes) or 'none'}"]
+    guards = "; ".join(
+        f"{number} by {'a halt' if name == '*' else f'the guard of {name}'}" for name, number in mission.ended_by
+    )
+    by = {"failed": f" ({guards})" if guards else ""}
+    counts = (f"{number} {outcome}{by.get(outcome, '')}" for outcome, number in mission.outcomes)
+    runs = [f"runs: {', '.join(counts) or 'none'}"]
     if began := sorted(mission.nodes, key=lambda each: -each.failures_began)[:_NAMED]:
         places = [f"{each.path} ({each.failures_began})" for each in began if each.failures_began]
         runs += [f"failures began at {', '.join(places)}"] if places else []

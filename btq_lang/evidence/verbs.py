@@ -14,7 +14,8 @@ from btq_lang.evidence.model import CLOCK_SET_BACK, ENOUGH, UNKNOWN_BEGIN, UNKNO
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.use import fallen, risen
-from btq_lang.requirements.model import Aggregate, Claim, Condition, Not, parts_in
+from btq_lang.evidence.wording import quantity
+from btq_lang.requirements.model import Aggregate, Claim, Condition, Not, parts_in, signals_in
 
 Judge: TypeAlias = Callable[[Claim, Activation, Observed], "Judgement | None"]
 
@@ -166,7 +167,7 @@ def _used(claim: Claim, activation: Activation, observed: Observed) -> tuple[flo
 def needs(claim: Claim, activation: Activation, observed: Observed) -> Judgement:
     """`needs φ`: a condition at the start of an activation, however it ends."""
     assert claim.condition is not None, "it needs a condition"
-    return _of(_result(claim.condition, activation.started, observed), activation.begin, claim)
+    return _of(_result(claim.condition, activation.started, observed), activation.started, claim, observed)
 
 
 def leaves(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
@@ -174,7 +175,7 @@ def leaves(claim: Claim, activation: Activation, observed: Observed) -> Judgemen
     assert claim.condition is not None, "it leaves a condition"
     if activation.outcome != "S":
         return None
-    return _of(_result(claim.condition, activation.ended, observed), activation.end, claim)
+    return _of(_result(claim.condition, activation.ended, observed), activation.ended, claim, observed)
 
 
 def keeps(claim: Claim, activation: Activation, observed: Observed) -> Judgement:
@@ -195,14 +196,15 @@ def keeps(claim: Claim, activation: Activation, observed: Observed) -> Judgement
             if activation.timing != "exact" and moment != observed.begin:
                 return Judgement(None, moment[0], "the log does not say whether it was still running")
             is_of_all = any(isinstance(each, Aggregate) for each in parts_in(condition))  # known only at the end
-            return _of(found, activation.end if is_of_all else moment[0], claim)
+            return _of(found, (activation.end, 0) if is_of_all else moment, claim, observed)
         else:
             excess = found.excess if isinstance(found, Measure) else most
             if closest is None or excess > most:
                 closest, most = (found, moment), excess
     result = unknown or closest
     assert result is not None, "the start is one of the moments"
-    return _of(result[0], result[1][0], claim)
+    said, moment = result
+    return _of(said, moment, claim, observed)
 
 
 def _result(condition: Condition, moment: Moment, observed: Observed) -> Measure | bool | Unknown:
@@ -211,15 +213,37 @@ def _result(condition: Condition, moment: Moment, observed: Observed) -> Measure
     return measure if measure is not None else truth(condition, observed, moment)
 
 
-def _of(result: Measure | bool | Unknown, time: int, claim: Claim) -> Judgement:
-    """The judgement of a condition evaluated at a time."""
+def _of(result: Measure | bool | Unknown, moment: Moment, claim: Claim, observed: Observed) -> Judgement:
+    """The judgement of a condition evaluated at a moment."""
+    time = moment[0]
     if isinstance(result, Unknown):
         return Judgement(None, time, result.why)
     sentence = VERBS[claim.verb].said
     if isinstance(result, Measure):
         said = "" if result.holds else sentence.replace("{}", f"`{result.name}` was {{}}")
         return Judgement(result.holds, time, said, result)
-    return Judgement(result, time, sentence.replace("{}", f"the condition {'holds' if result else 'does not hold'}"))
+    return Judgement(
+        result, time, "" if result else f"{sentence.replace('{}', _held(claim))}{_read(claim, moment, observed)}"
+    )
+
+
+def _held(claim: Claim) -> str:
+    """What was the case, for a violation."""
+    condition = claim.text.partition(f"{claim.verb} ")[2]
+    return f"`{condition}` {'held' if claim.verb == 'never' else 'did not hold'}"
+
+
+def _read(claim: Claim, moment: Moment, observed: Observed) -> str:
+    """The values that a condition read."""
+    values: list[str] = []
+    for signal in dict.fromkeys(signals_in(claim.condition)):
+        value = observed.reading(signal, moment)
+        if isinstance(value, str):
+            values.append(f'{signal.name} was "{value}"')
+        elif not isinstance(value, Unknown):
+            shown = str(value).lower() if isinstance(value, bool) else quantity(value, signal.unit)
+            values.append(f"{signal.name} was {shown}")
+    return f": {', '.join(values)}" if values else ""
 
 
 JUDGES: Final[dict[str, Judge]] = {

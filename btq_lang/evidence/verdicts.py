@@ -308,6 +308,8 @@ class MissionVerdicts(Record):
     Attributes:
         file: of the mission.
         outcomes: how many runs had each outcome.
+        ended_by: how many of the failed ones were ended by the guard of which requirement; `*`: by a halt of which the
+            log does not say what asked for it.
         nodes: of the logs, in the order of their uids.
         contexts: of the mission, in the order of definition.
         retries: by Retry nodes and Nav2's RecoveryNodes.
@@ -325,6 +327,7 @@ class MissionVerdicts(Record):
     retries: Repeats
     recoveries: Repeats
     outline: str = ""
+    ended_by: tuple[tuple[str, int], ...] = ()
 
     @property
     def runs(self) -> int:

@@ -560,7 +560,12 @@ def test_a_short_time_is_not_told_in_a_long_unit(bound: str, text: str, verify: 
         ("Move leaves battery > 60 %", "`battery` was 30 % at the end", "30 %", 0.03),
         ("Move keeps battery > 10 %", "`battery` was 5 %", "5 %", 0.02),
         ("Move never battery < 10 %", "`battery` was 5 %", "5 %", 0.02),
-        ("Move needs battery > 60 % or 1 > 2", "the condition does not hold at the start", None, 0.0),
+        (
+            "Move needs battery > 60 % or 1 > 2",
+            "`battery > 60 % or 1 > 2` did not hold at the start: battery was 50 %",
+            None,
+            0.0,
+        ),
     ],
 )
 def test_what_happened_in_words(demand: str, why: str, measured: str | None, at: float, verify: Verify) -> None:
@@ -624,3 +629,54 @@ def test_the_missions_of_these_tests_are_sound() -> None:
     workspace = Workspace.of({"main.btq": f"{LEVEL}\nQualityReq rq : safety\n    Move needs battery > 1 %\n{MAIN}"})
     assert [each.rule for each in check(workspace, "main.btq") if each.effective_severity.value == "error"] == []
     assert len(requirements(workspace, "main.btq").applied) == 1
+
+
+@pytest.mark.parametrize(
+    ("demand", "zone", "why"),
+    [
+        ('Move never zone == "isolation"', "isolation", '`zone == "isolation"` held: zone was "isolation"'),
+        ('Move keeps zone != "isolation"', "isolation", '`zone != "isolation"` did not hold: zone was "isolation"'),
+        (
+            'Move never zone == "isolation" and battery < 60 %',
+            "isolation",
+            '`zone == "isolation" and battery < 60 %` held: zone was "isolation", battery was 50 %',
+        ),
+    ],
+)
+def test_a_condition_that_measures_nothing_is_told_with_what_it_read(
+    demand: str, zone: str, why: str, verify: Verify
+) -> None:
+    csv = f"t,zone,battery\n{START / 1e6 - 1:.6f},{zone},50\n"
+    found = verify.clause(demand, LONG, csv, before=f"signal zone : text from {{zone}}\n{LEVEL}")
+    assert [each["why"] for each in found["violations"]] == [why]
+
+
+def test_a_clock_that_was_set_forward_is_asked_about(verify: Verify) -> None:
+    hour = 3_600_000
+    often = " ".join(f"{at} 1R 2R {at + 20} 2S 1S 1I" for at in range(0, 500, 100))
+    verify.clause("Move takes at most 2 s", f"{often} 600 1R 2R {600 + 2 * hour} 2S 1S")
+    remarks = verify.json("run.btlog", "--mission", "main.btq")["sources"][0]["remarks"]
+    assert remarks == [
+        f"{path} took 2 h once, and half of the times at most 20 ms: was the clock set forward?"
+        for path in ("Sequence::1", "Move::2")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("signal", "last", "remark"),
+    [
+        (LEVEL, 400, "the samples of `battery`, one each 20 ms, end 600 ms before the log does"),
+        (LEVEL, 900, None),
+        (f"{LEVEL} fresh within 700 ms", 400, None),
+        (
+            f"{LEVEL} fresh within 500 ms",
+            400,
+            "the samples of `battery`, one each 20 ms, end 600 ms before the log does",
+        ),
+    ],
+)
+def test_samples_that_end_before_the_log(signal: str, last: int, remark: str | None, verify: Verify) -> None:
+    csv = samples("battery", dict.fromkeys(range(0, last + 1, 20), 50))
+    verify.clause("Pick takes at most 2 s", "0 1R 2R 1000 2S 3S 1S", csv, before=signal)
+    (source,) = verify.json("run.btlog", "--mission", "main.btq", "--signals", "samples.csv")["sources"]
+    assert source["remarks"] == ([remark] if remark else [])
