@@ -15,7 +15,6 @@ from btq_lang.ide.runs import logged_run
 from btq_lang.ide.verdicts import Evidence
 from btq_lang.workspace.workspace import Workspace
 
-
 DEMAND = (
     "QualityReq rq : safety\n    Move takes at most 100 ms\n"
     "QualityReq of_runs : reliability\n    mission succeeds in at least 50 % of runs\n"

@@ -13,7 +13,6 @@ from btq_lang.evidence.store import engine
 from btq_lang.evidence.store.fleet import asked_by
 from btq_lang.evidence.store.summary import summary
 
-
 MISSION = "QualityReq rq : safety\n    Move takes at most 100 ms\n" + MAIN
 RUNS = rows(  # three runs: succeeded, failed, succeeded
     "1R 2R 80 2S 3R 140 3S 1S 2I 3I 1I 200 1R 2R 350 2F 1F 2I 1I 400 1R 2R 470 2S 3R 505 3S 1S 2I 3I 1I"
