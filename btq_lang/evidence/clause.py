@@ -484,8 +484,8 @@ class JudgedClause:
         tally = self._tally.result() if open_run is None else self._tally.so_far(open_run, self.broken.values())
         verdict, why = verdict_of(tally, found.missing, found.has_run)
         if verdict == NEVER and found.missed and self.claim.event is not None:
-            after = self.claim.text.partition(" after ")[2]
-            why = f"it was not running when {after} ({counted(found.missed, 'time')})"
+            event = self.claim.text.partition(" after ")[2].removeprefix("when ")
+            why = f"it was not running when {event} ({counted(found.missed, 'time')})"
         goal = self.requirement.goal
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
         is_once_a_run = isinstance(self._subject, Total) or (is_of_run and len(found.paths) == 1)
