@@ -494,3 +494,65 @@ def test_guards_that_the_mission_lacks_are_not_joined(verify: Verify) -> None:
     joined = join(mission, session.tree)
     assert joined is not None
     assert joined.unjoined() == {5, 10}
+
+
+def test_a_start_that_is_refused_by_what_must_hold_meanwhile(verify: Verify) -> None:
+    """The condition fails before the node starts, and a second time while it runs."""
+    uid = several(verify, CALM + "QualityReq works : reliability\n    Move succeeds\n", SPEED)
+    outer, check, move = uid["calm_keeps"], uid["calm_guard"], uid["Move"]
+    assert verdicts(verify, f"0 1R {outer}R {check}F {check}I {outer}F 1F") == {
+        "calm": "violated: its start was refused by its guard at calm_guard",
+        "works": "violated: its start was refused by calm",
+    }
+    stopped = f"0 1R {outer}R {check}S {move}R 5 {check}F {move}I {check}I {outer}F 1F"
+    assert verdicts(verify, stopped) == {
+        "calm": "violated: stopped by its own guard after 5 ms",
+        "works": "never exercised",
+    }
+    assert verdicts(verify, f"0 1R {outer}R {check}F") == {  # the log ends
+        "calm": "violated: its start was refused by its guard at calm_guard",
+        "works": "violated: its start was refused by calm",
+    }
+
+
+def test_what_a_guard_finds_at_the_end_is_so(verify: Verify) -> None:
+    """Although no sample shows it, and only where it looked: it does not after a failure."""
+    uid = several(verify, "QualityReq calm : safety\n    Move leaves speed < 1 m/s\n    on violation fail\n", SPEED)
+    around, check, move = uid["calm_leaves"], uid["calm_check"], uid["Move"]
+    assert verdicts(verify, f"0 1R {around}R {move}R 5 {move}S {check}F {around}F 1F") == {
+        "calm": "violated: its guard at calm_check did not accept its success"
+    }
+    assert verdicts(verify, f"0 1R {around}R {move}R 5 {move}S {check}S {around}S 1S") == {"calm": "unknown"}
+    assert verdicts(verify, f"0 1R {around}R {move}R 5 {move}F {around}F 1F") == {"calm": "never exercised"}
+    assert verdicts(verify, f"0 1R {around}R {move}R 5 {move}S") == {"calm": "unknown"}  # the log ends
+
+
+def test_a_mission_succeeds_if_its_root_does(verify: Verify) -> None:
+    """Also where the guard of another requirement stands around the written root."""
+    demands = "QualityReq swift : safety\n    mission takes at most 20 ms\n    on violation fail\n"
+    demands += "QualityReq works : reliability\n    mission succeeds\n"
+    several(verify, demands, SPEED)
+    assert verdicts(verify, "0 1R 2R 3R 20 3I 2I 1F 1I 30 1R 2R 3R 35 3S 4S 2S 1S") == {
+        "swift": "violated: stopped by its own guard after 20 ms",
+        "works": "violated: failed",
+    }
+    (mission,) = verify.json("run.btlog", "--mission", "main.btq")["missions"]
+    assert (mission["outcomes"], mission["ended_by"]) == ({"succeeded": 1, "failed": 1}, {"swift": 1})
+    printed = verify.text("run.btlog", "--mission", "main.btq")
+    assert "runs: 1 succeeded, 1 failed (1 by the guard of swift)" in printed
+
+
+@pytest.mark.parametrize(
+    ("demand", "expected"),
+    [
+        ("Move takes at most 40 ms", "unknown: it was stopped by rq_limit, which the mission does not have"),
+        ("Move takes at most 10 ms", "violated: "),
+        ("Move succeeds", "unknown: it was stopped by rq_limit, which the mission does not have"),
+        ("Move needs speed < 1 m/s", "unknown: no samples of `speed`"),
+        ("Pick takes at most 40 ms", "never exercised: it did not start in any run"),
+    ],
+)
+def test_what_an_unknown_wrapper_stopped_is_unknown(demand: str, expected: str, verify: Verify) -> None:
+    """The log is of a build with a requirement that the mission does not have any more."""
+    found = verify.clause(demand, "0 1R 2R 3R 20 3I 2F 2I 1F", xml=LIMITED, before=SPEED)
+    assert f"{found['verdict']}: {found['why']}" == expected
