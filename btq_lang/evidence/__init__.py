@@ -4,13 +4,13 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
 
     readers/       a module a format: files to sessions
     model.py       what a log holds: the tree that ran, transitions, activations, samples
-    runs.py        transitions to activations and runs
+    runs.py, begins.py   transitions to activations and runs, and when nodes began
     identity.py    which node of a log is which written node
     named_runs.py  the same for a log without a tree, run by run
     signals.py, history.py   values of signals at a moment, and what nodes did in the open run
     observed.py, conditions.py   what was observed during an activation or a run, whether conditions held, and measures
     guards.py      what the nodes that a build adds around others did
-    verbs.py, run_verbs.py   a function a verb: the judgement of an activation or of a run
+    verbs.py, run_verbs.py, use.py   a function a verb: the judgement of an activation or of a run; what is used up
     over_run.py    what a clause judged over a run reads: what its nodes did, and when events happened
     scopes.py      which activations count
     outline.py   the clauses of a mission and where they are, so that a later text is known again
@@ -20,6 +20,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     explain.py, explain_run.py   what led to a violation
     distribution.py, timeline.py   a histogram of values and a timeline of a run, for the page
     coverage.py   which nodes ran, how long they took, and how long they blocked the tree
+    session_remarks.py   what times and samples look as if had gone wrong
     store/         what was found in each log, kept and summarised
     compare/       two versions in a store compared
     verdicts.py    the report, as data
