@@ -319,6 +319,9 @@ void tick(BT::Tree& tree, const Json& job, Json& answer)
   answer["ticks"] = ticks.load();
   for(const auto& subtree : tree.subtrees)
     answer["blackboards"][subtree->instance_name] = values(*subtree->blackboard);
+  // Up to 4.6 the logger's thread takes what is queued every 10 ms, and no more at its end.
+  if(logger)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
 Json answerTo(const Json& job)
