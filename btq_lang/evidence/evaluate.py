@@ -19,7 +19,7 @@ from btq_lang.evidence.history import History, Nearby
 from btq_lang.evidence.model import ROOT, Activation, Outcome, Series, Session
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.odds import Limits
-from btq_lang.evidence.open_verdicts import open_clauses
+from btq_lang.evidence.open_verdicts import open_clauses, unread_clauses
 from btq_lang.evidence.outline import demands, outline
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.session_remarks import clock_remarks, sample_remarks
@@ -255,6 +255,7 @@ class MissionEvaluation:
         for clause in self._clauses:
             by_requirement[clause.requirement.name].append(clause.verdict(open_run))
         for name, clauses in by_requirement.items():
+            clauses.extend(unread_clauses(found.all[name]))
             clauses.extend(() if clauses else open_clauses(found.all[name]))
         return tuple(
             RequirementVerdict(

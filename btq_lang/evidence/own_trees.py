@@ -14,7 +14,9 @@ from btq_lang.evidence.identity import Build, Candidate
 from btq_lang.evidence.model import LoggedTree, Session
 from btq_lang.workspace.workspace import Workspace
 
-NO_MISSION: Final = "no mission found; name one with --mission FILE, a .btq file or XML"
+NO_MISSION: Final = (
+    "no mission found; name one with --mission FILE, a .btq file or XML, or make one with btq import LOG"
+)
 
 
 class OwnTree(Candidate):

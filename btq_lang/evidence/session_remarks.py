@@ -19,7 +19,7 @@ def clock_remarks(durations: Mapping[str, Sequence[int]]) -> Iterator[str]:
 
 
 def sample_remarks(series: Iterable[tuple[str, float | None, Sequence[int]]], end: int) -> Iterator[str]:
-    """Of each signal that was sampled regularly, and for some time before the end no more.
+    """Of each signal whose samples end long before the log, compared with the times between them.
 
     Args:
         series: its name, its `fresh within` in s, and the times of its samples in the session.
@@ -30,11 +30,12 @@ def sample_remarks(series: Iterable[tuple[str, float | None, Sequence[int]]], en
         if len(gaps) < _FEW:
             continue
         median = gaps[len(gaps) // 2]
-        is_regular = gaps[len(gaps) * 9 // 10] <= 2 * median
-        allowed = fresh * 1e6 if fresh is not None else _GAPS * median
-        if is_regular and end - times[-1] > allowed:
-            lacking = duration((end - times[-1]) / 1e6)
-            yield f"the samples of `{name}`, one each {duration(median / 1e6)}, end {lacking} before the log does"
+        # A signal that is written when it changes has long gaps anyway.
+        allowed = fresh * 1e6 if fresh is not None else max(_GAPS * median, gaps[-1])
+        if end - times[-1] > allowed:
+            lacking, usual = (duration(time / 1e6) for time in (end - times[-1], median))
+            holds = "" if fresh is not None else "; without `fresh within` the last one counts until the end"
+            yield f"the samples of `{name}`, mostly one each {usual}, end {lacking} before the log does{holds}"
 
 
 _HOUR: Final = 3_600_000_000  # µs

@@ -98,7 +98,7 @@ def requirement_rows(
             yield f"  {' ' * len(NEVER) if number else word}  {'  '.join(parts)}".rstrip()
         yield from (f"{' ' * left}{line}" for line in _broken(map(printable, below), room - left))
     if not rows:
-        yield "  the mission has no requirement to judge"
+        yield "  no requirement to judge"
 
 
 def _clause(clause: ClauseVerdict, requirement: RequirementVerdict) -> str:

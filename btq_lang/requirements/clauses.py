@@ -25,6 +25,7 @@ def with_clauses(
 ) -> model.Requirement:
     """A requirement with these clauses resolved; of clauses that may occur once, the first counts."""
     claims: list[model.Claim] = []
+    unread: list[str] = []
     scopes: list[model.Scope] = []
     once: dict[str, object] = {}
     reasons: list[str] = []
@@ -37,7 +38,10 @@ def with_clauses(
     for clause in clauses:
         if isinstance(clause, syntax.Claim):
             claim = claim_of(reader, clause)
-            claims += [claim] if claim is not None else []
+            if claim is not None:
+                claims.append(claim)
+            else:
+                unread.append(reader.text(clause.start, clause.end))
         elif isinstance(clause, syntax.Scope):
             condition = reader.condition(clause.condition)
             if condition is not None:
@@ -62,6 +66,7 @@ def with_clauses(
     return replace(
         requirement,
         claims=(*requirement.claims, *claims),
+        unread=(*requirement.unread, *unread),
         scopes=(*requirement.scopes, *scopes),
         reasons=(*requirement.reasons, *reasons),
         **once,

@@ -357,6 +357,7 @@ class Requirement(Record):
         title: its title, or the classic description.
         classic: whether its claims were read from SuccessIf and FailureIf in its description.
         action: None: not given, so it is monitored.
+        unread: the claims, as typed, of which a part was not understood.
     """
 
     name: str
@@ -374,6 +375,7 @@ class Requirement(Record):
     goal: Bounded | None = None
     reasons: tuple[str, ...] = ()
     method: Method | None = None
+    unread: tuple[str, ...] = ()
 
     @property
     def demands_enforcement(self) -> bool:

@@ -132,7 +132,8 @@ def test_a_robot_of_which_no_mission_is_known(live: Live) -> None:
 
 def test_a_mission_is_demanded_before_the_robot_runs(live: Live) -> None:
     live.text("--live", "tcp://127.0.0.1:1", "--strict")
-    told = "btq verify: --strict: no mission found; name one with --mission FILE, a .btq file or XML\n"
+    told = "btq verify: --strict: no mission found; name one with --mission FILE, a .btq file or XML"
+    told += ", or make one with btq import LOG\n"
     assert (live.code, live.errors) == (2, told)
 
 

@@ -15,7 +15,8 @@ from btq_lang.commands.verdict_formats import FORMATS
 
 TWO_RUNS = "0 1R 2R 5 2S 3S 1S 2I 3I 1I 20 1R 2R 30 2F 1F 2I 1I"
 OTHER_XML = MAIN_XML.replace("Pick", "Drop")
-NOTE = "nothing is judged: no mission found; name one with --mission FILE, a .btq file or XML"
+NO_MISSION = "no mission found; name one with --mission FILE, a .btq file or XML, or make one with btq import LOG"
+NOTE = f"nothing is judged: {NO_MISSION}"
 
 
 def test_runs_outcomes_and_nodes(verify: Verify) -> None:
@@ -24,7 +25,7 @@ def test_runs_outcomes_and_nodes(verify: Verify) -> None:
         "2 runs in run.btlog, 2026-11-20 21:22 UTC, mission Main (the tree in the log, 3 of 3 nodes)",
         f"  note: {NOTE}",
         "",
-        "  the mission has no requirement to judge",
+        "  no requirement to judge",
         "",
         "  node          starts  succeeded  failed  halted   p50    p95  tick p95  tick max",
         "  Sequence::1        2          1       1       0  5 ms  10 ms",
@@ -93,7 +94,7 @@ def test_a_tree_that_cannot_be_built_is_reported_too(verify: Verify) -> None:
 def test_strict_demands_a_mission(verify: Verify) -> None:
     (verify.folder / "run.btlog").write_bytes(btlog(MAIN_XML, rows(TWO_RUNS)))
     verify.text("run.btlog", "--strict")
-    told = "btq verify: --strict: no mission found; name one with --mission FILE, a .btq file or XML\n"
+    told = f"btq verify: --strict: {NO_MISSION}\n"
     assert (verify.code, verify.errors) == (2, told)
 
 
@@ -134,7 +135,7 @@ def test_a_bag_with_its_tree(verify: Verify) -> None:
 def test_a_bag_without_a_tree(verify: Verify) -> None:
     write_bag(verify.folder / "bag", tree_log(rows(TWO_RUNS), names_of(MAIN_XML)))
     verify.text("bag")
-    why = "no mission found; name one with --mission FILE, a .btq file or XML; bag has no tree"
+    why = f"{NO_MISSION}; bag has no tree"
     assert (verify.code, verify.errors) == (2, f"btq verify: {why}\n")
 
 

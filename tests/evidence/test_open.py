@@ -204,3 +204,17 @@ def test_what_people_verify_beside_what_a_log_shows(shared: Path, verify: Verify
         *(("q1", "satisfied"), ("q2", "open"), ("q3", "open"), ("q4", "open"))
     ]
     assert verify.code == 1
+
+
+def test_a_clause_with_a_mistake_is_unknown_and_not_open(verify: Verify) -> None:
+    """Also where another clause of the requirement is satisfied."""
+    demands = "    Move takes at most 80\n    Move takes at most 1 s\n"
+    (verify.folder / "main.btq").write_text(f"QualityReq rq : safety\n{demands}{MAIN}", encoding="utf-8")
+    (verify.folder / "run.btlog").write_bytes(btlog(MAIN_XML, rows("0 1R 2R 20 2S 3S 1S")))
+    (requirement,) = verify.json("run.btlog", "--mission", "main.btq")["requirements"]
+    assert requirement["verdict"] == "unknown"
+    assert [(each["text"], each["verdict"], each["why"]) for each in requirement["clauses"]] == [
+        ("Move takes at most 1 s", "satisfied", ""),
+        ("Move takes at most 80", "unknown", "it has a mistake; run btq check"),
+    ]
+    assert verify.code == 2

@@ -662,16 +662,19 @@ def test_a_clock_that_was_set_forward_is_asked_about(verify: Verify) -> None:
     ]
 
 
+LATE = "the samples of `battery`, mostly one each 20 ms, end 600 ms before the log does"
+
+
 @pytest.mark.parametrize(
     ("signal", "last", "remark"),
     [
-        (LEVEL, 400, "the samples of `battery`, one each 20 ms, end 600 ms before the log does"),
+        (LEVEL, 400, f"{LATE}; without `fresh within` the last one counts until the end"),
         (LEVEL, 900, None),
         (f"{LEVEL} fresh within 700 ms", 400, None),
         (
             f"{LEVEL} fresh within 500 ms",
             400,
-            "the samples of `battery`, one each 20 ms, end 600 ms before the log does",
+            LATE,
         ),
     ],
 )
