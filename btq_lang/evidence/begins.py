@@ -45,8 +45,9 @@ class Begins:
         self._into: Final = {uid for uid, how in one_tick.items() if how in ("first", "both", "unskipped")}
         self._onward: Final = {uid for uid, how in one_tick.items() if how in ("next", "both", "unskipped")}
         self._in_order: Final = {uid for uid, how in one_tick.items() if how in ("first", "both")}
+        nav2 = {uid for uid, node in tree.nodes.items() if node.kind in NODES and one_tick[uid] != "next"}
         built_in = {uid for uid, node in tree.nodes.items() if node.kind in BUILTINS}
-        self._writes_first: Final = (self._into | built_in) - tree.leaves
+        self._writes_first: Final = (self._into | nav2 | built_in) - tree.leaves
         self._parallel: Final = {uid for uid, how in one_tick.items() if how == "unskipped"}
         # Of each Parallel the last child that has written a row in the activation that this row showed.
         self._ticked: Final[dict[int, tuple[Moment, int]]] = {}
@@ -77,18 +78,22 @@ class Begins:
         if uid == writes and status == RUNNING and uid in self._writes_first:
             return Begin(now, now, now)
         before = self._before
-        after = (before[0][0], before[0][1] + 1) if before is not None else (0, 0)  # just after it
+        # After it, and after the moment just after it, at which what it ended is over.
+        after = (before[0][0], before[0][1] + 2) if before is not None else (0, 0)
         if before is not None and self._shows(uid, before, now, begun):
             return Begin(after, after, now)
         time, earliest = now[0], after[0]
         for other, at, is_result in self.others:
             if other == uid or (is_result and self._waits_for(uid, other)):
                 earliest = max(earliest, at)
+        child = uid
         for above in self._tree.above(uid) if self._tree.delays else ():
-            waited = begun[above].earliest[0] + self._tree.delays.get(above, 0)
-            # Else it did not wait: 4.8.3 and 4.8.4 do not.
-            earliest = max(earliest, waited) if waited <= time + _CLOCKS else earliest
-        return Begin(min((earliest, after[1]), now), now, now)
+            if begun[above].shown != now and (child == uid or begun[child].shown == now):  # what it waited for
+                waited = begun[above].earliest[0] + self._tree.delays.get(above, 0)
+                # Else it did not wait: 4.8.3 and 4.8.4 do not.
+                earliest = max(earliest, waited) if waited <= time + _CLOCKS else earliest
+            child = above
+        return Begin((earliest, after[1]) if earliest < time else now, now, now)
 
     def _shows(self, uid: int, before: tuple[Moment, int, bool], now: Moment, begun: Mapping[int, Begin]) -> bool:
         key = uid, before[1], before[2]
@@ -96,6 +101,8 @@ class Begins:
             self._shown[key] = self._shown_by(*key)
         shown = self._shown[key]
         if shown is None:
+            return False
+        if before[2] and begun[before[1]].shown != before[0]:  # its children wrote rows before it did
             return False
         first, parallels = shown
         if first != uid and begun[first].shown != now:  # which may have ticked another node meanwhile

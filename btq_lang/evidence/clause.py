@@ -33,7 +33,7 @@ from btq_lang.evidence.run_verbs import run_judge
 from btq_lang.evidence.scopes import in_scope, within
 from btq_lang.evidence.signals import Signals, Unknown
 from btq_lang.evidence.tally import Run, Tally
-from btq_lang.evidence.verbs import JUDGES, Judgement, agreed
+from btq_lang.evidence.verbs import JUDGES, OUT, Judgement, agreed
 from btq_lang.evidence.verbs import duration as lasted
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Link, Measures
 from btq_lang.evidence.wording import duration
@@ -128,7 +128,7 @@ class JudgedClause:
         self._subject: Final = subject
         self._judge: Final = JUDGES.get(claim.verb) if not isinstance(subject, Span | Total) else None
         self._judge_run: Final = run_judge(claim, subject)
-        # Whether a mission succeeds is what the log's root returns, whatever is around the written one.
+        # Whether a mission succeeds is what the log's root returns, whatever is around the written root.
         self._is_result: Final = isinstance(subject, Mission) and VERBS[claim.verb].limits == "success"
         self.judged: Final = replace(within(claim, requirement.scopes), subject=subject)
         self._edge: Final = edge_of(self.judged, subject, requirement) if with_measures else None
@@ -152,9 +152,12 @@ class JudgedClause:
         # Until it is known what else ran meanwhile.
         self._waiting: Final[list[tuple[Activation, Observed, str, Guard | None]]] = []
         self._refused: Final[list[Refusal]] = []  # in the open run, of the clause's nodes
+        self._around: Final[list[int]] = []  # a guard of a span is around the parent of its nodes
+        self._stopped: Final[list[Activation]] = []  # of these, in the open run
         self._notes: Final[Counter[str]] = Counter()
         self._waits = False
         self._has_started = False  # in the open run
+        self._written: tuple[Activation, Guard | None] | None = None  # in the open run, if its root's result counts
         self._records: Final[list[Callable[[Judgement, int, int, str], None]]] = []
         self._looked: Final[dict[int, tuple[Moment, Moment]]] = {}  # of open activations: their start, and up to when
         self.broken: Final[dict[int, tuple[Judgement, str]]] = {}
@@ -172,6 +175,7 @@ class JudgedClause:
         """
         self._signals, self._history, self._nearby = signals, history, nearby
         self._nodes.clear()
+        self._around.clear()
         self._places.clear()
         self._notes.clear()
         for uids in self._own(joined) if self._is_judged else ():
@@ -189,14 +193,29 @@ class JudgedClause:
             if self._judge_run is not None:
                 history.watch(uids)
                 self._places.append(_Place(joined.tree.nodes[uids[0]].path, uids, others))
-        return self._nodes
+        if isinstance(self._subject, Span):
+            guards = joined.enforcing()
+            above = [next((each for each in joined.tree.above(uid) if each not in guards), 0) for uid in self._nodes]
+            self._around.extend(each for each in dict.fromkeys(above) if each)
+        return [*self._nodes, *self._around]
 
     def judge(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
         """Count an activation of one of its nodes, which a guard may have stopped, by what was observed during it."""
+        if activation.uid in self._around:
+            if guard is not None and guard.requirement == self.requirement.name and self.claim.verb in guard.verbs:
+                self._stopped.append(activation)
+            return
         self.found.has_run = self._has_started = True
         if activation.timing in BEGUN_BEFORE:
             return
         self._waits = self._waits or activation.shown != activation.ended
+        if self._is_result:
+            self._written = activation, guard
+        else:
+            self._judge_in(activation, guard, observed, path)
+        self.broken.pop(activation.uid, None)
+
+    def _judge_in(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
         if guard is not None and self._is_own(guard):
             self._margins.is_exact = False  # with another bound the guard would have done something else
             self._count(self._broken(activation, guard, observed), activation, path)
@@ -204,7 +223,6 @@ class JudgedClause:
             self._waiting.append((activation, observed, path, guard))
         elif self._judge is not None:
             self._judge_one(activation, observed, path, guard)
-        self.broken.pop(activation.uid, None)
 
     def look(self, activation: Activation, path: str) -> bool:
         """Judge an activation that is still open; returns whether it breaks the clause, whatever comes later, and was
@@ -232,7 +250,7 @@ class JudgedClause:
         a failure.
         """
         is_own = self._is_own(refusal.guard)
-        if not is_own and VERBS[self.claim.verb].limits != "success":
+        if self._is_result or (not is_own and VERBS[self.claim.verb].limits != "success"):
             return
         self.found.has_run = True
         self._margins.is_exact = False
@@ -250,7 +268,7 @@ class JudgedClause:
         judged = self._judge(self.judged, activation, observed)
         measure = judged.measure if judged is not None and judged.holds is False else None
         stopped = f"stopped by its own guard after {duration(activation.seconds)}"
-        if VERBS[self.claim.verb].limits and measure is None:
+        if VERBS[self.claim.verb].limits and self.judged.limit is not None and measure is None:
             ran = lasted(self.judged, activation, observed)
             measure = ran.beyond() if isinstance(ran, Measure) else None
         sentence = f"its guard at {guard.path} did not accept its success" if guard.checks else stopped
@@ -259,6 +277,8 @@ class JudgedClause:
     def end_run(self, run: Run, root: Activation) -> None:
         """Judge the open run, which has ended; `root`: the activation of its root."""
         is_whole = root.timing not in BEGUN_BEFORE  # else it is unknown what ran in its first part
+        if self._is_result and self._nodes and is_whole:
+            self._judge_result(root)
         for activation, observed, path, guard in self._waiting if is_whole else ():
             # Observed again: a late sample may count.
             self._judge_one(activation, observed.during(activation), path, guard, root)
@@ -270,12 +290,21 @@ class JudgedClause:
             self._add(lost, next(iter(self.found.paths)), root.end, root.end, ())
             self._margins.add(margins.UNKNOWN, margins.UNKNOWN, ())
         self._refused.clear()
+        self._stopped.clear()
         self._tally.end_run(run)
         self._margins.end_run(run.number)
         self.found.left_out["idle"] += self._judge is not None and self._is_judged and not self._has_started
         self._has_started = False
+        self._written = None
         self.broken.clear()
         self._looked.clear()
+
+    def _judge_result(self, root: Activation) -> None:
+        """Judge a run by the result of its root, from the begin of the written root to its end, if that ran."""
+        of, guard = self._written or (root, None)
+        run = Activation(self._nodes[0], of.started, of.ended, root.outcome, root.timing, of.begun(True), of.shown)
+        observed = Observed(self._signals, self._nearby(run.uid), run.started, run.ended, run.timing != "latest")
+        self._judge_in(run, guard, observed, next(iter(self.found.paths)))
 
     def _judge_over(self, root: Activation) -> None:
         """Count what is judged over the run, in order of time for all uses of a subtree together: a window may keep
@@ -286,7 +315,8 @@ class JudgedClause:
         for place in self._places:
             over = self._over(place, root)
             overs = [over]
-            if self._running or not all(each.is_begin_known for each in (root, *over.own)):
+            known = root.is_begin_known and place.others.are_begins_known()
+            if not known or not all(each.is_begin_known for each in over.own):
                 early = root.from_earliest()
                 overs.append(replace(over, root=early, observed=over.observed.earlier(early.started)))
             judged += [(each, place, over) for each in self._judged_over(self.judged, overs)]
@@ -308,7 +338,7 @@ class JudgedClause:
         observed = Observed(self._signals, place.others, root.started, root.ended)
         own = self._history.of(place.uids)
         refused = [each for each in self._refused if each.uid in place.uids]
-        return OverRun(self.claim.verb, self.requirement.scopes, root, own, observed, refused, [])
+        return OverRun(self.claim.verb, self.requirement.scopes, root, own, observed, refused, self._stopped, [])
 
     def _judged_over(self, claim: Claim, overs: Sequence[OverRun]) -> Sequence[Judgement | None]:
         """The judgements of a run by a claim; `overs`: the run as it may have been."""
@@ -317,9 +347,10 @@ class JudgedClause:
         root = overs[0].root
         for early in others:
             if len(early) != len(late):
-                return [Judgement(None, root.end, UNKNOWN_BEGIN)]
+                is_any = any(each is not OUT for each in (*early, *late))
+                return [Judgement(None, root.end, UNKNOWN_BEGIN)] if is_any else []
             late = [agreed(one, other, root) for one, other in zip(late, early, strict=True)]
-        return [_clocked(each, root) for each in late]
+        return [_clocked(each, root) for each in late if each is not OUT]
 
     def _judge_one(
         self,
@@ -405,8 +436,6 @@ class JudgedClause:
             self._add(judgement, path, since, of.end, chain)
 
     def _add(self, judgement: Judgement, path: str, begin: int, end: int, chain: tuple[Link, ...]) -> None:
-        if self._is_result:  # the log's root may be a wrapper
-            path = next(iter(self.found.paths))
         self._tally.add(judgement, path, end, chain)
         for record in self._records:
             record(judgement, begin, end, path)
@@ -427,7 +456,7 @@ class JudgedClause:
         if isinstance(subject, Total):
             uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
             return [tuple(uids)] if uids and not self.found.missing else []
-        return [(ROOT if self._is_result else uid,) for uid in self._instances(joined, _known(subject))]
+        return [(uid,) for uid in self._instances(joined, _known(subject))]
 
     def _instances(self, joined: Joined, target: Target | None) -> list[int]:
         """The uids of a node's instances; notes those missing from the log."""

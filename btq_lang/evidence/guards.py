@@ -2,7 +2,8 @@
 whose success they did not accept.
 
 One invariant: an activation is passed on only when it is known what the guards around it did: a halted one when its
-nearest ancestor has ended that was not halted itself, one that succeeded when its success has been checked.
+nearest ancestor has ended that was not halted itself, one that succeeded when its success has been checked.  A guard
+has failed when its check has, also where the log is cut off before the guard's own row.
 """
 
 from __future__ import annotations
@@ -25,12 +26,14 @@ class Guard(Record):
         requirement: empty: the mission does not have the node.
         verbs: of the clauses that it enforces; none: it halts the whole mission.
         checks: whether it evaluates a condition when the node has succeeded.
+        halts: whether it may halt the node: it is ticked, or waits, while that runs.
     """
 
     path: str
     requirement: str
     verbs: frozenset[str]
     checks: bool = False
+    halts: bool = True
 
 
 class Refusal(Record):
@@ -68,7 +71,7 @@ class Guards:
         self._inside: Final = {guard: uid for uid, around in self._around.items() for guard in around}
         self._waiting: list[tuple[Activation, tuple[int, ...]]] = []
         self._failed: Final[dict[int, Moment]] = {}  # when the condition of a guard failed, until the guard ends
-        self._shown: Final[dict[int, Moment]] = {}  # when a node inside of guards last began
+        self._shown: Final[dict[int, Moment]] = {}  # of guards that have not ended: when the node inside last began
         self.concerned: Final = {*judged, *known, ROOT}
 
     def see(self, activation: Activation) -> tuple[list[tuple[Activation, Guard | None]], Refusal | None]:
@@ -78,11 +81,15 @@ class Guards:
         uid = activation.uid
         if activation.outcome == "F" and uid in self._holders:
             self._failed[self._holders[uid]] = activation.ended
-        refusal = self._refusal(activation)
-        around = self._around.get(uid)
-        if around:
-            self._shown[uid] = activation.shown
         settled: list[tuple[Activation, Guard | None]] = []
+        refusal = self._refusal(activation)
+        for failed, at in [*self._failed.items()] if uid == ROOT else ():
+            if failed != ROOT:  # it has no row
+                stopped, refused = self.see(Activation(failed, (0, 0), at, "F"))
+                settled += stopped
+                refusal = refusal or refused
+        around = self._around.get(uid)
+        self._shown.update(dict.fromkeys(around or (), activation.shown))
         waiting, self._waiting = self._waiting, []
         for ended, guards in waiting:
             if uid not in guards and uid != ROOT:
@@ -93,28 +100,29 @@ class Guards:
             guard = self._guards[uid] if uid in guards and is_inside and self._violates(ended, activation) else None
             if guard is not None and guard.verbs:
                 self.last = guard.requirement
-            if guard is None and is_inside and activation.outcome == "H" and ended.outcome == "H" and further:
+            if guard is None and is_inside and activation.outcome == ended.outcome != "S" and further:
                 self._waiting.append((ended, further))
             elif guard is None and ended.outcome == "S" and (checks := self._checks(further)):
                 self._waiting.append((ended, checks))
             else:
                 settled.append((ended, guard))
-        if around and activation.outcome == "H":
+        if around and activation.outcome in ("H", "O"):
             self._waiting.append((activation, around))
         elif around and activation.outcome == "S" and (checks := self._checks(around)):
             self._waiting.append((activation, checks))
         elif around is not None:
             settled.append((activation, None))
         self._failed.pop(uid, None)
+        self._shown.pop(uid, None)
         return settled, refusal
 
     def _refusal(self, activation: Activation) -> Refusal | None:
         uid = activation.uid
         at = self._failed.get(uid)
         inside = self._inside.get(uid)
-        if activation.outcome not in ("F", "O") or at is None or inside is None or not self._guards[uid].verbs:
+        if at is None or inside is None or not self._guards[uid].verbs:
             return None
-        if inside in self._shown and self._shown[inside] >= activation.shown:
+        if uid in self._shown and self._shown[uid] >= activation.shown:
             return None
         self.last = self._guards[uid].requirement
         return Refusal(inside, at, self._guards[uid])
@@ -128,9 +136,8 @@ class Guards:
 
     def _violates(self, ended: Activation, by: Activation) -> bool:
         """Whether a guard that has ended stopped an activation inside of it, or did not accept its success."""
-        if by.outcome != "F":
-            return False
-        return ended.outcome == "H" or (by.uid in self._failed and self._failed[by.uid] >= ended.ended)
+        has_failed = by.uid in self._failed and self._failed[by.uid] >= ended.started
+        return has_failed or (by.outcome == "F" and ended.outcome == "H" and self._guards[by.uid].halts)
 
 
 def _guard(tree: LoggedTree, uid: int, condition: int, requirement: str) -> Guard:
@@ -145,8 +152,8 @@ def _guard(tree: LoggedTree, uid: int, condition: int, requirement: str) -> Guar
         return Guard(path, requirement, words(limits=("success",)) | {what} if what in VERBS else frozenset())
     checked = _CHECKED.get(what)
     if checked is not None:
-        return Guard(path, requirement, frozenset([checked]), checks=True)
-    return Guard(path, requirement, words(enforced="refusal") & {what})
+        return Guard(path, requirement, frozenset([checked]), checks=True, halts=False)
+    return Guard(path, requirement, words(enforced="refusal") & {what}, halts=False)
 
 
 # The ends of the names of Sequences that check a success, and the verbs of their clauses.

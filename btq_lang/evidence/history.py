@@ -88,6 +88,11 @@ class Nearby:
         found = self._found[target]
         return [] if isinstance(found, Unknown) else self._history.of(found)
 
+    def are_begins_known(self) -> bool:
+        """Whether the log says when all of these nodes began in the run."""
+        found = (each for each in self._found.values() if not isinstance(each, Unknown))
+        return all(each.is_begin_known for uids in found for each in self._history.of(uids))
+
     def runs(self, target: Target, moment: Moment, is_early: bool) -> bool | Unknown:
         """Whether a node runs; `is_early`: as of `History.runs`."""
         found = self._found[target]

@@ -34,7 +34,7 @@ CLOCK_SET_BACK: Final = "the clock was set back meanwhile"
 ROWS_LOST: Final = "transitions were lost meanwhile"
 BEGUN_BEFORE: Final = ("late", "part")  # the timings of activations whose begin was not seen
 CUT_BY_GAP: Final = ("lost", "part")  # those of runs of which later rows were lost
-PLACES: Final = 2  # from one row to the next: there is a moment between any two
+PLACES: Final = 4  # from one row to the next: there are moments just after one, between both, and just before the next
 ENOUGH: Final = 0.01  # of a measure: what is known to this is known well enough for statistics
 ROOT: Final = 1  # the uid of the node whose activations are the runs
 

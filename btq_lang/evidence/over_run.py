@@ -25,6 +25,7 @@ class Happening(Record):
         why: why the moment cannot be judged; empty if what follows from both ends may be.
         is_certain: it did happen, rather than may have.
         order: what it comes before or after others by; None: its moment.
+        judged: when scopes and bounds are read; None: at `at`.
     """
 
     at: Moment
@@ -32,11 +33,17 @@ class Happening(Record):
     why: str = ""
     is_certain: bool = True
     order: Moment | None = None
+    judged: Moment | None = None
 
     @property
     def first(self) -> Moment:
         """From when on it may have happened, in the order of events."""
         return self.order or self.at
+
+    @property
+    def read(self) -> Moment:
+        """When scopes and bounds are read."""
+        return self.judged or self.at
 
     @property
     def last(self) -> Moment:
@@ -65,6 +72,7 @@ class OverRun(Record):
         own: the activations of the clause's nodes, in the order of their starts.
         observed: of the whole run.
         refused: starts of the clause's nodes that its own guard refused.
+        stopped: activations of the nodes around a span that its own guard stopped.
         missed: events that a judge found to concern no activation are appended.
     """
 
@@ -74,6 +82,7 @@ class OverRun(Record):
     own: Sequence[Activation]
     observed: Observed
     refused: Sequence[Refusal]
+    stopped: Sequence[Activation]
     missed: list[Moment]
 
     @property
@@ -145,10 +154,11 @@ class OverRun(Record):
         outcomes = _OUTCOMES.get(event.happening)
         for each in of if of is not None else self.observed.nodes.activations(target_of(event)):
             if outcomes is None:
-                order = each.shown if is_by_row else each.begun(self.observed.is_early)
-                found.append(Happening(each.begun(True), each.started, order=order))
+                begun = each.begun(self.observed.is_early)
+                order = each.shown if is_by_row else begun
+                found.append(Happening(each.begun(True), each.started, order=order, judged=begun))
             elif each.outcome in outcomes and each.timing == "latest":
-                found.append(Happening(each.started, each.ended, UNKNOWN_END))
+                found.append(Happening(each.shown, each.ended, UNKNOWN_END, judged=each.ended))
             elif each.outcome in outcomes:
                 found.append(Happening(each.ended, each.ended))
         return sorted(found, key=lambda each: each.first)

@@ -1,7 +1,8 @@
 """Judges clauses whose verbs are about a whole run: how soon, how often and after what a node starts; for `takes`, also
 the time between events, and sums.
 
-One invariant: a run is judged when it has ended, and a judgement is None where the end of the log cuts it off.
+One invariant: a run is judged when it has ended, and a judgement is None where the end of the log cuts it off; what
+does not count is judged `OUT`, so that the judgements of one run, with earlier and with later begins, correspond.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from itertools import accumulate, pairwise
 from math import ceil, floor
+from operator import attrgetter
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
@@ -17,7 +19,7 @@ from btq_lang.evidence.conditions import Measure, compared
 from btq_lang.evidence.model import UNKNOWN_BEGIN, UNKNOWN_END, Activation
 from btq_lang.evidence.over_run import Happening, OverRun, Stretch
 from btq_lang.evidence.signals import Unknown
-from btq_lang.evidence.verbs import Judgement, between, is_same
+from btq_lang.evidence.verbs import OUT, Judgement, between, is_same
 from btq_lang.requirements.model import Claim, Span, Subject, Target, Total, Value
 from btq_lang.util.text import counted
 
@@ -46,7 +48,7 @@ def _starts(claim: Claim, run: OverRun) -> Judgements:
     moments = run.begins(claim.event)
     for event in run.happenings(claim.event):
         index = bisect_left(moments, event.first)
-        answer = _begin(run.own[index]) if index < len(moments) else None
+        answer = _begin(run.own[index], run) if index < len(moments) else None
         yield from _answered(claim, run, event, answer, "had not started")
 
 
@@ -56,7 +58,7 @@ def _ends(claim: Claim, run: OverRun) -> Judgements:
     moments = run.begins(claim.event)
     for event in run.happenings(claim.event):
         index = bisect_right(moments, event.first) - 1
-        if index < 0 or run.own[index].ended < event.at:
+        if index < 0 or run.own[index].ended < event.first:
             run.missed.append(event.at)
             continue
         ended = run.own[index]
@@ -67,27 +69,32 @@ def _ends(claim: Claim, run: OverRun) -> Judgements:
 
 
 def _answered(claim: Claim, run: OverRun, event: Happening, answer: Happening | None, missing: str) -> Judgements:
-    """The judgement of an event and its answer, if they count; None: the log ends before the deadline.
+    """The judgement of an event and its answer; None: the log ends before the deadline.
 
     Args:
         answer: None: there is none in the run.
         missing: what the node had not done, in words, if there is none.
     """
-    until = answer.until if answer is not None else run.root.ended
-    times = _between_limits(claim, run.observed, event, answer or Happening(until, until))
+    end = answer or Happening(run.root.ended, run.root.ended)
+    until = end.read
+    times = _between_limits(claim, run.observed, event, end)
     deadline = until
     if not isinstance(times, Unknown):
-        deadline = min(until, (event.at[0] + round(times[1].bound.si * 1e6), until[1]))
-    counts = run.counts(event.at, deadline)
-    if counts is False:
-        return
+        deadline = min(until, (event.read[0] + round(times[1].bound.si * 1e6), until[1]))
     time = deadline[0]
-    if event.why or isinstance(times, Unknown):
-        yield Judgement(None, time, times.why if isinstance(times, Unknown) else event.why)
+    if event.why:  # whether it is in scope is unknown, too
+        yield Judgement(None, time, event.why)
+        return
+    counts = run.counts(event.read, deadline)
+    if counts is False:
+        yield OUT
+        return
+    if isinstance(times, Unknown):
+        yield Judgement(None, time, times.why)
         return
     least, most = times
     if answer is None and least.holds and run.is_cut_off:
-        yield None
+        yield None if most.holds else Judgement(None, time, UNKNOWN_BEGIN)
     elif isinstance(counts, Unknown):
         yield Judgement(None, time, counts.why)
     elif answer is None:
@@ -103,8 +110,8 @@ def _between_limits(
     claim: Claim, observed: Observed, first: Happening, last: Happening
 ) -> tuple[Measure, Measure] | Unknown:
     """The shortest and the longest time from one event to another, compared with the bound of a claim."""
-    shortest = compared(claim, max(last.at[0] - first.until[0], 0) / 1e6, observed, first.at)
-    longest = compared(claim, (last.until[0] - first.at[0]) / 1e6, observed, first.at)
+    shortest = compared(claim, max(last.at[0] - first.until[0], 0) / 1e6, observed, first.read)
+    longest = compared(claim, (last.until[0] - first.at[0]) / 1e6, observed, first.read)
     if isinstance(shortest, Unknown):
         return shortest
     return longest if isinstance(longest, Unknown) else (shortest, longest)
@@ -120,9 +127,9 @@ def _timed(claim: Claim, times: tuple[Measure, Measure], at: int, since: int, sa
     return between(judgement, least, most)
 
 
-def _begin(activation: Activation) -> Happening:
+def _begin(activation: Activation, run: OverRun) -> Happening:
     """The begin of an activation as an event."""
-    return Happening(activation.begun(True), activation.started)
+    return Happening(activation.begun(True), activation.started, judged=activation.begun(run.observed.is_early))
 
 
 def _follows(claim: Claim, run: OverRun) -> Judgements:
@@ -138,6 +145,7 @@ def _follows(claim: Claim, run: OverRun) -> Judgements:
         before = moment
         counts = run.counts_one(start)
         if counts is False:
+            yield OUT
             continue
         unclear = counts.why if isinstance(counts, Unknown) else found[0].why if found and not is_sure else ""
         if is_sure and start.outcome == "O":
@@ -166,17 +174,17 @@ def _tries(claim: Claim, run: OverRun) -> Judgements:
         inside = starts[bisect_left(moments, period.shown) : bisect_right(moments, period.ended)]
         refused = [each for each in run.refused if period.shown <= each.at <= period.ended]
         if not inside and not refused and is_upper:
+            yield OUT
             continue
         least = _number(claim, run, period, [each for each, counts in inside if counts is True], refused)
         most = _number(claim, run, period, [each for each, _ in inside], refused)
-        may_break = most is not None and most.holds is False
         reasons = [counts.why for _, counts in inside if isinstance(counts, Unknown)]
         has_none = is_upper and not refused and len(reasons) == len(inside)  # perhaps: then the period does not count
         is_open = least is None or most is None or least.holds is most.holds
-        if has_none or (least is None and may_break) or not is_open:
+        if has_none or (least is None and most is not None) or not is_open:
             yield Judgement(None, period.end, reasons[0])
-        elif least is not None or period.outcome == "O":
-            yield least
+        else:
+            yield least if least is not None or period.outcome == "O" else OUT
 
 
 def _number(
@@ -197,7 +205,7 @@ def _number(
         holds, found = False, found.beyond()
     if holds is None and (period.outcome == "O" or not found.holds):
         return None
-    if holds is False and period.timing == "latest":
+    if holds is False and not refused and period.timing == "latest":
         return Judgement(None, period.end, UNKNOWN_END, found)
     at = period.end
     bound = found.bound.si
@@ -231,7 +239,7 @@ def _runs(claim: Claim, run: OverRun) -> Judgements:
 def _between(claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool) -> Judgements:
     """Judge the times from each start to the next, and from the last to the end of the stretch."""
     said = VERBS[claim.verb].said.replace("{}", "{} after its last start")
-    moments = [_begin(each) for each in starts]
+    moments = [_begin(each, run) for each in starts]
     for start, after in pairwise([*moments, Happening(stretch.end, stretch.end)]):
         is_last = start is moments[-1]
         until = after.until[0]
@@ -296,19 +304,23 @@ def _span(claim: Claim, run: OverRun) -> Judgements:
     lasts = run.happenings(span.last, is_by_row=is_by_row)
     certain = [each for each in lasts if each.is_certain]
     moments = [each.first for each in certain]
-    ends = [*accumulate((each.until for each in reversed(certain)), min)][::-1]  # the first end from each index on
+    # The first one that has happened, of those from each index on.
+    ends = [*accumulate(reversed(certain), lambda *each: min(each, key=attrgetter("last")))][::-1]
     next_after = bisect_right if first == span.last else bisect_left  # an event does not follow itself
     for event in run.happenings(first, run.own if first.condition is None else None, is_by_row):
         index = next_after(moments, event.first)
-        last = Happening(certain[index].at, ends[index]) if index < len(ends) else None
-        until = last.until if last is not None else run.root.ended
-        others = [each for each in lasts if each.until >= event.at and each.at <= until]
+        last = ends[index] if index < len(ends) else None
+        until = last.last if last is not None else run.root.ended
+        if any(each.shown <= event.first <= each.ended <= until for each in run.stopped):
+            yield Judgement(False, until[0], "its guard stopped it before it came to an end", since=event.read[0])
+            continue
+        others = [each for each in lasts if each.until >= event.first and each.at <= until]
         unclear = next((each.why for each in others if each.why), "")
         yield from _ended(claim, run, event, last, unclear)
 
 
 def _ended(claim: Claim, run: OverRun, first: Happening, last: Happening | None, unclear: str) -> Judgements:
-    """The judgement of a span, if it counts.
+    """The judgement of a span; None: the log ends before it does.
 
     Args:
         last: when it ended; None: not in the run.
@@ -316,13 +328,17 @@ def _ended(claim: Claim, run: OverRun, first: Happening, last: Happening | None,
     """
     assert claim.limit is not None, "a time has a bound"
     end = last or Happening(run.root.ended, run.root.ended)
-    until = end.until
-    counts = run.counts(first.at, until)
+    until = end.read
+    if first.why:  # whether it is in scope is unknown, too
+        yield Judgement(None, until[0], first.why)
+        return
+    counts = run.counts(first.read, until)
     if counts is False:
+        yield OUT
         return
     times = _between_limits(claim, run.observed, first, end)
-    if first.why or isinstance(times, Unknown):
-        yield Judgement(None, until[0], times.why if isinstance(times, Unknown) else first.why)
+    if isinstance(times, Unknown):
+        yield Judgement(None, until[0], times.why)
         return
     least, most = times
     is_late = least.is_upper and not least.holds
@@ -330,7 +346,7 @@ def _ended(claim: Claim, run: OverRun, first: Happening, last: Happening | None,
     if unclear and (last is None or not is_in_time):
         yield Judgement(None, until[0], unclear)
     elif last is None and not is_late and run.is_cut_off:
-        yield None
+        yield None if most.holds or not most.is_upper else Judgement(None, until[0], UNKNOWN_BEGIN)
     elif isinstance(counts, Unknown):
         yield Judgement(None, until[0], counts.why)
     elif last is not None:

@@ -43,15 +43,21 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
     most: Measure | None = None
 
 
+OUT: Final = Judgement(None, 0, "it does not count")
+
+
 def agreed(late: Judgement | None, early: Judgement | None, activation: Activation) -> Judgement | None:
     """The judgement of an activation whose begin is not known exactly; unknown unless both are the same.
 
     Args:
-        late, early: the judgements if it had begun as late and as early as it may have; None: it does not count.
+        late, early: the judgements if it had begun as late and as early as it may have; None: it does not count, or is
+            cut off.
     """
-    if late is None and early is None:
+    if late is early:
+        return late
+    if None in (late, early) and OUT in (late, early):
         return None
-    if late is None or early is None or not is_same(late, early):
+    if OUT in (late, early) or late is None or early is None or not is_same(late, early):
         return Judgement(None, activation.end, UNKNOWN_BEGIN)
     return between(late, late.measure, early.measure)
 

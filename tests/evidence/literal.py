@@ -106,7 +106,7 @@ class Session:
                     replace(other, verdict=alike(one.verdict, other.verdict))
                     for one, other in zip(ones, others, strict=True)
                 ]
-            else:
+            elif any(each.verdict != OUT for each in (*ones, *others)):
                 end = self.runs[run].end
                 found.append(Judged(run, uid, None, end, end))
         return found
@@ -119,15 +119,15 @@ class Session:
             early, late = ([each for each in of_world if each.at.run == run.run] for of_world in found)
             if len(early) == len(late):
                 judged += [self.spent_between(claim, *each) for each in zip(early, late, strict=True)]
-            else:
+            elif any(each.counts is not False for each in (*early, *late)):
                 judged.append(Judged(run.run, ROOT, None, run.end, run.end))
         return judged
 
     def spent_between(self, claim: Claim, one: Spent, other: Spent) -> Judged:
         """One of them, at the earliest and at the latest begin."""
         run = self.runs[other.at.run]
-        most = 0 if other.is_itself else other.at.end - one.at.begin
-        kept = self.kept(one.at.end - other.at.begin, most, claim, one.at, other.at)
+        times = one.least, one.most, other.least, other.most
+        kept = self.kept(times, claim, one.at, other.at)
         is_answered, unclear = other.is_answered, one.is_unclear or other.is_unclear
         verdict: Verdict = kept.copy().pop() if len(kept) == 1 else None
         is_known = one.is_sure and other.is_sure and one.is_answered == is_answered
@@ -156,7 +156,7 @@ class Session:
             ]
             most = sum(one.end - one.begin for one, _, _ in parts)
             least = sum(other.end - other.begin for _, other, counts in parts if counts and other.is_exact)
-            kept: set[Verdict] = {*self.kept(least, most, claim, one_run, run)}
+            kept: set[Verdict] = {*self.kept((least, most), claim, one_run, run)}
             if not any(counts for *_, counts in parts):
                 kept = {OUT, *kept} if parts else {OUT}
             verdict = kept.pop() if len(kept) == 1 else None
@@ -164,18 +164,18 @@ class Session:
             found.append(Judged(run.run, run.uid, verdict, run.end))
         return found
 
-    def kept(self, least: int, most: int, claim: Claim, one: Activation, other: Activation) -> set[Truth]:
+    def kept(self, times: Sequence[int], claim: Claim, one: Activation, other: Activation) -> set[Truth]:
         """Whether durations keep a limit, as it is read at the earliest and at the latest begin."""
         return {
             world.within(max(spent, 0) / 1e6, claim.limit, at)[0]
-            for spent in (least, most)
+            for spent in times
             for world, at in ((self.early, one), (self.late, other))
         }
 
 
 def alike(one: Verdict, other: Verdict) -> Verdict:
-    """What both say; unknown if they differ."""
-    return one if one == other else None
+    """What both say; unknown if they differ.  What is cut off if it counts is cut off."""
+    return one if one == other else OPEN if {one, other} == {OPEN, OUT} else None
 
 
 def both_parts(upper: Judged, lower: Judged) -> Judged:

@@ -94,7 +94,8 @@ class _Begins:
             return after, after
         waited = [self.waited(each, a) for each in self.tree.above(a.uid) if each in self.delays]
         waited += [self.rows[index][0] for index in range(before + 1, a.first) if self.is_awaited(index, a)]
-        return min((max([after[0], *waited]), after[1]), own), own
+        earliest = max([after[0], *waited])
+        return ((earliest, after[1]) if earliest < own[0] else own), own
 
     def is_awaited(self, index: int, a: Activation) -> bool:
         """Whether an activation began after a row of another thread."""
@@ -118,10 +119,10 @@ class _Begins:
 
     def waited(self, delay: int, a: Activation) -> int:
         """Until when a Delay above an activation waited, before which it ticks nothing; 0 if that is later than the
-        row by more than clocks differ: then it did not wait, or its begin left no row.
+        row by more than clocks differ: then it did not wait; or if its begin left no row, or others below it have.
         """
-        around = [each for each in self.found if each.uid == delay and each.first <= a.first]
-        until = around[-1].earliest[0] + self.delays[delay] if around else 0
+        around = [each for each in self.found if each.uid == delay and each.first < a.first <= each.last]
+        until = around[-1].earliest[0] + self.delays[delay] if around and not self.ran(delay + 1, a) else 0
         return until if until <= self.rows[a.first][0] + 1000 else 0
 
     def is_known(self, a: Activation, before: int) -> bool:
@@ -136,7 +137,10 @@ class _Begins:
             if parent in (of, self.tree.parent[of]) and self.ran(child, a):
                 return False
             if of == parent:
-                return status == RUNNING and kind not in SILENT
+                began = any(
+                    each.uid == of and each.first == before for each in self.found
+                )  # else rows below came first
+                return status == RUNNING and kind not in SILENT and began
             if self.tree.parent[of] == parent and of < child:
                 return status != RUNNING and kind not in PAUSING
             child = parent
@@ -144,15 +148,27 @@ class _Begins:
 
     def ran(self, uid: int, a: Activation) -> bool:
         """Whether a node above an activation, or its own, had begun before: it may have ticked another child first."""
-        return uid != a.uid and any(each.uid == uid and each.first < a.first <= each.last for each in self.found)
+        return any(self.has_begun(each, a.first) for each in self.tree.above(a.uid) if each >= uid)
+
+    def has_begun(self, uid: int, before: int) -> bool:
+        """Whether a row of a node, or below it, shows before another one that it had begun, and none that it ended."""
+        return self.has_row(range(uid, self.tree.last[uid] + 1), uid, before)
+
+    def has_row(self, uids: Collection[int], since_end_of: int, before: int) -> bool:
+        """Whether there is a row, but to IDLE, of one of some nodes since a node ended last."""
+        around = (since_end_of, *self.tree.above(since_end_of))
+        rows = [*enumerate(self.rows[:before])]
+        ends = [each.last for each in self.found if each.uid in around and each.last < before]
+        ends += [index for index, (_, of, status) in rows if of == since_end_of and status == IDLE]
+        return any(
+            of in uids and status in (RUNNING, SUCCESS, FAILURE)
+            for _, (_, of, status) in rows[max(ends, default=-1) + 1 :]
+        )
 
     def starts_with(self, parallel: int, child: int, a: Activation) -> bool:
         """Whether a child of a Parallel starts with the first row of an activation, and was not skipped since the
         Parallel began: no younger sibling wrote anything."""
         if self.ran(child, a):
             return False
-        begin = max((each.first for each in self.found if each.uid == parallel and each.first <= a.first), default=0)
-        last = self.tree.last
-        return not any(
-            last[child] < uid <= last[parallel] and status != IDLE for _, uid, status in self.rows[begin : a.first]
-        )
+        younger = range(self.tree.last[child] + 1, self.tree.last[parallel] + 1)
+        return not self.has_row(younger, parallel, a.first)

@@ -42,7 +42,10 @@ class Hunt:
 
     def judge(self, seed: int) -> None:
         """Judge the case of a seed twice."""
-        made = case(seed)
+        self.judge_case(case(seed), seed)
+
+    def judge_case(self, made: Case, seed: int) -> None:
+        """Judge a case twice; `seed`: to name it by."""
         evaluation = MissionEvaluation(made.mission)
         read = 0
         for rows in made.sessions:

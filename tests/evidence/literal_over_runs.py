@@ -33,7 +33,7 @@ class Happening:
         after, by: the rows from which on and by which it happened, if it did.
         moment: when that was.
         is_sure: it did, just then.
-        of: what started or ended.
+        of: what started.
     """
 
     after: Moment
@@ -43,6 +43,11 @@ class Happening:
     has_happened: bool = True
     of: Activation | None = None
 
+    @property
+    def times(self) -> tuple[int, int]:
+        """From when on and by when it happened."""
+        return (self.of.earliest[0], self.of.latest[0]) if self.of is not None else (self.moment[0], self.moment[0])
+
 
 @dataclass(frozen=True)
 class Spent:
@@ -51,11 +56,11 @@ class Spent:
     Attributes:
         at: from the event to its answer, or to the end of the run.
         until: when it was decided if it was not answered, or in time.
-        counts: whether its scopes let it count.
+        counts: whether its scopes let it count; unknown if it is when it happened.
         is_sure: the event happened just then.
         is_answered: its answer has happened.
         is_unclear: that may have happened before.
-        is_itself: the event is its own answer.
+        least, most: how long that may have been, in µs.
         is_stopped: the guard that enforces it has stopped it.
     """
 
@@ -65,7 +70,8 @@ class Spent:
     is_sure: bool
     is_answered: bool
     is_unclear: bool
-    is_itself: bool = False
+    least: int
+    most: int
     is_stopped: bool = False
 
 
@@ -185,18 +191,20 @@ class OverRuns(OfActivations):
             for event in self.events(claim.event, replace(run, uid=uid)):
                 if claim.verb == "starts":
                     answers = [(x, x.start, True) for x in own if x.placed(by_rows) >= event.after][:1]
+                    ends = [(x.earliest[0], x.latest[0]) for x, *_ in answers]
                 else:  # what does not run has nothing to end
                     running = [x for x in own if x.placed(by_rows) <= event.after <= x.stop][-1:]
                     if not running:
                         continue
                     answers = [(x, x.stop, x.is_exact) for x in running if x.outcome != "O"]
-                x, by, is_exact = answers[0] if answers else (None, run.stop, True)
+                    ends = [(x.end, x.end) for x, *_ in answers]
+                _, by, is_exact = answers[0] if answers else (None, run.stop, True)
+                least, most = spent(event.times, ends[0] if ends else (run.end, run.end))
                 at = between(run, uid, event.moment, by)
                 bound = self.number(claim.limit.value, at.start, at) if claim.limit is not None else None
                 until = by if bound is None else min(by, (at.begin + micros(bound), by[1]))
-                counts = self.counts(between(run, uid, at.start, until), requirement)
-                is_itself = claim.verb == "starts" and x is not None and x is event.of
-                found.append(Spent(at, until[0], counts, event.is_sure, bool(answers), not is_exact, is_itself))
+                counts = self.counts(between(run, uid, at.start, until), requirement) if event.is_sure else None
+                found.append(Spent(at, until[0], counts, event.is_sure, bool(answers), not is_exact, least, most))
         return found
 
     def follows(
@@ -206,7 +214,7 @@ class OverRuns(OfActivations):
         assert claim.event is not None
         by_rows = claim.event.condition is None
         events = self.events(claim.event, replace(run, uid=uid))
-        before: Moment = (run.begin, -1)
+        before: Moment = (run.begin, -2)  # also what happens as it begins
         found: list[Decided] = []
         for x in own:
             start = x.placed(by_rows)
@@ -233,10 +241,11 @@ class OverRuns(OfActivations):
                     by, moment = (last.by, last.moment) if last is not None else (run.stop, run.stop)
                     unclear = any(not each.is_sure and each.by >= first.after and each.after <= by for each in lasts)
                     at = between(run, uid, first.moment, moment)
-                    counts = self.counts(at, requirement)
+                    counts = self.counts(at, requirement) if first.is_sure else None
                     found.append(
                         Spent(
                             *(at, at.end, counts, first.is_sure, last is not None, unclear),
+                            *spent(first.times, last.times if last is not None else (run.end, run.end)),
                             is_stopped=any(
                                 each.shown <= first.after <= each.stop <= by
                                 and self.is_stopped(each, claim, requirement)
@@ -296,7 +305,7 @@ class OverRuns(OfActivations):
             return [Happening(each.placed(by_rows), each.placed(by_rows), each.start, of=each) for each in of]
         outcomes = {"succeeds": "S", "fails": "F", "finishes": "SF", "halts": "H"}[event.happening]
         return [
-            Happening(each.stop if each.is_exact else each.placed(by_rows), each.stop, each.stop, each.is_exact)
+            Happening(each.stop if each.is_exact else each.shown, each.stop, each.stop, each.is_exact)
             for each in of
             if each.outcome in outcomes
         ]
@@ -305,6 +314,11 @@ class OverRuns(OfActivations):
 def between(run: Activation, uid: int, start: Moment, stop: Moment) -> Activation:
     """A part of a run, as seen from a node."""
     return Activation(uid, run.first, run.last, start, start, stop, run.outcome, True, run.run)
+
+
+def spent(since: tuple[int, int], until: tuple[int, int]) -> tuple[int, int]:
+    """The shortest and the longest time from one moment to another, of which only limits are known."""
+    return max(until[0] - since[1], 0), until[1] - since[0]
 
 
 def all_of(verdicts: Sequence[Verdict]) -> Verdict:

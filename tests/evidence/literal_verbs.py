@@ -64,7 +64,8 @@ class OfActivations(Log):
         uid, inner = self.tree.parent[a.uid], a
         while uid in self.guards and inner.outcome == "H":
             inner = next((each for each in reversed(self.of(uid)) if each.first <= inner.first <= each.last), inner)
-            kinds = {"Timeout": ("takes", "succeeds"), "ReactiveSequence": ("keeps", "never", "uses", "succeeds")}
+            word = self.tree.nodes[uid].path.rpartition("_")[2]
+            kinds = {"Timeout": ("takes", "succeeds"), "ReactiveSequence": (word, "succeeds")}
             if inner.uid == uid and inner.outcome == "F":
                 own = self.guards[uid] == requirement.name
                 return own and claim.verb in kinds.get(self.tree.nodes[uid].kind, ())

@@ -117,7 +117,8 @@ def _throttle(tag: str, doc: str, again: str, besides: str = "", flow: Flow = "t
         f"It ticks its child when it starts, as long as that runs, and {again}; otherwise it returns RUNNING. "
         f"{besides}When its parent resets it after a success it starts again, and holds nothing back."
     )
-    return decorator(tag, doc, semantics, flow=flow, one_tick="first", memory="success")
+    # No `one_tick`: when it starts without a reset it waits, and no row says which.
+    return decorator(tag, doc, semantics, flow=flow, memory="success")
 
 
 _DECORATORS: Final = (
