@@ -21,7 +21,7 @@ Transition: TypeAlias = tuple[int, int, int]  # time, uid, new status
 SampleValue: TypeAlias = float | bool | str
 Outcome: TypeAlias = Literal["S", "F", "H", "O"]
 Timing: TypeAlias = Literal["exact", "latest", "broken", "late", "lost", "part"]
-Moment: TypeAlias = tuple[int, int]  # time, and row of the log, which orders rows of one time
+Moment: TypeAlias = tuple[int, int]  # time, and place among the rows of the log, which orders those of one time
 T = TypeVar("T")
 IDLE: Final = 0
 RUNNING: Final = 1
@@ -34,6 +34,7 @@ CLOCK_SET_BACK: Final = "the clock was set back meanwhile"
 ROWS_LOST: Final = "transitions were lost meanwhile"
 BEGUN_BEFORE: Final = ("late", "part")  # the timings of activations whose begin was not seen
 CUT_BY_GAP: Final = ("lost", "part")  # those of runs of which later rows were lost
+PLACES: Final = 2  # from one row to the next: there is a moment between any two
 ENOUGH: Final = 0.01  # of a measure: what is known to this is known well enough for statistics
 ROOT: Final = 1  # the uid of the node whose activations are the runs
 

@@ -16,6 +16,7 @@ from functools import cached_property, lru_cache
 from itertools import accumulate
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.evidence.model import PLACES
 from btq_lang.util.grouping import grouped
 
 if TYPE_CHECKING:
@@ -47,9 +48,9 @@ class LoggedRuns:
 
     def add(self, root: Activation) -> None:
         """Add a run."""
-        for (time, row), times, rows in ((root.started, self.begins, self.first), (root.ended, self.ends, self.last)):
+        for (time, place), times, rows in ((root.shown, self.begins, self.first), (root.ended, self.ends, self.last)):
             times.append(min(time, _LATEST))
-            rows.append(row)
+            rows.append(place // PLACES)
 
     @property
     def rows(self) -> int:

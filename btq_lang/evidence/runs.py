@@ -23,6 +23,7 @@ from btq_lang.evidence.begins import Begin, Begins
 from btq_lang.evidence.model import (
     FAILURE,
     GAP,
+    PLACES,
     ROOT,
     RUNNING,
     SKIPPED,
@@ -55,7 +56,7 @@ def activations(session: Session) -> Iterator[Activation]:
     row, now = 0, (0, 0)
     until = now  # nodes that are active at `now` are still active then
     for number, (time, uid, status) in enumerate(session.transitions, 1):
-        row = 2 * number  # so that there are moments between rows
+        row = number * PLACES
         if uid not in parent or status not in _STATUSES:
             if isinstance(uid, Mark):
                 if idle is not None:

@@ -12,7 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.clause import JudgedClause, verdict_of
-from btq_lang.evidence.model import GAP, RUNNING, Activation, Moment, NamedLog, Session, Transition
+from btq_lang.evidence.model import GAP, PLACES, RUNNING, Activation, Moment, NamedLog, Session, Transition
 from btq_lang.evidence.sentences import result
 from btq_lang.evidence.tally import Run
 from btq_lang.evidence.verbs import Judgement
@@ -106,7 +106,7 @@ class Watched:
         last, latest = session.tree.last, 0
         self._open.clear()
         for number, row in enumerate(session.transitions, 1):
-            self._rows = 2 * number  # as of an activation
+            self._rows = number * PLACES
             time, uid, status = row
             if uid is GAP or (uid in last and time < latest):  # who is active is unknown, or since when
                 self._open.clear()

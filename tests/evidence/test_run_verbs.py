@@ -115,7 +115,7 @@ def test_tries(demand: str, runs: str, expected: str, verify: Verify) -> None:
         ("Move runs every 90 ms", BACK, "unknown 0/0 ?1"),
         ("Move runs every 30 ms\nwhile node Pick", TWICE, "never exercised 0/0"),
         ("Move runs every 15 ms\nwhile node Alarm", "0 1R 5R 3S 10 3I 3S 20 3I 3S 30 5S 40 1S", "satisfied 0/3"),
-        ("Move runs every 15 ms\nwhile node Alarm", "0 1R 3S 5R 10 3S 30 5S 40 3S 1S", "violated 1/1"),
+        ("Move runs every 15 ms\nwhile node Alarm", "0 1R 3S 5R 10 3I 3S 30 5S 40 3S 1S", "violated 1/1"),
         ("Move runs every 15 ms\nwhile low", "0 1R 3S 10 3I 3S 30 3I 3S 50 1S", "violated 1/2"),  # low from 5 to 45
         ("Move runs every 20 ms\nwhile low", "0 1R 3S 10 3I 3S 30 3I 3S 50 1S", "satisfied 0/2"),
         ("Grip runs every 10 ms", "0 1R 8S 12S 10 8I 8S 20 1S", "violated 1/3"),
@@ -310,7 +310,7 @@ def test_sums(demand: str, runs: str, expected: str, verify: Verify) -> None:
             "0 1R 5R 3R 10 3S 20 3R 25 5S 30 3S 1S",
             "never exercised 0/0",
         ),
-        ("Move never node Alarm", "0 1R 5R 10 5S 3I 3R 20 3S 1S", "satisfied 0/1"),
+        ("Move never node Alarm", "0 1R 5R 10 5S 11 3I 3R 20 3S 1S", "satisfied 0/1"),
         ("Move never node Alarm", "0 1R 5R 10 3R 5S 20 3S 1S", "violated 1/1"),
         ("Move never node Alarm", "0 1R 3R 10 5S 20 3S 1S", "violated 1/1"),
         ("Move keeps node Alarm", "0 1R 5R 3R 20 3S 5S 1S", "satisfied 0/1"),
