@@ -35,7 +35,7 @@ class Begins:
     """Follows the rows of a session.
 
     Attributes:
-        others: the rows since the last one of the thread that ticks the tree: uid, time, and whether it is a result.
+        others: the rows since the last one of the thread that ticks the tree: uid, when, and whether it is a result.
     """
 
     def __init__(self, tree: LoggedTree) -> None:
@@ -51,7 +51,7 @@ class Begins:
         # Of each Parallel the last child that has written a row in the activation that this row showed.
         self._ticked: Final[dict[int, tuple[Moment, int]]] = {}
         self._before: tuple[Moment, int, bool] | None = None  # its node, and whether it is RUNNING
-        self.others: Final[list[tuple[int, int, bool]]] = []
+        self.others: Final[list[tuple[int, Moment, bool]]] = []
         self._shown: Final[dict[tuple[int, int, bool], Shown | None]] = {}
 
     def follow(self, now: Moment, uid: int, is_running: bool, begun: Mapping[int, Begin]) -> None:
@@ -80,15 +80,15 @@ class Begins:
         after = (before[0][0], before[0][1] + 1) if before is not None else (0, 0)  # just after it
         if before is not None and self._shows(uid, before, now, begun):
             return Begin(after, after, now)
-        time, earliest = now[0], after[0]
+        earliest = after
         for other, at, is_result in self.others:
             if other == uid or (is_result and self._waits_for(uid, other)):
-                earliest = max(earliest, at)
+                earliest = max(earliest, (at[0], at[1] + 1))
         for above in self._tree.above(uid) if self._tree.delays else ():
             waited = begun[above].earliest[0] + self._tree.delays.get(above, 0)
             # Else it did not wait: 4.8.3 and 4.8.4 do not.
-            earliest = max(earliest, waited) if waited <= time + _CLOCKS else earliest
-        return Begin(min((earliest, after[1]), now), now, now)
+            earliest = max(earliest, (waited, after[1])) if waited <= now[0] + _CLOCKS else earliest
+        return Begin(min(earliest, now), now, now)
 
     def _shows(self, uid: int, before: tuple[Moment, int, bool], now: Moment, begun: Mapping[int, Begin]) -> bool:
         key = uid, before[1], before[2]

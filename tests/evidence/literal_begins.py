@@ -92,9 +92,12 @@ class _Begins:
         after: Moment = (self.rows[before][0], before + 0.5)
         if self.is_known(a, before):
             return after, after
-        waited = [self.waited(each, a) for each in self.tree.above(a.uid) if each in self.delays]
-        waited += [self.rows[index][0] for index in range(before + 1, a.first) if self.is_awaited(index, a)]
-        return min((max([after[0], *waited]), after[1]), own), own
+        waited: list[Moment] = [
+            (self.waited(each, a), after[1]) for each in self.tree.above(a.uid) if each in self.delays
+        ]
+        others = [index for index in range(before + 1, a.first) if self.is_awaited(index, a)]
+        waited += [(self.rows[index][0], index + 0.5) for index in others]
+        return min(max([after, *waited]), own), own
 
     def is_awaited(self, index: int, a: Activation) -> bool:
         """Whether an activation began after a row of another thread."""
