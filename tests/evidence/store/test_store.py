@@ -101,6 +101,17 @@ def test_what_is_kept_of_a_log(robot: Path) -> None:
     ]
 
 
+def test_what_is_kept_of_a_duration_that_lies_between_limits(robot: Path) -> None:
+    (robot / "main.btq").write_text(MISSION.replace("Move", "Pick", 1), encoding="utf-8")
+    (robot / "a.btlog").write_bytes(btlog(MAIN_XML, rows("1R 2R 5 2S 10 3R 12 3S 1S")))
+    assert keep(robot, "a.btlog")[0] == 0
+    store = robot / "kept"
+    times = of(store, "activations", "node, earliest_us, start_us, end_us")
+    assert times[1] == ("Pick", START + 5_000, START + 10_000, START + 12_000)
+    assert of(store, "verdicts", "verdict, measured_si, most_si") == [("satisfied", 0.002, 0.007)]
+    assert "held so far in 1 activation; 1 bounded by 7 ms\n" in run_btq("verify", "--store", "kept", cwd=robot)[1]
+
+
 def test_a_run_that_counts_as_one_has_one_judgement_that_counts(robot: Path) -> None:
     odds = MISSION.replace("15 ms", "15 ms\n    in at least 50 % of runs")
     (robot / "main.btq").write_text(odds, encoding="utf-8")
