@@ -54,14 +54,15 @@ QUESTIONS = {  # of the tables of a made-up log
     """,
     "activations": f"""
         SELECT {COMMON}, 1 AS run, 1 AS uid, '' AS path, '' AS node, '' AS kind, true AS leaf, 0::BIGINT AS start_us,
-            0::BIGINT AS end_us, '' AS outcome, '' AS timing
+            0::BIGINT AS end_us, '' AS outcome, '' AS timing, 0::BIGINT AS earliest_us
         LIMIT 0
     """,
     "verdicts": f"""
         SELECT {COMMON}, {CLAUSE}, run::INTEGER AS run, 'Do::' || clause_index AS path,
             1795209740000000 + run * 60000000 + n * 1000000 AS start_us, start_us + (took * 1e6)::BIGINT AS end_us,
             if(took > 1, 'violated', 'satisfied') AS verdict, true AS counted, if(took > 1, end_us, NULL) AS at_us,
-            took AS measured_si, 1.0::DOUBLE AS bound_si, if(took > 1, 'took {{}}', NULL) AS why
+            took AS measured_si, 1.0::DOUBLE AS bound_si, if(took > 1, 'took {{}}', NULL) AS why,
+            NULL::DOUBLE AS most_si
         FROM (
             SELECT 1 + i // {IN_A_LOG // RUNS} AS run, i % {IN_A_LOG // RUNS} AS n, i % {CLAUSES} AS clause_index,
                 (hash(i + getvariable('log') * {IN_A_LOG}) % 1010000)::DOUBLE / 1e6 AS took

@@ -37,7 +37,7 @@ from btq_lang.evidence.verbs import JUDGES, OUT, Judgement, agreed
 from btq_lang.evidence.verbs import duration as lasted
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Link, Measures
 from btq_lang.evidence.wording import duration
-from btq_lang.requirements.model import Aggregate, Mission, Running, Span, Target, Total, Value, parts_in
+from btq_lang.requirements.model import Aggregate, Mission, Running, Span, Target, Total, Value, parts_in, signals_in
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import counted
 
@@ -139,6 +139,8 @@ class JudgedClause:
         self._is_about_mission: Final = any(isinstance(each, Mission) for each in subjects)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [each.target for each in parts_in(parts) if isinstance(each, Running)]
+        measures_time = VERBS[claim.verb].operand not in ("condition", "use")
+        self._reads: Final = None if measures_time else [*signals_in((parts, claim.signal))]
         is_whole = any(scope.word == "while" for scope in requirement.scopes) and claim.verb not in _AT_ANY_TIME
         is_of_all = any(isinstance(each, Aggregate) for each in parts_in(parts))
         self._is_final: Final = claim.verb in _FINAL and not (self._running or is_whole or is_of_all)
@@ -293,7 +295,8 @@ class JudgedClause:
         self._stopped.clear()
         self._tally.end_run(run)
         self._margins.end_run(run.number)
-        self.found.left_out["idle"] += self._judge is not None and self._is_judged and not self._has_started
+        if not self._has_started and self._judge is not None and self._is_judged:
+            self.found.left_out["idle"] += 1
         self._has_started = False
         self._written = None
         self.broken.clear()
@@ -367,7 +370,7 @@ class JudgedClause:
             root: of the run, if the judgement depends on the order of events.
         """
         ways: list[_Way] = [(activation, observed, in_scope(self.requirement.scopes, self.claim.verb, observed))]
-        if self._running or not activation.is_begin_known:
+        if self._running or self._depends_on_begin(activation):
             early = activation.from_earliest()
             earlier = observed.earlier(early.started)
             ways.append((early, earlier, in_scope(self.requirement.scopes, self.claim.verb, earlier)))
@@ -382,10 +385,19 @@ class JudgedClause:
         if self._extremes:
             self._measure([[_clocked(self._judged_by(each, ways), root)] for each in self._extremes], activation)
 
+    def _depends_on_begin(self, activation: Activation) -> bool:
+        """Whether its judgement may differ between the earliest and the latest begin of an activation."""
+        if activation.is_begin_known or self._reads is None:
+            return not activation.is_begin_known
+        between = activation.earliest, activation.begin
+        return any(self._signals.changes(signal, *between) for signal in self._reads)
+
     def _judged_by(self, claim: Claim, ways: Sequence[_Way]) -> Judgement | None:
         """The judgement of an activation by a claim; None: it does not count."""
-        judgements = [self._judged_as(claim, *way) for way in ways]
-        return judgements[0] if len(ways) == 1 else agreed(judgements[0], judgements[1], ways[0][0])
+        if len(ways) == 1:
+            return self._judged_as(claim, *ways[0])
+        late, early = (self._judged_as(claim, *way) for way in ways)
+        return agreed(late, early, activation=ways[0][0])
 
     def _judged_as(
         self, claim: Claim, activation: Activation, observed: Observed, counts: bool | Unknown

@@ -14,11 +14,11 @@ from btq_lang.catalog.nav2.nodes import NODES
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.units import Unit
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.evidence.explain_run import RunExplainer, ago, part
+from btq_lang.evidence.explain_run import RunExplainer, ago, part, ran
 from btq_lang.evidence.model import Activation, LoggedTree, Outcome
 from btq_lang.evidence.signals import Signals, Unknown
 from btq_lang.evidence.verdicts import Link
-from btq_lang.evidence.wording import duration, quantity
+from btq_lang.evidence.wording import quantity, took
 from btq_lang.requirements.model import Claim, Condition, Signal, signals_in
 from btq_lang.util.record import Record
 
@@ -109,8 +109,7 @@ class Explainer:
                     return (self._levels(claim.signal, judgement.measure.unit, activation), *parts)
                 if parts or not VERBS[claim.verb].limits:
                     return parts
-                text = f"it ran {duration(activation.seconds)}"
-                return (Link("self", path, text, activation.seconds, 1, int(activation.outcome == "F")),)
+                return (Link("self", path, ran(activation), activation.seconds, 1, int(activation.outcome == "F")),)
         return ()
 
     def _parts(self, activation: Activation, sums: Sums) -> Iterator[Link]:
@@ -126,7 +125,7 @@ class Explainer:
         nodes = self._tree.nodes
         path = nodes[origin.uid].path
         if origin.uid == activation.uid:
-            text = f"it ran {duration(activation.seconds)}"
+            text = ran(activation)
             if origin.outcome is not None:
                 text = f"its last child {self._came_to(origin, origin.outcome)}"
             return Link("origin", path, text, activation.seconds, 1, 1)
@@ -150,7 +149,8 @@ class Explainer:
         """The level of a signal at the start and at the end of an activation that used some of it."""
         levels = [self._signals.reading(signal, time) for time in (activation.begin, activation.end)]
         first, last = [quantity(float(each), unit) for each in levels if not isinstance(each, Unknown)]
-        text = f"`{signal.name}` went from {first} to {last} in {duration(activation.seconds)}"
+        time = took(activation)
+        text = f"`{signal.name}` went from {first} to {last} {f'in {time}' if time else 'at once'}"
         return Link("sample", self._tree.nodes[activation.uid].path, text, activation.seconds, 1, 0)
 
     def _sample(self, condition: Condition, time: int, judged: str) -> Iterator[Link]:

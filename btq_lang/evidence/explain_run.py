@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.over_run import OverRun, target_of
 from btq_lang.evidence.verdicts import Link
-from btq_lang.evidence.wording import duration
+from btq_lang.evidence.wording import duration, took
 from btq_lang.requirements.model import Claim, Condition, Event, Span, Total
 from btq_lang.util.grouping import grouped
 from btq_lang.util.text import counted
@@ -76,7 +76,7 @@ class RunExplainer:
         """What ran below a node that did not end; for a leaf, how long it ran."""
         late = next(each for each in own if each.begin <= begin <= each.end >= end)
         if late.uid in self._tree.leaves:
-            yield Link("self", self._path(late), f"it ran {duration(late.seconds)}", late.seconds, 1, _failed([late]))
+            yield Link("self", self._path(late), ran(late), late.seconds, 1, _failed([late]))
         else:
             yield from self._meanwhile(begin, end, range(late.uid + 1, self._tree.last[late.uid] + 1))
 
@@ -130,6 +130,12 @@ def part(path: str, time: int, number: int, failed: int) -> Link:
     elif failed:
         text += ", and failed"
     return Link("part", path, text, time / 1e6, number, failed)
+
+
+def ran(activation: Activation) -> str:
+    """How long a node ran."""
+    time = took(activation)
+    return f"it ran {time}" if time else "it ended at once"
 
 
 def _ends(path: str, starts: Sequence[Activation]) -> Link:

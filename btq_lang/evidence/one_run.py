@@ -11,7 +11,7 @@ from btq_lang.evidence.outline import outline
 from btq_lang.evidence.readers import read
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.verdicts import OUTCOMES
-from btq_lang.evidence.wording import timestamp
+from btq_lang.evidence.wording import timestamp, took
 from btq_lang.util.record import Record
 
 
@@ -23,14 +23,14 @@ class Step(Record):
         node: its number among the mission's written nodes, in the order of their text.
         path: of the node in the engine.
         state: `running`, or the outcome of the activation that ended.
-        seconds: how long that took; None while it runs.
+        took: how long that was, in words; empty while it runs, and if the log shows no time.
     """
 
     at: float
     node: int
     path: str
     state: str
-    seconds: float | None
+    took: str
 
 
 class OneRun(Record):
@@ -88,7 +88,7 @@ def _steps(found: Sequence[Activation], start: int, written: dict[int, int], pat
             written[each.uid],
             paths[each.uid],
             OUTCOMES[each.outcome] if is_end else "running",
-            each.seconds if is_end else None,
+            took(each) if is_end else "",
         )
         for at, _, is_end, each in events
     )

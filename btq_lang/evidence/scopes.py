@@ -32,6 +32,8 @@ def within(claim: Claim, scopes: Sequence[Scope]) -> Claim:
 
 def in_scope(scopes: Sequence[Scope], verb: str, observed: Observed) -> bool | Unknown:
     """Whether an observed activation, or time between two events, is in scope."""
+    if not scopes:
+        return True
     observed = observed.in_scope
     result: bool | Unknown = True
     for scope in scopes:

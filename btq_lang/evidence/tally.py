@@ -101,9 +101,12 @@ class Tally:
             self._worst_now = measure
 
     def _bound(self, most: Measure) -> None:
-        before = self.bounded or Bounded(0, most.si, "")
-        si = max(before.si, most.si)
-        self.bounded = Bounded(before.number + 1, si, measured(si, most.unit, most.bound.si))
+        before = self.bounded
+        if before is not None and before.si >= most.si:
+            self.bounded = Bounded(before.number + 1, before.si, before.text)
+        else:
+            number = before.number + 1 if before is not None else 1
+            self.bounded = Bounded(number, most.si, measured(most.si, most.unit, most.bound.si))
 
     def end_run(self, run: Run) -> None:
         """Close the open run."""

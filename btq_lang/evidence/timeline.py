@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.verdicts import Bar, Timeline
+from btq_lang.evidence.wording import took
 
 if TYPE_CHECKING:
     from btq_lang.evidence.clause import ClauseFindings
@@ -52,6 +53,7 @@ class OpenRun:
                     (each.begin - run.begin) / 1e6,
                     (each.end - run.begin) / 1e6,
                     each.outcome,
+                    took(each),
                 )
                 for each in bars
             ),

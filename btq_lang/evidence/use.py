@@ -1,7 +1,7 @@
 """How much of a resource was used between two moments, from the values of a level or a counter in between.
 
-One invariant: refilling is no use, and neither is noise: what a level gains, and a restart of a counter, are told from
-jitter by their size.
+One invariant: neither refilling nor noise counts as use: their size tells what a level gains, and a restart of a
+counter, from jitter.
 """
 
 from __future__ import annotations

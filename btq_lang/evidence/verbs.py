@@ -29,7 +29,7 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
         sentence: what was observed, where `{}` is the measure, unless it holds; if `holds` is None, the reason.
         since: for a clause judged over a run, when the judged time began.
         starts: for such a clause, the activations that it counts or adds up.
-        note: what is unusual about it; each is told once for a log.
+        note: what is unusual about it; a log has each once.
         most: if it is known only between which limits what is measured lies, the upper one; `measure` is the lower one.
     """
 

@@ -119,7 +119,8 @@ class Bar(Record):
 
     Attributes:
         depth: of its node in the tree.
-        begin, end: in seconds since the run's start.
+        begin, end: in seconds since the run's start; `begin`: at the latest.
+        took: how long that was, in words; empty if the log shows no time.
     """
 
     path: str
@@ -127,6 +128,7 @@ class Bar(Record):
     begin: float
     end: float
     outcome: Outcome
+    took: str
 
 
 class Timeline(Record):

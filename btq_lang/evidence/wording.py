@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from datetime import datetime, timedelta, timezone
+from typing import TYPE_CHECKING
 
 from btq_lang.catalog.units import Unit, from_si, parse_unit
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.model import Activation
 
 
 def quantity(si: float, unit: Unit | None, bound: float | None = None) -> str:
@@ -31,6 +35,17 @@ def measured(si: float, unit: Unit | None, bound: float) -> str:
 def duration(seconds: float) -> str:
     """A duration in ms, s, min or h, whichever is easiest to read."""
     return quantity(seconds, _readable(seconds))
+
+
+def took(activation: Activation) -> str:
+    """How long an activation lasted, as far as the log says; empty if it shows no time."""
+    least = duration(activation.seconds) if activation.end > activation.begin else ""
+    if activation.is_duration_known:
+        return least
+    if not activation.earliest:
+        return f"at least {least}" if least else "an unknown time"
+    most = duration((activation.end - activation.earliest) / 1e6)
+    return f"{least} to {most}" if least else f"at most {most}"
 
 
 def first_of(texts: Sequence[str]) -> str:

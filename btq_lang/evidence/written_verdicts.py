@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from btq_lang.evidence.json_document import FORMAT, VERSION
 from btq_lang.evidence.margins import Margins
-from btq_lang.evidence.verdicts import ClauseVerdict, Link, Measures, RequirementVerdict, Violation, Worst
+from btq_lang.evidence.verdicts import Bounded, ClauseVerdict, Link, Measures, RequirementVerdict, Violation, Worst
 from btq_lang.evidence.wording import time_of
 from btq_lang.util.record import Record
 
@@ -88,6 +88,7 @@ def _clause(found: dict[str, Any]) -> ClauseVerdict:
     fields |= {
         "of": "",
         "worst": Worst(**found["worst"]) if found["worst"] is not None else None,
+        "bounded": Bounded(**found["bounded"]) if found.get("bounded") is not None else None,
         "interval": (interval[0], interval[1]) if interval is not None else None,
         "limits": found["limits"] or "one look",
         "violations": tuple(map(_violation, found["violations"])),

@@ -84,7 +84,7 @@ def run_on_picture(workspace: Workspace, path: str, run: LoggedRun, found: Mappi
         {
             "key": keys.get(step["node"]),
             "state": step["state"],
-            "time": duration(step["seconds"]) if step["seconds"] is not None else "",
+            "time": step["took"],
             "said": f"{duration(step['at'])}: {step['path']} {_said(step)}",
         }
         for step in found["steps"]
@@ -94,9 +94,9 @@ def run_on_picture(workspace: Workspace, path: str, run: LoggedRun, found: Mappi
 
 
 def _said(step: Mapping[str, Any]) -> str:
-    if step["seconds"] is None:
+    if step["state"] == "running":
         return "starts"
-    return f"{step['state']}, {duration(step['seconds'])}" if step["seconds"] else str(step["state"])
+    return f"{step['state']}, {step['took']}" if step["took"] else str(step["state"])
 
 
 def _mission(workspace: Workspace, path: str, evidence: Evidence) -> str | None:

@@ -162,7 +162,8 @@ def _timeline(timeline: Timeline) -> Iterator[str]:
         yield f'<tr><th scope="row" style="padding-left: {inset:g}rem">{escape(path)}</th><td>'
         for bar in bars:
             at = f"left: {bar.begin / length:.3%}; width: {(bar.end - bar.begin) / length:.3%}"
-            title = f"{OUTCOMES[bar.outcome]}, {duration(bar.end - bar.begin)} from {duration(bar.begin)} on"
+            after = f" after {bar.took}," if bar.took else ""
+            title = f"{OUTCOMES[bar.outcome]}{after} {duration(bar.end)} after the start of the run"
             yield f'<span class="bar {bar.outcome}" style="{at}" title="{title}"></span>'
         yield "</td></tr>"
     yield '</tbody><tfoot><tr><td></td><td class="ends">'

@@ -75,7 +75,8 @@ def write_second_day() -> None:
     workspace = open_workspace("laboratory.btq")
     candidate = Candidate(workspace, next(iter(workspace.files)), "laboratory", None)
     build = next(candidate.builds())
-    guards = {uid for uid, (each, _) in enumerate(build.running.all, 1) if each.element.get(MARK) is not None}
+    marks = ((uid, each.element.get(MARK)) for uid, (each, _) in enumerate(build.running.all, 1))
+    guards = {uid: requirement for uid, requirement in marks if requirement is not None}
     guarded = Guarded(build.tree(), guards, Even()).of([(when(time), uid, status) for time, uid, status in rows])
     tree = as_logged(Path("laboratory.xml").read_text(encoding="utf-8"))
     Path("second.btlog").write_bytes(btlog(tree, guarded, start + DAY))

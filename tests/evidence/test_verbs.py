@@ -305,6 +305,11 @@ def test_what_a_signal_has_initially_says_what_a_requirement_is_about(
     assert count(verify.clause(demand, LONG, samples("battery", {500: 50}), before=first)) == later
 
 
+def test_a_node_begins_after_its_elder_sibling_has_ended(verify: Verify) -> None:
+    """Also where they have one time, and the row between may be of another thread."""
+    assert count(verify.clause("Pick takes at most 1 s\nwhen node Move", LONG)) == "never exercised 0/0"
+
+
 @pytest.mark.parametrize(
     ("signal", "given", "demand", "expected"),
     [

@@ -31,6 +31,12 @@ LINES: list[tuple[str, str, str, str]] = [  # verb, demand, runs, line
         "Move::3: failed; it ran 10 ms",
     ),
     (
+        "succeeds",
+        "Pick succeeds",
+        "1R 2R 3R 20 3S 25 4F 2F 1F",
+        "Pick::4: failed; it ran at most 5 ms",
+    ),
+    (
         "needs",
         "Move needs battery >= 60 %",
         TWICE,

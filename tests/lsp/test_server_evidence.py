@@ -17,8 +17,7 @@ QualityReq quick : performance-efficiency "In time"
     Move takes at most 30 ms
 QualityReq seldom : reliability
     Pick succeeds within 1 s
-    when never_so
-signal never_so : bool from {never_so} initially false
+    when node Move
 """
 TEXT = MISSION + MAIN
 RUNS = "0 1R 2R 20 2S 3R 60 3S 1S 1I 100 1R 2R 140 2S 3R 150 3S 1S"

@@ -1,4 +1,4 @@
-"""What is wrong with the files of a store: those that are missing, damaged or of another table."""
+"""What is wrong with the files of a store: those that are missing, damaged, of another table or of earlier verdicts."""
 
 from __future__ import annotations
 
@@ -21,10 +21,12 @@ def incomplete(connection: Any, store: str) -> str | None:
     found = _files(connection, store)
     if not found:
         return f"{store}: no verdicts are kept there; keep some with btq verify LOG --store {store}"
-    for folder in sorted({file.rpartition("/")[0] for file in found}):
+    folders = sorted({file.rpartition("/")[0] for file in found})
+    for folder in folders:
         for table in ROWS:
             if (file := f"{folder}/{table}.parquet") not in found:
                 return f"{file}: missing; {_AGAIN}"
+    lacking: dict[str, set[tuple[str, str]]] = {}
     for table in ROWS:
         wanted = {f"{name} {_STORED[kind]}": (name, kind) for name, kind in _columns(table).items()}
         question = (
@@ -32,11 +34,23 @@ def incomplete(connection: Any, store: str) -> str | None:
         )
         try:
             for file, columns in connection.execute(question).fetchall():
-                if lacking := wanted.keys() - columns:
-                    return _lacking(file, *min(wanted[each] for each in lacking))
+                if names := wanted.keys() - columns:
+                    lacking[file.replace("\\", "/")] = {wanted[each] for each in names}
         except duckdb.Error:
             return damage(connection, store)
+    for folder in folders:
+        if all(lacking.get(f"{folder}/{table}.parquet") == columns for table, columns in LATER.items()):
+            (log,) = connection.execute(f"SELECT max(source) FROM {quoted(f'{folder}/runs.parquet')}").fetchone()
+            return f"{folder}: {judged_earlier(log, store)}"
+    for file, columns in lacking.items():
+        return _lacking(file, *min(columns))
     return None
+
+
+def judged_earlier(logs: str, store: str) -> str:
+    """That some logs have verdicts of an earlier version of btq, and what to do."""
+    again = f"read such logs again with btq verify LOG --store {store}, or remove their folders"
+    return f"an earlier version of btq, with other rules, has judged {logs}; {again}"
 
 
 def damage(connection: Any, store: str) -> str | None:
@@ -75,6 +89,8 @@ def _columns(table: str) -> dict[str, str]:
     }
 
 
+# What the sets of earlier versions lack, which took durations for known and read `initially` as a measure.
+LATER: Final = {"activations": {("earliest_us", "BIGINT")}, "verdicts": {("most_si", "DOUBLE")}}
 # A column as Parquet has it: its name, that it repeats, its type, and what that is converted to.  Integers of the
 # width of their type may say so or not.
 _COLUMN: Final = """concat_ws(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from btq_lang.evidence.store.damage import LATER, judged_earlier
 from btq_lang.evidence.store.engine import NoEngine
 from btq_lang.evidence.store.queries import REPEATED
 from btq_lang.evidence.store.tables import ROWS, files_of
@@ -34,6 +35,9 @@ def asked_by(url: str, store: str) -> Callable[[str], list[dict[str, Any]]]:
     try:
         connection = ibis.connect(url)
         tables = {table: connection.read_parquet(files_of(store, table), table_name=table) for table in ROWS}
+        for table, columns in LATER.items():
+            if not {name for name, _ in columns} <= {*tables[table].columns}:
+                raise NoEngine(f"{store}: {judged_earlier('logs in it', store)}")
         left_out = ibis.memtable(ask(REPEATED), schema={"log": "string", "run": "int32"})
         kept = {name: each.anti_join(left_out, ["log", "run"]) for name, each in tables.items() if name != "clauses"}
         kept["clauses"] = tables["clauses"].semi_join(kept["runs"], ["log", "mission", "robot"])

@@ -86,12 +86,11 @@ def keep(
         middle, end = begin + round(move * 1e6), begin + round((move + dock) * 1e6)
         outcome = "succeeded" if succeeded else "failed"
         tables["runs"].append((*of, number, begin, end, outcome, 2, 0, 0, None, "", 3, 3))
-        tables["activations"].append(
-            (*of, number, 2, "Move::2", "Move", "Move", True, begin, middle, "succeeded", "exact")
-        )
-        tables["activations"].append((*of, number, 3, "Dock::3", "Dock", "Dock", True, middle, end, outcome, "exact"))
+        of_move = (2, "Move::2", "Move", "Move", True, begin, middle, "succeeded", "exact", begin)
+        of_dock = (3, "Dock::3", "Dock", "Dock", True, middle, end, outcome, "exact", middle)
+        tables["activations"] += [(*of, number, *of_move), (*of, number, *of_dock)]
         verdict, at = ("violated", middle) if move > bound else ("satisfied", None)
-        tables["verdicts"].append((0, number, "Move::2", begin, middle, verdict, True, at, move, bound, None))
+        tables["verdicts"].append((0, number, "Move::2", begin, middle, verdict, True, at, move, bound, None, None))
     for name, found in tables.items():
         with open(file_of(str(folder), name), "w", encoding="utf-8", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows(found)

@@ -228,7 +228,10 @@ def test_databases_that_differ_in_their_logs_alone_are_no_copies(judge: Verify) 
     shutil.copy(judge.folder / "a.db3", judge.folder / "c.db3")
     shutil.copy(judge.folder / "a.db3-wal", judge.folder / "c.db3-wal")
     found = judge.json("a.db3", "b.db3", "c.db3")
-    assert found["remarks"] == ["c.db3 is the same log as a.db3, so it is not counted"]
+    assert found["remarks"] == [
+        "c.db3 is the same log as a.db3, so it is not counted",
+        "b.db3: 2 of its 2 runs are in a.db3 too, and not counted again",
+    ]
 
 
 @pytest.mark.parametrize("path", ["bag", "bag/bag.db3"])

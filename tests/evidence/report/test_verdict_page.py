@@ -94,9 +94,9 @@ def test_the_run_that_was_worst_is_drawn(page: str) -> None:
     tags = Tags(page)
     assert [each["id"] for each in tags.of("figure", "run")] == ["run-1"]
     assert [(each["class"], each["style"], each["title"]) for each in tags.of("span", "bar")] == [
-        ("bar F", "left: 0.000%; width: 100.000%", "failed, 40 ms from 0 ms on"),
-        ("bar S", "left: 0.000%; width: 75.000%", "succeeded, 30 ms from 0 ms on"),
-        ("bar F", "left: 75.000%; width: 25.000%", "failed, 10 ms from 30 ms on"),
+        ("bar F", "left: 0.000%; width: 100.000%", "failed after 40 ms, 40 ms after the start of the run"),
+        ("bar S", "left: 0.000%; width: 75.000%", "succeeded after 30 ms, 30 ms after the start of the run"),
+        ("bar F", "left: 75.000%; width: 25.000%", "failed after 10 ms, 40 ms after the start of the run"),
     ]
 
 

@@ -19,6 +19,7 @@ from evidence_logs import MAIN, MAIN_XML, START, btlog, rows
 from in_process import run_btq
 
 from btq_lang.evidence.store import engine, sets
+from btq_lang.evidence.store.sets import VERSION
 
 ROOT = Path(__file__).parents[3]
 TABLES = ["activations", "clauses", "runs", "verdicts"]
@@ -69,10 +70,11 @@ def test_what_is_kept_of_a_log(robot: Path) -> None:
         (*whose, 1, START, START + 25_000, "succeeded", 3, 0, 0, None, 3, 3),
         (*whose, 2, START + 40_000, START + 55_000, "failed", 3, 0, 0, "Pick", 3, 3),
     ]
+    times = [(START + begin, START + end) for begin, end in ((40_000, 50_000), (50_000, 55_000), (40_000, 55_000))]
     assert of(store, "activations", "*")[3:] == [
-        (*whose, 2, 2, "Move::2", "Move", "Move", True, START + 40_000, START + 50_000, "succeeded", "exact"),
-        (*whose, 2, 3, "Pick::3", "Pick", "Pick", True, START + 50_000, START + 55_000, "failed", "exact"),
-        (*whose, 2, 1, "Sequence::1", "Sequence", "Sequence", False, START + 40_000, START + 55_000, "failed", "exact"),
+        (*whose, 2, 2, "Move::2", "Move", "Move", True, *times[0], "succeeded", "exact", times[0][0]),
+        (*whose, 2, 3, "Pick::3", "Pick", "Pick", True, *times[1], "failed", "exact", times[1][0]),
+        (*whose, 2, 1, "Sequence::1", "Sequence", "Sequence", False, *times[2], "failed", "exact", times[2][0]),
     ]
     clause = ("quick", "Move takes at most 15 ms", "Move")
     assert of(store, "verdicts", "*") == [
@@ -89,13 +91,25 @@ def test_what_is_kept_of_a_log(robot: Path) -> None:
             0.02,
             0.015,
             "took {}",
+            None,
         ),
-        (*whose, *clause, 2, "Move::2", START + 40_000, START + 50_000, "satisfied", True, None, 0.01, 0.015, None),
+        (*whose, *clause, 2, "Move::2", *times[0], "satisfied", True, None, 0.01, 0.015, None, None),
     ]
     none = (None,) * 7
     assert of(store, "clauses", "* EXCLUDE (title, measures)") == [
         (*whose, 0, *clause, "activations", "ms", *none, True, 0, None),
     ]
+
+
+def test_what_is_kept_of_a_duration_that_lies_between_limits(robot: Path) -> None:
+    (robot / "main.btq").write_text(MISSION.replace("Move", "Pick", 1), encoding="utf-8")
+    (robot / "a.btlog").write_bytes(btlog(MAIN_XML, rows("1R 2R 5 2S 10 3R 12 3S 1S")))
+    assert keep(robot, "a.btlog")[0] == 0
+    store = robot / "kept"
+    times = of(store, "activations", "node, earliest_us, start_us, end_us")
+    assert times[1] == ("Pick", START + 5_000, START + 10_000, START + 12_000)
+    assert of(store, "verdicts", "verdict, measured_si, most_si") == [("satisfied", 0.002, 0.007)]
+    assert "held so far in 1 activation; 1 bounded by 7 ms\n" in run_btq("verify", "--store", "kept", cwd=robot)[1]
 
 
 def test_a_run_that_counts_as_one_has_one_judgement_that_counts(robot: Path) -> None:
@@ -302,7 +316,7 @@ def test_a_set_of_a_newer_version_is_read_and_not_replaced(robot: Path) -> None:
         duckdb.connect().execute(f"COPY ({new}) TO '{folder}/new.parquet'")
         (folder / "new.parquet").rename(folder / f"{table}.parquet")
     about = (folder / "about.json").read_text(encoding="utf-8")
-    (folder / "about.json").write_text(about.replace('"version": 1', '"version": 2'), encoding="utf-8")
+    (folder / "about.json").write_text(about.replace(f'"version": {VERSION}', '"version": 9'), encoding="utf-8")
     assert run_btq("verify", "--store", "kept", cwd=robot) == expected
     before = files(robot / "kept")
     code, _, errors = keep(robot, "v1", "v2")

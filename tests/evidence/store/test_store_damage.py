@@ -102,3 +102,30 @@ def test_a_column_of_another_type(column: str, other: str, type_: str, store: Pa
     message = f"btq verify: {path.relative_to(store.parent)}: no column {column} of the type {type_}; "
     message += "remove its folder and read its log again\n"
     assert run_btq("verify", "--store", "kept", cwd=store.parent) == (2, "", message)
+
+
+def judged_earlier(folder: Path) -> None:
+    """Make a set that btq has written before durations were intervals."""
+    for table, column in (("activations", "earliest_us"), ("verdicts", "most_si")):
+        path = folder / f"{table}.parquet"
+        duckdb.sql(f"COPY (SELECT * EXCLUDE ({column}) FROM '{path}') TO '{path}.new' (FORMAT parquet)")
+        Path(f"{path}.new").replace(path)
+    about = folder / "about.json"
+    about.write_text(about.read_text(encoding="utf-8").replace('"version": 2', '"version": 1'), encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "command", [("verify", "--store", "kept"), ("compare", "kept", "a", "b"), ("report", "kept", "-o", "x.html")]
+)
+def test_sets_of_an_earlier_version_are_to_be_judged_again(command: tuple[str, ...], store: Path) -> None:
+    """Its verdicts may say `satisfied` where nothing was measured."""
+    folder = store.parent
+    log = duckdb.sql(f"SELECT DISTINCT log FROM '{store}/*/runs.parquet' WHERE source = '1.btlog'").fetchall()
+    old = store / log[0][0]
+    judged_earlier(old)
+    said = "an earlier version of btq, with other rules, has judged 1.btlog"
+    again = "read such logs again with btq verify LOG --store kept, or remove their folders"
+    message = f"btq {command[0]}: {old.relative_to(folder)}: {said}; {again}\n"
+    assert run_btq(*command, cwd=folder) == (2, "", message)
+    assert run_btq("verify", "1.btlog", "--mission", "main.btq", "--store", "kept", cwd=folder)[::2] == (1, "")
+    assert "earlier version" not in run_btq(*command, cwd=folder)[2]

