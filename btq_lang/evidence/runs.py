@@ -122,7 +122,7 @@ def activations(session: Session) -> Iterator[Activation]:
         if is_of_tick:
             begins.follow(now, uid, status == RUNNING, begun)
         else:
-            by_others.append((uid, now, completes))
+            by_others.append((uid, time, completes))
     if not is_reset_written:
         session.keeping.clear()
     if idle is not None:

@@ -25,6 +25,7 @@ from btq_lang.evidence.odds import lower_limit, upper_limit
 from btq_lang.evidence.verdicts import ClauseVerdict
 from btq_lang.requirements.model import Applied, Claim, Requirement, Span, Target, Total
 
+NOT_JUDGED = ("the clause applies to no node", "it has a mistake; run btq check")
 WORST_FIRST = ("violated", "unknown", "undecided", "satisfied", "never exercised")
 
 
@@ -57,7 +58,7 @@ class Hunt:
                 continue
             held = [each for each in found.applied if each.requirement.name == requirement.id]
             clauses = [(each, claim) for each in held for claim in each.requirement.claims]
-            streamed = [each for each in requirement.clauses if each.why != "the clause applies to no node"]
+            streamed = [each for each in requirement.clauses if each.why not in NOT_JUDGED]
             assert len(clauses) == len(streamed), f"seed {seed}: {requirement}"
             verdicts = ["unknown"] if len(streamed) < len(requirement.clauses) else []
             for (applied, claim), verdict in zip(clauses, streamed, strict=True):
