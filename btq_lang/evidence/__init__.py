@@ -14,6 +14,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     over_run.py    what a clause judged over a run reads: what its nodes did, and when events happened
     scopes.py      which activations count
     outline.py   the clauses of a mission and where they are, so that a later text is known again
+    clause_findings.py   what was found of a clause, counted, and its verdict
     clause.py, evaluate.py   a clause, and all clauses of a mission, judged while a log is read
     edges.py, margins.py, rejudging.py   the counts for every bound, and a clause judged again with an edited one
     tally.py, recent.py, odds.py   judgements counted, over all runs or the last ones, and confidence limits

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence import margins
+from btq_lang.evidence.clause_findings import ClauseFindings, verdict_of
 from btq_lang.evidence.conditions import Measure
 from btq_lang.evidence.edges import WHILE_IT_RUNS, edge_of, key_of
 from btq_lang.evidence.history import History, Nearby, near
-from btq_lang.evidence.margins import Margins
 from btq_lang.evidence.model import (
     BEGUN_BEFORE,
     CLOCK_SET_BACK,
@@ -28,14 +28,13 @@ from btq_lang.evidence.model import (
 )
 from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.over_run import OverRun, target_of
-from btq_lang.evidence.recent import Recent
 from btq_lang.evidence.run_verbs import run_judge
 from btq_lang.evidence.scopes import in_scope, within
 from btq_lang.evidence.signals import Signals, Unknown
-from btq_lang.evidence.tally import Run, Tally
+from btq_lang.evidence.tally import Run
 from btq_lang.evidence.verbs import JUDGES, OUT, Judgement, agreed
 from btq_lang.evidence.verbs import duration as lasted
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Link, Measures
+from btq_lang.evidence.verdicts import NEVER, VIOLATED, ClauseVerdict, Link, Measures
 from btq_lang.evidence.wording import duration
 from btq_lang.requirements.model import Aggregate, Mission, Running, Span, Target, Total, Value, parts_in, signals_in
 from btq_lang.util.record import Record, replace
@@ -48,8 +47,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.model import Outcome
     from btq_lang.evidence.odds import Limits
     from btq_lang.evidence.outline import Demand
-    from btq_lang.evidence.verdicts import Timeline, Verdict
-    from btq_lang.requirements.model import Claim, Event, Requirement, Subject
+    from btq_lang.requirements.model import Claim, Event, Subject
 
 
 class _Place(Record):
@@ -66,43 +64,6 @@ class _Place(Record):
 
 # An activation as it may have been, what was observed during it then, and whether it was in scope.
 _Way: TypeAlias = "tuple[Activation, Observed, bool | Unknown]"
-
-
-class ClauseFindings:
-    """What was found of a clause in some logs; it refers to no text, so it may go to another process.
-
-    Attributes:
-        paths: of its nodes, as an ordered set.
-        missing: why it cannot be judged at all its nodes; empty if it can.
-        has_run: whether one of its nodes has.
-        missed: how many events happened while its node was not active.
-        timeline: the run with the worst violation; None if none is kept.
-        left_out: as `failed`, `halted` and `idle` of `ClauseVerdict`.
-    """
-
-    def __init__(self, requirement: Requirement, limits: Limits) -> None:
-        odds, confidence, window = requirement.odds, requirement.confidence, requirement.window
-        self.tally: Final = Tally(odds, confidence, limits) if window is None else Recent(window, odds, confidence)
-        self.margins: Final = Margins(odds is not None and odds.experiments == "runs")
-        self.paths: Final[dict[str, None]] = {}
-        self.missing = ""
-        self.has_run = False
-        self.missed = 0
-        self.timeline: Timeline | None = None
-        self.left_out: Final[Counter[str]] = Counter()
-
-    def add(self, other: ClauseFindings, runs: int) -> None:
-        """Add what was found in later logs; `runs`: how many runs were before them."""
-        theirs: Any = other.tally  # one clause has tallies of one class
-        if other.timeline is not None and theirs.is_worse_than(self.tally, other.timeline.run):
-            self.timeline = replace(other.timeline, run=other.timeline.run + runs)
-        self.tally.add_all(theirs, runs)
-        self.margins.add_all(other.margins, runs)
-        self.paths.update(other.paths)
-        self.missing = self.missing or other.missing
-        self.has_run = self.has_run or other.has_run
-        self.missed += other.missed
-        self.left_out.update(other.left_out)
 
 
 class JudgedClause:
@@ -571,22 +532,6 @@ def _kind(judgement: Judgement | None, of: Activation) -> int:
     if judgement is None:
         return margins.CUT_OFF if of.outcome == "O" else margins.NOTHING
     return margins.UNKNOWN if judgement.holds is None else margins.KEPT if judgement.holds else margins.VIOLATED
-
-
-def verdict_of(tally: Tally, missing: str, has_run: bool) -> tuple[Verdict, str]:
-    """The verdict on a clause, and why it is unknown, undecided or never exercised; else empty.
-
-    Args:
-        missing, has_run: as of `ClauseFindings`.
-    """
-    verdict = tally.verdict()
-    if missing and verdict != VIOLATED:
-        return UNKNOWN, missing
-    if verdict == NEVER or (verdict == SATISFIED and not has_run):
-        if tally.cut_off:
-            return NEVER, "the log ends before it does"
-        return NEVER, "nothing that it is about happened in any run" if has_run else "it did not start in any run"
-    return verdict, tally.why if verdict in (UNKNOWN, UNDECIDED) else ""
 
 
 def _events(claim: Claim, subject: Subject | None) -> tuple[Event, ...]:

@@ -10,7 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Final, Protocol
 
-from btq_lang.evidence.clause import ClauseFindings, JudgedClause
+from btq_lang.evidence.clause import JudgedClause
+from btq_lang.evidence.clause_findings import ClauseFindings
 from btq_lang.evidence.contexts import Contexts
 from btq_lang.evidence.coverage import Coverage
 from btq_lang.evidence.explain import Explainer

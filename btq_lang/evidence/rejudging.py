@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.evidence.clause import verdict_of
+from btq_lang.evidence.clause_findings import verdict_of
 from btq_lang.evidence.edges import Edge, edge_of, key_of
 from btq_lang.evidence.margins import Counts
 from btq_lang.evidence.outline import Demand, demands

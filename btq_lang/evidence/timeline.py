@@ -12,7 +12,7 @@ from btq_lang.evidence.verdicts import Bar, Timeline
 from btq_lang.evidence.wording import took
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.clause import ClauseFindings
+    from btq_lang.evidence.clause_findings import ClauseFindings
     from btq_lang.evidence.model import Activation, LoggedTree
     from btq_lang.evidence.tally import Run
 

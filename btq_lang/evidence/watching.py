@@ -11,7 +11,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.clause import JudgedClause, verdict_of
+from btq_lang.evidence.clause import JudgedClause
+from btq_lang.evidence.clause_findings import verdict_of
 from btq_lang.evidence.model import GAP, PLACES, RUNNING, Activation, Moment, NamedLog, Session, Transition
 from btq_lang.evidence.sentences import result
 from btq_lang.evidence.tally import Run

@@ -63,7 +63,7 @@ def _mission(mission: MissionVerdicts, keys: Mapping[str, str]) -> Iterator[str]
     yield f"<p>{counted(mission.runs, 'run')} in {escape(files)}{': ' if outcomes else ''}{outcomes}</p>"
     clauses = [(requirement, clause) for requirement in mission.requirements for clause in requirement.clauses]
     if not clauses:
-        yield "<p>There is no requirement to judge.</p>"
+        yield "<p>No requirement to judge.</p>"
         if mission.nodes:
             yield from _nodes(mission)
         return

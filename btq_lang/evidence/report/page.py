@@ -169,7 +169,7 @@ class _Mission:
         known = [{each.id: each for each in part.verdicts.requirements} for part in self._parts]
         names = dict.fromkeys(name for found in reversed(known) for name in found)
         if not names:
-            yield "<p>There is no requirement to judge.</p>"
+            yield "<p>No requirement to judge.</p>"
             return
         last = known[-1]
         rows = []

@@ -13,7 +13,7 @@ from typing import Final
 
 from btq_lang.catalog.units import Unit, parse_unit
 from btq_lang.diagnostics.model import Place
-from btq_lang.evidence.clause import verdict_of
+from btq_lang.evidence.clause_findings import verdict_of
 from btq_lang.evidence.conditions import Measure
 from btq_lang.evidence.odds import Limits
 from btq_lang.evidence.store.queries import QUERIES, Ask, Row
