@@ -56,11 +56,11 @@ def strict_problem(options: Namespace, missions: Sequence[Candidate]) -> list[st
 
 def _of_logs(logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
     """The trees in logs as missions; for logs without a tree, the XML beside them."""
-    made = OwnTrees()
+    own_trees = OwnTrees()
     treeless: list[str] = []
     for log in logs:
         try:
-            made.add(found := trees(log), log)
+            own_trees.add(found := trees(log), log)
         except (NotALog, OSError):
             continue  # judging it reports that
         treeless += [] if found else [log]
@@ -68,9 +68,9 @@ def _of_logs(logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
     groups, unreadable = Files().groups([*beside]) if beside else ((), ())
     problems += map(str, unreadable)
     others = [candidate(group.workspace, path, None) for group in groups for path in group.given]
-    if treeless and not others and not made.missions and not problems:
+    if treeless and not others and not own_trees.missions and not problems:
         problems.append(f"{NO_MISSION}; {shown(treeless[0])} has no tree")
-    return [*made.missions, *others]
+    return [*own_trees.missions, *others]
 
 
 def _xml_beside(log: str) -> Sequence[str]:

@@ -129,19 +129,19 @@ def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: li
 def _of_log(path: str, target: str, options: Namespace, problems: list[LoadProblem]) -> _Job | None:
     """The last tree in a log, as the XML that it was created from, or as .btq file."""
     try:
-        found = trees(path)
+        logged = trees(path)
     except (NotALog, OSError) as error:
         why = f"cannot be read: {error.strerror}" if isinstance(error, OSError) else str(error)
         problems.append(LoadProblem(path, f"not imported: {why}"))
         return None
-    if not found:
+    if not logged:
         problems.append(LoadProblem(path, "not imported: it has no tree"))
         return None
-    xml = write(as_written(found[-1].xml))
-    done = Imported(xml, (), (), Places()) if options.xml else import_xml(xml, options.keep_v3)
-    number = len({write(as_written(tree.xml)) for tree in found})
+    xml = write(as_written(logged[-1].xml))
+    imported = Imported(xml, (), (), Places()) if options.xml else import_xml(xml, options.keep_v3)
+    number = len({write(as_written(tree.xml)) for tree in logged})
     return _Job(
-        path, xml, done, target, losses=(f"it has {number} trees, of which the last is imported",) * (number > 1)
+        path, xml, imported, target, losses=(f"it has {number} trees, of which the last is imported",) * (number > 1)
     )
 
 

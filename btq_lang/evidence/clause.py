@@ -289,14 +289,13 @@ class JudgedClause:
                 self._measure([self._judged_over(each, overs) for each in self._extremes], root)
         if len(judged) > 1:
             judged.sort(key=lambda each: each[0].at if each[0] is not None else 0)
-        for found, place, over in judged:
-            if found is not None and found.holds is False:
-                chain = self.explainer.over_run.chain(self.judged, found, over, place.others)
-                since = found.since if found.since is not None else root.begin
-                found = Judgement(False, found.at, found.sentence, found.measure, most=found.most)
-                self._add(found, place.path, since, root.end, chain)
+        for judgement, place, over in judged:
+            if judgement is not None and judgement.holds is False:
+                chain = self.explainer.over_run.chain(self.judged, judgement, over, place.others)
+                since = judgement.since if judgement.since is not None else root.begin
+                self._add(judgement._replace(since=None, starts=(), note=""), place.path, since, root.end, chain)
             else:
-                self._count(found, root, place.path)
+                self._count(judgement, root, place.path)
 
     def _over(self, place: _Place, root: Activation) -> OverRun:
         observed = Observed(self._signals, place.others, root.started, root.ended)

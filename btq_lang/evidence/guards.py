@@ -63,16 +63,16 @@ class Guards:
             unjoined: nodes that the mission does not have: what they do around others is unknown.
         """
         self.last = ""
-        known = {**dict.fromkeys(unjoined, ""), **enforcing}
-        self._around: Final = {uid: tuple(takewhile(known.__contains__, tree.above(uid))) for uid in judged}
+        names = {**dict.fromkeys(unjoined, ""), **enforcing}
+        self._around: Final = {uid: tuple(takewhile(names.__contains__, tree.above(uid))) for uid in judged}
         conditions = {tree.parent[uid]: uid for uid in enforcing if tree.nodes[uid].kind == EVALUATING}
-        self._guards: Final = {uid: _guard(tree, uid, conditions.get(uid, uid), name) for uid, name in known.items()}
+        self._guards: Final = {uid: _guard(tree, uid, conditions.get(uid, uid), name) for uid, name in names.items()}
         self._holders: Final = {condition: guard for guard, condition in conditions.items()}
         self._inside: Final = {guard: uid for uid, around in self._around.items() for guard in around}
         self._waiting: list[tuple[Activation, tuple[int, ...]]] = []
         self._failed: Final[dict[int, Moment]] = {}  # when the condition of a guard failed, until the guard ends
         self._shown: Final[dict[int, Moment]] = {}  # of guards that have not ended: when the node inside last began
-        self.concerned: Final = {*judged, *known, ROOT}
+        self.concerned: Final = {*judged, *names, ROOT}
 
     def see(self, activation: Activation) -> tuple[list[tuple[Activation, Guard | None]], Refusal | None]:
         """The activations that can be judged now that this one has ended, each with the guard that stopped it or did

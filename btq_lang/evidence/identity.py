@@ -233,8 +233,8 @@ def difference(missions: Sequence[Candidate], tree: LoggedTree) -> str:
 
 def _nearest(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
     name = tree.name if any(tree.name in each.trees() for each in missions) else ""
-    found = (_by_path(mission, build, tree) for mission in missions for build in mission.builds(name))
-    return max(found, key=lambda each: (each.number, _alike(each.build, tree)), default=None)
+    joined = (_by_path(mission, build, tree) for mission in missions for build in mission.builds(name))
+    return max(joined, key=lambda each: (each.number, _alike(each.build, tree)), default=None)
 
 
 def join_build(mission: Candidate, build: Build, tree: LoggedTree) -> Joined | None:

@@ -76,9 +76,9 @@ class LoggedRows:
     @cached_property
     def earliest(self) -> array[int]:
         """The earliest time from each row on."""
-        found = array("q", accumulate(reversed(self.times), min))
-        found.reverse()
-        return found
+        backwards = array("q", accumulate(reversed(self.times), min))
+        backwards.reverse()
+        return backwards
 
     def find(self, other: LoggedRows, first: int, last: int) -> tuple[int, int] | None:
         """The first and the last of the rows that match those of another session from `first` to `last`, counted from
@@ -112,21 +112,21 @@ def repeated(
         read: the rows of all sessions in a log, in their order; what is not read again is missing.
     """
     rows_of = lru_cache(_LOGS_AT_ONCE)(read)
-    found: dict[int, LeftOut] = {}
+    left_out_of: dict[int, LeftOut] = {}
     for alike in grouped((each.whose, each) for each in sessions if each.begins).values():
         checked = _LeftOut(_overlapping(alike), rows_of)
-        found.update(zip(map(id, checked.sessions), checked.runs, strict=True))
-    return [(each, left_out) for each in sessions if (left_out := found.get(id(each)))]
+        left_out_of.update(zip(map(id, checked.sessions), checked.runs, strict=True))
+    return [(each, left_out) for each in sessions if (left_out := left_out_of.get(id(each)))]
 
 
 def notes(
-    found: Sequence[tuple[LoggedRuns, LeftOut]], sessions: Sequence[LoggedRuns], shown: Callable[[str], str]
+    repeats: Sequence[tuple[LoggedRuns, LeftOut]], sessions: Sequence[LoggedRuns], shown: Callable[[str], str]
 ) -> Iterator[str]:
     """Which runs of which logs are not counted, a note for each two logs; `sessions`: all of them."""
     runs: Counter[str] = Counter()
     for each in sessions:
         runs[each.log] += len(each.begins)
-    pairs = Counter((session.log, kept.log) for session, left_out in found for kept in left_out.values())
+    pairs = Counter((session.log, kept.log) for session, left_out in repeats for kept in left_out.values())
     for (log, kept), number in pairs.items():
         where = f"in {shown(kept)} too" if kept != log else "there twice"
         verb = "is" if number == 1 else "are"
@@ -135,15 +135,15 @@ def notes(
 
 def _overlapping(sessions: Sequence[LoggedRuns]) -> list[LoggedRuns]:
     """The sessions during which another one has runs, those with the most rows first."""
-    found: dict[int, LoggedRuns] = {}
+    overlapping: set[int] = set()
     latest: tuple[int, LoggedRuns] | None = None
     for begin, end, place in sorted((min(each.begins), max(each.ends), at) for at, each in enumerate(sessions)):
         session = sessions[place]
         if latest is not None and begin <= latest[0] + WITHIN:
-            found.update({id(each): each for each in (latest[1], session)})
+            overlapping.update((id(latest[1]), id(session)))
         if latest is None or end > latest[0]:
             latest = end, session
-    in_order = [each for each in sessions if id(each) in found]
+    in_order = [each for each in sessions if id(each) in overlapping]
     return sorted(in_order, key=lambda each: -each.rows)
 
 
@@ -169,15 +169,15 @@ class _LeftOut:
 
     def _beside(self, at: int) -> list[int]:
         """The later sessions of which runs that are counted begin or end when some of this one do."""
-        found = set()
+        others = set()
         for marks, times in zip(self._marks, _TIMES, strict=True):
             for run in self._counted(at):
                 time = times(self.sessions[at])[run]
                 begin = bisect_left(marks, (time - WITHIN,))
                 for _, other, its in marks[begin : bisect_right(marks, (time + WITHIN + 1,))]:
                     if other > at and its not in self.runs[other] and self._may_be_one(at, other):
-                        found.add(other)
-        return sorted(found)
+                        others.add(other)
+        return sorted(others)
 
     def _may_be_one(self, at: int, other: int) -> bool:
         robots = {self.sessions[at].robot, self.sessions[other].robot}

@@ -139,15 +139,15 @@ def _follows(claim: Claim, run: OverRun) -> Judgements:
     name = claim.text.partition(" follows ")[2]
     before = (run.root.begin, -1)  # the beginning of the run
     for start, moment in zip(run.own, run.begins(claim.event), strict=True):
-        found = [each for each in events if before < each.last and each.first <= moment]
-        is_sure = any(each.is_certain and before < each.first and each.last <= moment for each in found)
+        between = [each for each in events if before < each.last and each.first <= moment]
+        is_sure = any(each.is_certain and before < each.first and each.last <= moment for each in between)
         since = "since its last start" if before[1] >= 0 else "before it in the run"
         before = moment
         counts = run.counts_one(start)
         if counts is False:
             yield OUT
             continue
-        unclear = counts.why if isinstance(counts, Unknown) else found[0].why if found and not is_sure else ""
+        unclear = counts.why if isinstance(counts, Unknown) else between[0].why if between and not is_sure else ""
         if is_sure and start.outcome == "O":
             yield None
         elif unclear:
@@ -197,26 +197,26 @@ def _number(
     """
     assert claim.limit is not None, "a number of tries has a bound"
     number = len(starts) + len(refused)
-    found = compared(claim, float(number), run.observed.during(period), period.started)
-    if isinstance(found, Unknown):
-        return Judgement(None, period.end, found.why)
-    holds = found.kept(period.outcome in ("S", "F"))
+    tried = compared(claim, float(number), run.observed.during(period), period.started)
+    if isinstance(tried, Unknown):
+        return Judgement(None, period.end, tried.why)
+    holds = tried.kept(period.outcome in ("S", "F"))
     if refused:
-        holds, found = False, found.beyond()
-    if holds is None and (period.outcome == "O" or not found.holds):
+        holds, tried = False, tried.beyond()
+    if holds is None and (period.outcome == "O" or not tried.holds):
         return None
     if holds is False and not refused and period.timing == "latest":
-        return Judgement(None, period.end, UNKNOWN_END, found)
+        return Judgement(None, period.end, UNKNOWN_END, tried)
     at = period.end
-    bound = found.bound.si
+    bound = tried.bound.si
     breaking = max(floor(bound) if claim.limit.relation != "<" else ceil(bound) - 1, 0)
-    if holds is False and found.is_upper and breaking < len(starts):
+    if holds is False and tried.is_upper and breaking < len(starts):
         at = starts[breaking].begin
     sentence = VERBS[claim.verb].said.replace("{}", counted(len(starts), "time"))
     if refused:
         sentence += f", and its guard at {refused[0].guard.path} refused {len(refused)} more"
-    found.unit = None
-    return Judgement(holds is not False, at, sentence, found, period.begin, starts)
+    tried.unit = None
+    return Judgement(holds is not False, at, sentence, tried, period.begin, starts)
 
 
 def _runs(claim: Claim, run: OverRun) -> Judgements:
@@ -232,8 +232,8 @@ def _runs(claim: Claim, run: OverRun) -> Judgements:
             yield Judgement(None, stretch.begin[0], stretch.why or unclear[0])
             continue
         is_open = run.is_cut_off and stretch.end == run.observed.end
-        found = [each for each, _ in inside]
-        yield from (_between if claim.every else _in_windows)(claim, run, stretch, found, is_open)
+        counted_starts = [each for each, _ in inside]
+        yield from (_between if claim.every else _in_windows)(claim, run, stretch, counted_starts, is_open)
 
 
 def _between(claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool) -> Judgements:
@@ -275,11 +275,11 @@ def _in_windows(
     fullest = max([begin, *[max(begin, min(time + 1 - length, last)) for time in times]], key=number)
     measures: list[tuple[Measure, int]] = []
     for window in (fewest, fullest):
-        found = compared(claim, float(number(window)), run.observed, stretch.begin)
-        if isinstance(found, Unknown):
-            yield Judgement(None, stretch.begin[0], found.why)
+        reading = compared(claim, float(number(window)), run.observed, stretch.begin)
+        if isinstance(reading, Unknown):
+            yield Judgement(None, stretch.begin[0], reading.why)
             return
-        measures.append((found, window))
+        measures.append((reading, window))
     measure, window = max(measures, key=lambda each: each[0].excess)
     measure.unit = None
     if not measure.holds:
@@ -381,12 +381,12 @@ def _total(claim: Claim, run: OverRun) -> Judgements:
 
 def _sum(claim: Claim, run: OverRun, starts: Sequence[Activation], total: int) -> Judgement | None:
     """The judgement of a sum of durations, in µs; None: undecided, because the log ends before the run does."""
-    found = compared(claim, total / 1e6, run.observed, run.observed.begin)
-    if isinstance(found, Unknown):
-        return Judgement(None, run.root.end, found.why)
-    holds = found.kept(not run.is_cut_off)
+    summed = compared(claim, total / 1e6, run.observed, run.observed.begin)
+    if isinstance(summed, Unknown):
+        return Judgement(None, run.root.end, summed.why)
+    holds = summed.kept(not run.is_cut_off)
     sentence = VERBS[claim.verb].said.replace("{}", "{} together")
-    return Judgement(holds, run.root.end, sentence, found, run.root.begin, starts) if holds is not None else None
+    return Judgement(holds, run.root.end, sentence, summed, run.root.begin, starts) if holds is not None else None
 
 
 JUDGES: Final[dict[str, RunJudge]] = {

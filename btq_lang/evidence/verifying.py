@@ -147,11 +147,11 @@ def verify(
     wanted, copies = without_copies([log for log in logs if log not in bags])
     judging = _all(wanted, means, jobs, progress)
     report = judging.report()
-    found = repeated(judging.sessions, partial(rows_of, means=means))
-    if found:
+    repeats = repeated(judging.sessions, partial(rows_of, means=means))
+    if repeats:
         left_out = {
             (session.log, session.number): [(run, session.first[run], session.last[run]) for run in sorted(runs_there)]
-            for session, runs_there in found
+            for session, runs_there in repeats
         }
         again = _all(wanted, replace(means, keeping=None, left_out=left_out), jobs, progress).report()
         report = replace(again, problems=report.problems, remarks=report.remarks)
@@ -159,7 +159,7 @@ def verify(
         f"{means.shown(log)} is the same log as {means.shown(first)}, so it is not counted"
         for log, first in copies.items()
     )
-    return replace(report, remarks=(*same, *notes(found, judging.sessions, means.shown), *report.remarks))
+    return replace(report, remarks=(*same, *notes(repeats, judging.sessions, means.shown), *report.remarks))
 
 
 def _all(logs: Sequence[str], means: Means, jobs: int, progress: Callable[[int, int], None]) -> Judging:
@@ -168,8 +168,8 @@ def _all(logs: Sequence[str], means: Means, jobs: int, progress: Callable[[int, 
     if jobs > 1 and len(logs) > 1:
         from btq_lang.evidence.parallel import judge_all
 
-        for number, found in enumerate(judge_all(logs, means, jobs), start=1):
-            judging.add(found)
+        for number, of_log in enumerate(judge_all(logs, means, jobs), start=1):
+            judging.add(of_log)
             progress(number, judging.runs)
     else:
         for number, log in enumerate(logs):
@@ -190,9 +190,9 @@ def judged_live(running: Watched, address: str, means: Means, requested: Sequenc
     """
     # The limits must hold at every look, for verdicts are looked at after every run.
     means = replace(means, limits="every look", shown=str)
-    found = judge(address, means, running=running)
+    of_robot = judge(address, means, running=running)
     judging = Judging(means)  # now all missions are known
-    judging.add(found)
+    judging.add(of_robot)
     report = judging.report()
     if not (report.missions or report.foreign or report.problems):
         return Verification(report, (f"no robot answered at {address}, so there is nothing to judge",))

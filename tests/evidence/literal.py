@@ -67,7 +67,7 @@ class Session:
     """A session, judged: what the earliest and the latest begins do not answer alike is unknown.
 
     Durations are intervals, and so are sums, spans and reactions: from the event's latest moment to its answer's
-    earliest, and the other way round.  Which answer is the next one is told by the order of the rows.
+    earliest, and the reverse.  The order of the rows says which answer is the next one.
     """
 
     def __init__(self, *log: Any) -> None:

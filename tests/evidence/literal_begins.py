@@ -33,14 +33,8 @@ SILENT = ("Switch2", "Switch3", "Switch4", "Switch5", "Switch6", "PipelineSequen
 GOES_ON = (*IN_TURN, *NAV2_IN_TURN, *AROUND_ONE, *LOOPS, *PAUSING, *PARALLEL, *SILENT, "SubTree")
 
 
-def set_begins(
-    tree: LoggedTree,
-    subtrees: Collection[int],
-    delays: Mapping[int, int],
-    rows: Sequence[Transition],
-    found: Sequence[Activation],
-) -> None:
-    """Set `earliest` and `latest` of all activations of a session.
+class Begins:
+    """Sets `earliest` and `latest` of all activations of a session.
 
     * A control node or decorator whose first row is its own RUNNING began with it, whatever its kind.
     * What has only a result, a leaf whose first row is RUNNING, and a node that began with a row below it, began
@@ -52,10 +46,7 @@ def set_begins(
     Args:
         delays: how long each Delay waits, in µs.
     """
-    _Begins(tree, subtrees, delays, rows, found).set()
 
-
-class _Begins:
     def __init__(
         self,
         tree: LoggedTree,

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
-from literal_begins import set_begins
+from literal_begins import Begins
 from literal_runs import Activation, activations
 
 from btq_lang.evidence.model import ROOT, LoggedTree
@@ -76,7 +76,7 @@ class Log:
         self.instances = instances
         self.guards = guards
         self.activations = activations(tree, rows)
-        set_begins(tree, subtrees, delays, rows, self.activations)
+        Begins(tree, subtrees, delays, rows, self.activations).set()
         for each in self.activations:
             each.start = each.earliest if end == "earliest" else each.latest
         self.runs = self.of(ROOT)

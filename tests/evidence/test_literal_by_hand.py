@@ -16,7 +16,7 @@ from xml.etree import ElementTree
 import pytest
 from check_asserts import workspace_of
 from evidence_logs import START, rows
-from literal_begins import set_begins
+from literal_begins import Begins
 from literal_hunt import Hunt, literal_of
 from literal_runs import activations
 from literal_verbs import OPEN
@@ -314,7 +314,7 @@ def test_most_single_rows_of_the_engine_have_a_known_begin(name: str, known: int
     database.close()
     tree, subtrees = numbered(xml)
     found = activations(tree, logged)
-    set_begins(tree, subtrees, {}, logged, found)
+    Begins(tree, subtrees, {}, logged, found).set()
     single = [each for each in found if each.uid in tree.leaves and each.first == each.last]
     assert (sum(each.earliest == each.latest for each in single), len(single)) == (known, of)
 

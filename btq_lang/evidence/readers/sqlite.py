@@ -131,18 +131,18 @@ def _copied(path: str, stack: ExitStack) -> str:
 def _version(path: str) -> tuple[int, int] | None:
     """What differs when a file has been written; None if it is gone."""
     try:
-        found = os.stat(path)
+        status = os.stat(path)
     except OSError:
         return None
-    return found.st_size, found.st_mtime_ns
+    return status.st_size, status.st_mtime_ns
 
 
 def is_unfinished(path: str, beside: Sequence[str] = BESIDE) -> bool:
     """Whether there is something in a database's journal or write-ahead log: it is being written, or its writer was
     killed.
     """
-    found = (_version(f"{os.path.realpath(path)}{suffix}") for suffix in beside)
-    return any(each is not None and each[0] > 0 for each in found)
+    versions = (_version(f"{os.path.realpath(path)}{suffix}") for suffix in beside)
+    return any(each is not None and each[0] > 0 for each in versions)
 
 
 def missing_bytes(path: str) -> int:

@@ -344,7 +344,7 @@ def test_read_tree_of_the_publisher_is_that_of_a_log() -> None:
 
 
 class Judged:
-    """What is told while the steps of a robot are judged.
+    """What a session reports while the steps of a robot are judged.
 
     Attributes:
         news: the verdicts and texts so far, each with the number of the step after which it was told.
