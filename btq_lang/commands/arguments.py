@@ -228,14 +228,7 @@ def _add_import(parser: Parser) -> None:
 )
 def _add_trace(parser: Parser) -> None:
     _add_paths(parser)
-    parser.add(
-        "--evidence",
-        action="append",
-        default=[],
-        metavar="PATH",
-        help="show verdicts: those in a file of btq verify --format json, or by logs; may be repeated; default: by the"
-        " `logs` in [evidence] of btq.toml",
-    )
+    _add_evidence(parser, _OF_PROJECT)
     parser.flag("--bundle", "what is enforced in builds with --bundle")
     parser.add("--format", choices=TRACE_FORMATS, help="default: by the suffix of the -o file, else table")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
@@ -374,13 +367,15 @@ def _add_report(parser: Parser) -> None:
     "draw a mission's trees",
     "exit codes: 0 drawn, 2 usage or I/O\n\n"
     "examples:\n  btq graph mission.btq --qualities -o mission.svg   for documents\n"
-    "  btq graph mission.btq --format mermaid             for pull requests\n",
+    "  btq graph mission.btq --format mermaid             for pull requests\n"
+    "  btq graph mission.btq --evidence logs/ -o now.svg  with what logs show of each requirement\n",
 )
 def _add_graph(parser: Parser) -> None:
     parser.add("paths", nargs=1, metavar="FILE", help="the mission, `-` for standard input")
     parser.add("--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes")
     parser.add("--format", choices=GRAPH_FORMATS, help="default: by the suffix of the -o file, else svg")
     parser.flag("--qualities", "show qualities and requirements beside their nodes")
+    _add_evidence(parser, "none")
     parser.add("--direction", choices=DIRECTIONS, default="down", help="the position of the children; default: down")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     _add_color(parser)
@@ -397,6 +392,7 @@ def _add_preview(parser: Parser) -> None:
     parser.add("file", metavar="FILE", help="the mission")
     parser.add("--port", type=int, default=0, metavar="N", help="the port, on this machine only; default: a free one")
     parser.flag("--open", "show it in the browser")
+    _add_evidence(parser, _OF_PROJECT)
     parser.add(
         "--on-click",
         metavar="COMMAND",
@@ -501,8 +497,20 @@ def _add_lsp(parser: Parser) -> None:
     add_server_options(parser)
 
 
+def _add_evidence(parser: Parser, default: str) -> None:
+    parser.add(
+        "--evidence",
+        action="append",
+        default=[],
+        metavar="PATH",
+        help="with each requirement its verdict, last value and history: by logs, of a store, or of a file of"
+        f" btq verify --format json; may be repeated; default: {default}",
+    )
+
+
 def _add_color(parser: Parser) -> None:
     parser.add("--color", choices=("auto", "always", "never"), default="auto", help="default: auto")
 
 
+_OF_PROJECT: Final = "those of `logs`, else of `store`, in [evidence] of btq.toml"
 _STORE: Final = "the folder that btq verify --store writes; default: `store` in [evidence] of btq.toml"

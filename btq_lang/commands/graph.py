@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from btq_lang.checks import check
 from btq_lang.commands.files import Files, no_mission_below, usage_problem
@@ -13,7 +15,13 @@ from btq_lang.diagnostics.rules import UNREADABLE
 from btq_lang.graph import FORMATS, draw
 from btq_lang.graph.missions import figures
 from btq_lang.render import Finding, Report, render, with_paths
+from btq_lang.requirements.resolve import requirements
 from btq_lang.workspace.loader import LoadProblem, shown
+
+if TYPE_CHECKING:
+    from btq_lang.commands.files import Group
+    from btq_lang.graph.figure import Figure
+    from btq_lang.workspace.workspace import Workspace
 
 
 def run(options: Namespace) -> int:
@@ -28,10 +36,10 @@ def run(options: Namespace) -> int:
     if problems or not given:
         return 2
     ((workspace, path),) = given
-    found = figures(workspace, path, options.qualities)
-    if not found:
+    drawn = _figures(options, groups, workspace, path)
+    if not drawn:
         raise Refused(f"{shown(path)} has no trees")
-    write_output(options.output, draw(found, form_of(options, FORMATS), options.direction))
+    write_output(options.output, draw(drawn, form_of(options, FORMATS), options.direction))
     unread = [each for each in check(workspace, path) if each.rule in UNREADABLE]
     if unread:
         text = workspace.files[path].source
@@ -39,3 +47,17 @@ def run(options: Namespace) -> int:
         sys.stderr.writelines(render("concise", with_paths(report, shown)))
         print("btq graph: the picture shows only what could be read", file=sys.stderr)
     return int(bool(unread))
+
+
+def _figures(options: Namespace, groups: Sequence[Group], workspace: Workspace, path: str) -> Sequence[Figure]:
+    """The trees, with what logs show of their requirements if that is asked for."""
+    if not options.evidence:
+        return figures(workspace, path, options.qualities)
+    from btq_lang.commands.given_evidence import verdicts_for  # it imports the readers of logs
+    from btq_lang.evidence.boxes import measured_by
+
+    wrong: list[str] = []
+    verdicts_of = verdicts_for(options.evidence, groups, wrong)
+    refuse(*wrong)
+    assert verdicts_of is not None, "evidence is given"
+    return figures(workspace, path, True, measured_by(requirements(workspace, path), verdicts_of(path)))

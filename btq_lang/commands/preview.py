@@ -9,17 +9,23 @@ import subprocess
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from threading import Event, Lock, Thread
+from typing import TYPE_CHECKING
 
 from btq_lang.commands.files import Files, usage_problem
 from btq_lang.commands.options import Refused, refuse
 from btq_lang.graph.picture import picture, places
 from btq_lang.preview.server import Preview
+from btq_lang.requirements.resolve import requirements
 from btq_lang.util.text import Span
 from btq_lang.workspace.loader import absolute, shown, stamp
 from btq_lang.workspace.watcher import watch
 from btq_lang.workspace.workspace import Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.verdicts import RequirementVerdict
+    from btq_lang.graph.missions import MeasuredBy
 
 
 def run(options: Namespace) -> int:
@@ -28,7 +34,7 @@ def run(options: Namespace) -> int:
     if not os.path.isfile(options.file):
         what = "expected a file, found a folder" if os.path.isdir(options.file) else "no such file"
         raise Refused(f"{options.file}: {what}")
-    mission = _Mission(absolute(options.file), shlex.split(options.on_click or ""))
+    mission = _Mission(absolute(options.file), shlex.split(options.on_click or ""), options.evidence)
     try:
         preview = Preview(options.port, mission.drawn, mission.reveal)
     except (OSError, OverflowError) as error:
@@ -48,8 +54,11 @@ def run(options: Namespace) -> int:
         if ended.wait(seconds):
             raise EOFError
 
+    judging = Thread(target=mission.judge, args=(preview.changed,), daemon=True)
+    judging.start()
     try:
         for _ in watch(mission.watched, stamp, wait, time.monotonic):
+            mission.judge_again()
             preview.changed()
     except KeyboardInterrupt:
         print(file=sys.stderr)
@@ -85,9 +94,14 @@ def _follow(mission: _Mission, preview: Preview, ended: Event) -> None:
 class _Mission:
     """The current state of the file; several pages may request it at once."""
 
-    def __init__(self, path: str, on_click: Sequence[str]) -> None:
+    def __init__(self, path: str, on_click: Sequence[str], evidence: Sequence[str]) -> None:
         self.path = path
         self._on_click = on_click
+        self._evidence = evidence
+        self._logs: tuple[str, ...] = ()
+        self._verdicts: Sequence[RequirementVerdict] = ()
+        self._is_outdated = Event()
+        self._is_outdated.set()
         self._files = Files()
         self._lock = Lock()
         self._watched: tuple[str, ...] = (path,)
@@ -99,7 +113,7 @@ class _Mission:
         title = os.path.basename(self.path)
         if isinstance(workspace, str):
             return {"title": title, "trouble": workspace}
-        found = picture(workspace, self.path, folded)
+        found = picture(workspace, self.path, folded, self._measured_by(workspace))
         lines = {key: self._position(workspace, span)[0] for key, span in found.places.items()}
         return {"title": title, "svg": found.svg, "lines": lines}
 
@@ -120,6 +134,38 @@ class _Mission:
             return {"trouble": f"{self._on_click[0]}: {error.strerror}"}
         return {"said": place}
 
+    def judge(self, judged: Callable[[], None]) -> None:
+        """Judge the mission by the evidence, now and each time that it is outdated; reading logs takes time.
+
+        Args:
+            judged: called when the verdicts have changed.
+        """
+        from btq_lang.commands.given_evidence import evidence_paths, verdicts_for  # it imports the readers of logs
+
+        while self._is_outdated.wait():
+            self._is_outdated.clear()
+            problems: list[str] = []
+            self._logs = tuple(evidence_paths(self._evidence))
+            groups, _ = Files().groups([self.path])  # as saved: `measured_by` judges again what has been typed since
+            verdicts_of = verdicts_for(self._logs, groups, problems) if self._logs else None
+            for problem in problems:
+                print(f"btq preview: {problem}", file=sys.stderr)
+            verdicts = verdicts_of(self.path) if verdicts_of is not None else ()
+            if verdicts != self._verdicts:
+                self._verdicts = verdicts
+                judged()
+
+    def judge_again(self) -> None:
+        """Have the evidence judged again, as a file has changed."""
+        self._is_outdated.set()
+
+    def _measured_by(self, workspace: Workspace) -> MeasuredBy:
+        if not self._verdicts:
+            return lambda applied: ()
+        from btq_lang.evidence.boxes import measured_by  # few missions have evidence
+
+        return measured_by(requirements(workspace, self.path), self._verdicts)
+
     def typed(self, text: str) -> None:
         """Use this text from now on instead of the file on the disk."""
         with self._lock:
@@ -127,7 +173,7 @@ class _Mission:
 
     def watched(self) -> tuple[str, ...]:
         """The files that the picture depends on, as far as known."""
-        return self._watched
+        return (*self._watched, *self._logs)
 
     def _position(self, workspace: Workspace, span: Span) -> tuple[int, int]:
         """Line and column, counted from 1, in the original file."""

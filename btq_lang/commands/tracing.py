@@ -15,7 +15,7 @@ from btq_lang.trace.missions import trace_tables
 def run(options: Namespace) -> int:
     """Write the overview; for missions with errors, of all valid parts."""
     refuse(usage_problem(options.paths) or form_problem(options, FORMATS))
-    from btq_lang.commands.trace_evidence import verdicts_for  # it imports the readers of logs
+    from btq_lang.commands.given_evidence import verdicts_for  # it imports the readers of logs
 
     groups, problems = Files().groups(options.paths, options.stdin_filename)
     tell(problems)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang import evidence
+from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
@@ -30,4 +31,7 @@ def write(report: Report, missions: Sequence[Candidate], form: str, **options: A
     found = report.missions
     files = {mission.file for mission in found}
     parts = [(each.workspace, [each.path]) for each in missions if each.path in files]
-    return page.render(trace_tables(parts, details_of=outcomes(found)).overview, found)
+    requirements = {mission.file: mission.requirements for mission in found}
+    table = trace_tables(parts, details_of=outcomes(found), verdicts_of=requirements.__getitem__)
+    # A table of the page has the verdicts, so the requirements need no column of them.
+    return page.render(replace(table.overview, has_evidence=False), found)

@@ -33,6 +33,11 @@ class Edge(Record):
         """A number that is larger the further a value is on the wrong side."""
         return si if self.is_upper else -si
 
+    def is_broken_by(self, si: float) -> bool:
+        """Whether a measure violates the bound."""
+        measure, bound = self.across(si), self.across(self.value.si)
+        return measure > bound or (self.is_strict and measure == bound)
+
     @property
     def extremes(self) -> tuple[Claim, Claim]:
         """The claim with a bound that every measure keeps, and with one that none keeps."""

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         MissionVerdicts,
         Report,
         RequirementVerdict,
+        RunValue,
         Source,
     )
 
@@ -96,7 +97,7 @@ def _requirement(requirement: RequirementVerdict, mission: MissionVerdicts) -> J
 
 def _clause(clause: ClauseVerdict) -> Json:
     return {
-        **_fields(clause, but=("of", "histogram", "timeline", "measures")),
+        **_fields(clause, but=("of", "histogram", "timeline", "measures", "by_run")),
         "worst": _fields(clause.worst) if clause.worst is not None else None,
         "bounded": _fields(clause.bounded) if clause.bounded is not None else None,
         "limits": clause.limits if clause.interval is not None else None,
@@ -110,8 +111,13 @@ def _clause(clause: ClauseVerdict) -> Json:
             }
             for each in clause.violations
         ],
+        **({"by_run": [*map(_run_value, clause.by_run)]} if clause.by_run else {}),
         **({"measures": _measures(clause.measures)} if clause.measures is not None else {}),
     }
+
+
+def _run_value(value: RunValue) -> Json:
+    return {**_fields(value), "start": timestamp(value.start), "text": value.text or None}
 
 
 def _measures(measures: Measures) -> Json:

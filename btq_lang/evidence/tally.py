@@ -5,8 +5,9 @@ One invariant: counts are enough for the verdict, so the only judgements kept ar
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from copy import copy
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.distribution import Distribution
@@ -19,6 +20,7 @@ from btq_lang.evidence.verdicts import (
     VIOLATED,
     Bounded,
     Link,
+    RunValue,
     Verdict,
     Violation,
     Worst,
@@ -45,7 +47,7 @@ class Tally:
     """The counts so far.
 
     Attributes:
-        counted, violated, unknown, cut_off, why, violations, worst, bounded: as in `ClauseVerdict`.
+        counted, violated, unknown, cut_off, why, violations, worst, bounded, by_run: as in `ClauseVerdict`.
         distribution: of the measures.
         limits: which limits of the probability decide.
     """
@@ -62,6 +64,7 @@ class Tally:
         self.violations: Final[list[Violation]] = []
         self.worst: Worst | None = None
         self.bounded: Bounded | None = None
+        self.by_run: tuple[RunValue, ...] = ()
         self.distribution: Final = Distribution()
         self.counts_runs: Final = odds is not None and odds.experiments == "runs"
         self.limits: Final = limits
@@ -71,7 +74,7 @@ class Tally:
         self._worst_excess = float("-inf")
         self._broken: Final[list[tuple[Judgement, str, tuple[Link, ...]]]] = []  # of the open run
         self._kept = self._unclear = 0  # likewise
-        self._worst_now: Measure | None = None  # if it is the worst of all runs
+        self._worst_now: Measure | None = None  # likewise
 
     def add(self, judgement: Judgement, path: str, end: int, chain: tuple[Link, ...]) -> None:
         """Count the judgement of an activation in the open run, or of the run.
@@ -96,8 +99,7 @@ class Tally:
 
     def _note_worst(self, judgement: Judgement) -> None:
         measure = judgement.measure
-        if measure is not None and measure.excess > self._worst_excess:
-            self._worst_excess = measure.excess
+        if measure is not None and (self._worst_now is None or measure.excess > self._worst_now.excess):
             self._worst_now = measure
 
     def _bound(self, most: Measure) -> None:
@@ -127,10 +129,22 @@ class Tally:
             self.violations.extend(_violation(*each, run) for each in shown[:room])
             self._broken.clear()
         self._kept = self._unclear = 0
-        if self._worst_now is not None:
-            worst = self._worst_now
-            self.worst = Worst(worst.si, measured(worst.si, worst.unit, worst.bound.si), run.number)
-            self._worst_now = None
+        self._end_worst(run, VIOLATED if broken else UNKNOWN if unclear else SATISFIED)
+
+    def _end_worst(self, run: Run, verdict: Verdict) -> None:
+        """Keep the worst measure of a run, which has this verdict."""
+        worst, self._worst_now = self._worst_now, None
+        si, text = None, ""
+        if worst is not None:
+            si, text = worst.si, measured(worst.si, worst.unit, worst.bound.si)
+            if worst.excess > self._worst_excess:
+                self._worst_excess = worst.excess
+                self.worst = Worst(si, text, run.number)
+        self._add_by_run([RunValue(run.number, run.begin, verdict, si, text)])
+
+    def _add_by_run(self, values: Sequence[RunValue]) -> None:
+        """Keep what runs show, whatever the order in which logs are read."""
+        self.by_run = tuple(sorted((*self.by_run, *values), key=_START)[-MOST_RUNS:])
 
     def is_worst_in(self, run: Run) -> bool:
         """Whether the worst violation, the one furthest beyond the bound or else the first, is in a run already
@@ -153,6 +167,7 @@ class Tally:
             self._worst_excess = other._worst_excess
             self.worst = replace(other.worst, run=(other.worst.run or 0) + runs)
         self.distribution.add_all(other.distribution)
+        self._add_by_run([replace(value, run=value.run + runs) for value in other.by_run])
         if other.bounded is not None:
             number = other.bounded.number + (self.bounded.number if self.bounded is not None else 0)
             largest = max(other.bounded, self.bounded or other.bounded, key=lambda bounded: bounded.si)
@@ -189,7 +204,7 @@ class Tally:
 
     def fields(self) -> dict[str, Any]:
         """What `ClauseVerdict` has of it, by name."""
-        same = ("counted", "violated", "unknown", "cut_off", "worst", "limits", "bounded")
+        same = ("counted", "violated", "unknown", "cut_off", "worst", "limits", "bounded", "by_run")
         found = {name: getattr(self, name) for name in same}
         return {**found, "interval": self.interval(), "more": self.more(), "violations": tuple(self.violations)}
 
@@ -243,5 +258,7 @@ def _violation(judgement: Judgement, path: str, chain: tuple[Link, ...], run: Ru
     return Violation(run.number, run.source, path, run.begin, at, value, bound, why, chain)
 
 
+_START: Final = attrgetter("start")
+MOST_RUNS: Final = 60  # whose values are kept: as many as a small drawing can show
 USUAL_CONFIDENCE: Final = 0.95  # of the limits shown, if the requirement names none
 _MOST_VIOLATIONS: Final = 1000

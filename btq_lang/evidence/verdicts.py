@@ -84,6 +84,23 @@ class Worst(Record):
     run: int | None
 
 
+class RunValue(Record):
+    """What a run shows of a clause.
+
+    Attributes:
+        run: its number; in the summary of a store, that in its log.
+        start: when it began, in µs since the epoch.
+        verdict: `satisfied`, `violated` or `unknown`.
+        si, text: the measure closest to the bound, or furthest beyond it; None and empty if none is known.
+    """
+
+    run: int
+    start: int
+    verdict: Verdict
+    si: float | None
+    text: str
+
+
 class Bounded(Record):
     """Judgements whose measure is known only to lie between limits, as the log does not say when something began.
 
@@ -191,6 +208,7 @@ class ClauseVerdict(Record):
         histogram: of the measures; None without any.
         timeline: the run of the worst violation; None without any.
         measures: to judge it again; None: not kept.
+        by_run: the last 60 runs with a judgement, the earliest first.
         failed, halted: activations left out because the clause is about those that succeed.
         idle: in how many runs its node did not start, if it is about activations of one.
     """
@@ -215,6 +233,7 @@ class ClauseVerdict(Record):
     timeline: Timeline | None = None
     measures: Measures | None = None
     bounded: Bounded | None = None
+    by_run: tuple[RunValue, ...] = ()
     failed: int = 0
     halted: int = 0
     idle: int = 0

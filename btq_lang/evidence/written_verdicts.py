@@ -7,7 +7,16 @@ from typing import Any, Final
 
 from btq_lang.evidence.json_document import FORMAT, VERSION
 from btq_lang.evidence.margins import Margins
-from btq_lang.evidence.verdicts import Bounded, ClauseVerdict, Link, Measures, RequirementVerdict, Violation, Worst
+from btq_lang.evidence.verdicts import (
+    Bounded,
+    ClauseVerdict,
+    Link,
+    Measures,
+    RequirementVerdict,
+    RunValue,
+    Violation,
+    Worst,
+)
 from btq_lang.evidence.wording import time_of
 from btq_lang.util.record import Record
 
@@ -92,10 +101,15 @@ def _clause(found: dict[str, Any]) -> ClauseVerdict:
         "interval": (interval[0], interval[1]) if interval is not None else None,
         "limits": found["limits"] or "one look",
         "violations": tuple(map(_violation, found["violations"])),
+        "by_run": tuple(map(_run_value, found.get("by_run", ()))),
         "histogram": None,
         "measures": _measures(found["measures"]) if "measures" in found else None,
     }
     return ClauseVerdict(**fields)
+
+
+def _run_value(found: dict[str, Any]) -> RunValue:
+    return RunValue(**{**found, "start": time_of(found["start"]), "text": found["text"] or ""})
 
 
 def _measures(found: dict[str, Any]) -> Measures:

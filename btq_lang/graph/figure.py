@@ -16,6 +16,29 @@ from btq_lang.util.record import Record
 Outline: TypeAlias = Literal["control", "action", "condition", "decorator", "subtree", "unknown"]
 
 
+class Measured(Record):
+    """What logs show of a clause.
+
+    Attributes:
+        lines: the value of the last run, and the verdict.
+        verdict: a class of the drawing.
+        values: of the runs in their order, each with whether it violates the clause; None: unknown.
+        bounds: what the values are compared with.
+        text: all of it in words.
+    """
+
+    lines: tuple[str, ...]
+    verdict: str
+    values: tuple[tuple[float | None, bool], ...]
+    bounds: tuple[float, ...]
+    text: str
+
+    @property
+    def has_values(self) -> bool:
+        """Whether a value is known."""
+        return any(value is not None for value, _ in self.values)
+
+
 class Note(Record):
     """A quality or a requirement at a node.
 
@@ -25,6 +48,7 @@ class Note(Record):
         text: all of its contents.
         state: a class of the drawing: `enforced`, `monitored`, `reviewed`; empty: unknown.
         link: its target on a page.
+        measured: what logs show of its clauses; empty where there are none.
     """
 
     kind: Literal["quality", "requirement"]
@@ -34,6 +58,7 @@ class Note(Record):
     text: str = ""
     state: str = ""
     link: str = ""
+    measured: tuple[Measured, ...] = ()
 
 
 class Box(Record):

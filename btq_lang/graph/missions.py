@@ -5,18 +5,20 @@ One invariant: one box for each written node.  A SubTree node is a box; its tree
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from typing import Final
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Final, TypeAlias
 
 from btq_lang.graph import draw
-from btq_lang.graph.figure import Box, Figure, Note, Outline
-from btq_lang.requirements.model import Applied, Claim
+from btq_lang.graph.figure import Box, Figure, Measured, Note, Outline
+from btq_lang.requirements.model import Applied, Claim, Span, Total
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import Node, NodeClause, QualityPath, Satisfices
 from btq_lang.util.grouping import grouped
 from btq_lang.workspace.node_names import is_placeholder
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
+
+MeasuredBy: TypeAlias = Callable[[Applied], tuple[Measured, ...]]
 
 
 def draw_tree(
@@ -45,14 +47,19 @@ def draw_tree(
     return draw(found, form, direction)
 
 
-def figures(workspace: Workspace, path: str, with_qualities: bool = False) -> tuple[Figure, ...]:
+def figures(
+    workspace: Workspace, path: str, with_qualities: bool = False, measured_by: MeasuredBy = lambda applied: ()
+) -> tuple[Figure, ...]:
     """A figure for each tree of a file, in the order of its text; with or without qualities and requirements.
+
+    Args:
+        measured_by: what logs show of a requirement at what it applies to.
 
     Raises:
         KeyError: there is no such file.
     """
     found = requirements(workspace, path)
-    notes = _notes(found) if with_qualities else {}
+    notes = _notes(found, measured_by) if with_qualities else {}
     mine = keyed(workspace, path)
     keys = {id(node): key for key, node in mine}
     return tuple(figure(nodes, keys, notes) for nodes in by_tree(node for _, node in mine))
@@ -121,11 +128,12 @@ def clauses_of(node: ResolvedNode) -> tuple[NodeClause, ...]:
 
 
 def clauses_in_words(applied: Applied) -> tuple[str, ...]:
-    """The clauses that hold for a subject, as typed but without the subject; the title of a requirement without
-    clauses.
+    """The clauses that hold for a subject, as typed, but without the subject where that is a node; the title of a
+    requirement without clauses.
     """
     requirement = applied.requirement
-    lines = [_predicate(claim) for claim in requirement.claims]
+    is_of_several = isinstance(applied.subject, Span | Total)
+    lines = [claim.text if is_of_several else _predicate(claim) for claim in requirement.claims]
     lines += [scope.text for scope in requirement.scopes]
     if requirement.odds is not None:
         lines.append(requirement.odds.text)
@@ -140,15 +148,28 @@ def _predicate(claim: Claim) -> str:
     return (verb + after).strip() if claim.subject is not None and verb else claim.text
 
 
-def _notes(found: Requirements) -> dict[int, tuple[Note, ...]]:
+def requirement_note(key: str, applied: Applied, measured: tuple[Measured, ...], state: str = "") -> Note:
+    """The note of a requirement at what it applies to; with what logs show of it, it has its title, too.
+
+    Args:
+        key, state: as of `Note`.
+    """
+    requirement = applied.requirement
+    name, clauses = f"{requirement.name}{applied.given}", clauses_in_words(applied)
+    title = " ".join((requirement.title or "").split())
+    lines = (title, *clauses) if measured and title and title not in clauses else clauses
+    text = "; ".join((name, *lines, *(each.text for each in measured), *([state] if state else [])))
+    return Note("requirement", key, name, lines, text, state, measured=measured)
+
+
+def _notes(found: Requirements, measured_by: MeasuredBy) -> dict[int, tuple[Note, ...]]:
     notes: dict[int, list[Note]] = {}
     for node in found.nodes.all:
         for name, _ in concerns(node):
             notes.setdefault(id(node), []).append(Note("quality", name, name, text=f"satisfices {name}"))
     for applied in found.applied:
         if applied.node is not None:
-            lines, name = clauses_in_words(applied), applied.requirement.name
-            note = Note("requirement", name, name + applied.given, lines, "; ".join((name, *lines)))
+            note = requirement_note(applied.requirement.name, applied, measured_by(applied))
             notes.setdefault(id(applied.node), []).append(note)
     for trace in found.traces:
         notes.setdefault(id(trace.node), []).append(Note("requirement", trace.requirement, trace.requirement))

@@ -13,7 +13,7 @@ from typing import Final
 
 from btq_lang.graph import draw
 from btq_lang.graph.figure import Box, Figure, Note
-from btq_lang.graph.missions import figures, keyed
+from btq_lang.graph.missions import MeasuredBy, figures, keyed
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Span, counted
 from btq_lang.workspace.workspace import Workspace
@@ -26,17 +26,20 @@ class Picture(Record):
     places: Mapping[str, Span]
 
 
-def picture(workspace: Workspace, path: str, folded: Container[str] = ()) -> Picture:
+def picture(
+    workspace: Workspace, path: str, folded: Container[str] = (), measured_by: MeasuredBy = lambda applied: ()
+) -> Picture:
     """The trees of a file.
 
     Args:
+        measured_by: as of `figures`.
         folded: the names of the nodes whose subtrees are not shown, as in `data-name` of the SVG; `+notes` among them
             shows all notes, `-notes` folds them.  Without either they are folded if more than 60 nodes are shown.
 
     Raises:
         KeyError: there is no such file.
     """
-    shown = [foldable(figure, folded) for figure in figures(workspace, path, with_qualities=True)]
+    shown = [foldable(figure, folded) for figure in figures(workspace, path, True, measured_by)]
     keys = {box.key for figure in shown for box in figure.boxes}
     if "-notes" in folded or (len(keys) > _MOST_WITH_NOTES and "+notes" not in folded):
         shown = [
@@ -89,7 +92,7 @@ def _folded(notes: tuple[Note, ...]) -> tuple[Note, ...]:
     name = first.key.rpartition(".")[2] if first.kind == "quality" else first.key
     title = name if len(notes) == 1 else f"{name} +{len(notes) - 1}"
     text = "; ".join(note.text or note.title for note in notes)
-    return (replace(first, title=title, lines=(), text=text, state="folded"),)
+    return (replace(first, title=title, lines=(), text=text, state="folded", measured=()),)
 
 
 def _kept(box: Box, name: str, below: list[Box], now: dict[int, int]) -> Box:

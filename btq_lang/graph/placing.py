@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final, TypeAlias
 
-from btq_lang.graph.figure import Box, Figure, Note
+from btq_lang.graph.figure import Box, Figure, Measured, Note
 from btq_lang.graph.layout import Size, layout
 from btq_lang.graph.widths import shortened, width, wrapped
 from btq_lang.util.record import Record
@@ -35,11 +35,17 @@ class Rectangle(Record):
 
 
 class PlacedNote(Record):
-    """A note; lines: its texts, broken to fit, the title first."""
+    """A note.
+
+    Attributes:
+        lines: its texts, broken to fit, the title first, each with the height of its base line.
+        sparklines: of what its clauses measured.
+    """
 
     note: Note
     at: Rectangle
-    lines: tuple[str, ...]
+    lines: tuple[tuple[int, str], ...]
+    sparklines: tuple[tuple[Rectangle, Measured], ...]
 
 
 class PlacedBox(Record):
@@ -86,11 +92,20 @@ def place(figure: Figure, direction: str = "down") -> Drawing:
 
 def note_lines(note: Note) -> tuple[str, ...]:
     """The title and the clauses; of a quality whose name is too wide the last part, the most specific."""
+    return tuple(line for lines, _ in _sections(note) for line in lines)
+
+
+def _sections(note: Note) -> list[tuple[tuple[str, ...], Measured | None]]:
+    """The lines of a note, broken to fit; those of what a clause measured with its sparkline below them."""
     title = note.title
     if note.kind == "quality" and width(title, SMALL, bold=True) > _NOTE_ROOM:
         title = title.rpartition(".")[2]
-    lines = [part for line in note.lines for part in wrapped(line, SMALL, _NOTE_ROOM, _NOTE_MOST)]
-    return (shortened(title, SMALL, _NOTE_ROOM), *lines)
+    own = (shortened(title, SMALL, _NOTE_ROOM), *_wrapped(note.lines))
+    return [(own, None), *((_wrapped(measured.lines), measured) for measured in note.measured)]
+
+
+def _wrapped(lines: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(part for line in lines for part in wrapped(line, SMALL, _NOTE_ROOM, _NOTE_MOST))
 
 
 class _Part:
@@ -106,9 +121,8 @@ class _Part:
         self._down = down
         self._lines = (shortened(box.title, TITLE, _ROOM), *(shortened(line, SMALL, _ROOM) for line in box.lines))
         self._w, self._h = _box_size(box, self._lines)
-        self._notes = [note_lines(note) for note in box.notes]
-        self._note_w = max((_note_width(lines) for lines in self._notes), default=0)
-        heights = [len(lines) * LEADING + _NOTE_PAD for lines in self._notes]
+        self._note_w = max(map(_note_width, box.notes), default=0)
+        heights = [_note_height(note) for note in box.notes]
         notes_h = sum(heights) + _NOTE_GAP * (len(heights) - 1) if heights else 0
         self._heights = heights
         # To the right of the box: for leaves of trees that grow right, and inner nodes of trees that grow down.
@@ -134,8 +148,8 @@ class _Part:
             left, top = x + (self.w - self._note_w) // 2, at.y + at.h + _TIE
         else:
             left, top = x + _INDENT, at.y + at.h + _TIE
-        for note, lines, height in zip(self._box.notes, self._notes, self._heights, strict=True):
-            notes.append(PlacedNote(note, Rectangle(left, top, self._note_w, height), lines))
+        for note, height in zip(self._box.notes, self._heights, strict=True):
+            notes.append(_placed_note(note, Rectangle(left, top, self._note_w, height)))
             top += height + _NOTE_GAP
         return PlacedBox(self._box, at, self._lines, tuple(notes), self._edge(at, parent), self._ties(at, notes))
 
@@ -174,8 +188,29 @@ def _box_size(box: Box, lines: tuple[str, ...]) -> tuple[int, int]:
     return max(w + w % 2, _LEAST), h + h % 2
 
 
-def _note_width(lines: tuple[str, ...]) -> int:
-    return max(width(lines[0], SMALL, bold=True), *(width(line, SMALL) for line in lines)) + 2 * _NOTE_PAD
+def _note_width(note: Note) -> int:
+    lines = note_lines(note)
+    least = _NOTE_ROOM if note.measured else 0
+    return max(least, width(lines[0], SMALL, bold=True), *(width(line, SMALL) for line in lines)) + 2 * _NOTE_PAD
+
+
+def _note_height(note: Note) -> int:
+    sparklines = sum(measured.has_values for measured in note.measured)
+    return len(note_lines(note)) * LEADING + sparklines * _SPARK + _NOTE_PAD
+
+
+def _placed_note(note: Note, at: Rectangle) -> PlacedNote:
+    lines: list[tuple[int, str]] = []
+    sparklines: list[tuple[Rectangle, Measured]] = []
+    top = at.y
+    for texts, measured in _sections(note):
+        lines += [(top + 15 + number * LEADING, text) for number, text in enumerate(texts)]
+        top += len(texts) * LEADING
+        if measured is not None and measured.has_values:
+            inner = Rectangle(at.x + _NOTE_PAD, top + 6, at.w - 2 * _NOTE_PAD, _SPARK - 6)
+            sparklines.append((inner, measured))
+            top += _SPARK
+    return PlacedNote(note, at, tuple(lines), tuple(sparklines))
 
 
 _GAP: Final = 20  # between siblings
@@ -189,3 +224,4 @@ _NOTE_ROOM: Final = 190
 _NOTE_MOST: Final = 3  # lines of one clause
 _NOTE_PAD: Final = 8
 _NOTE_GAP: Final = 6
+_SPARK: Final = 36  # a sparkline with the gap above it

@@ -13,6 +13,7 @@ from typing import Final
 
 from btq_lang.graph.figure import Figure
 from btq_lang.graph.placing import LEADING, MARGIN, SMALL, TITLE, Drawing, Line, PlacedBox, PlacedNote, Rectangle, place
+from btq_lang.graph.sparkline import sparkline
 from btq_lang.graph.widths import width
 
 # Selectors, properties, and colours on light and dark background; text has a contrast of at least 4.5.
@@ -31,6 +32,10 @@ _COLOURS: Final = (
     (".note .outline", "stroke", "#a8650f", "#e0a55a"),
     (".note.quality .outline", "fill", "#e7f5ec", "#183625"),
     (".note.quality .outline", "stroke", "#2f7d4f", "#6cc592"),
+    (".note.violated .outline", "stroke", "#b3261e", "#ff8f85"),
+    (".sparkline .value", "stroke", "#3b4754", "#aeb9c4"),
+    (".sparkline .last", "stroke", "#14181c", "#eef1f4"),
+    (".sparkline .limit, .sparkline .broken", "stroke", "#b3261e", "#ff8f85"),
 )
 STYLE: Final = """\
 text { font-family: "Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif; text-anchor: middle; }
@@ -45,6 +50,11 @@ text.caption { text-anchor: start; }
 .note.monitored .outline, .note.quality .outline { stroke-dasharray: 6 3; }
 .note.enforced .outline { stroke-width: 2.4; }
 .note.reviewed .outline { stroke-dasharray: 1.5 2.5; }
+.note.violated .outline { stroke-width: 2.4; }
+.sparkline path { fill: none; stroke-width: 1.2; }
+.sparkline .limit { stroke-dasharray: 5 3; }
+.sparkline .broken { stroke-width: 1.8; }
+.sparkline .last { stroke-width: 5; stroke-linecap: round; }
 """
 
 
@@ -126,18 +136,20 @@ def _box(placed: PlacedBox, above: str) -> Iterator[str]:
 
 def _note(placed: PlacedNote) -> Iterator[str]:
     note, at = placed.note, placed.at
-    yield f'<g class="note {note.kind} {note.state}" data-note="{escape(note.key)}">'.replace(' "', '"')
+    states = " ".join(filter(None, (note.kind, note.state, *dict.fromkeys(each.verdict for each in note.measured))))
+    yield f'<g class="note {states}" data-note="{escape(note.key)}">'
     yield f"<title>{escape(note.text or note.title)}</title>"
     if note.link:
         yield f'<a href="{escape(note.link)}">'
     radius, left = 3, at.x + 8
     if note.kind == "quality" and len(placed.lines) == 1:
-        radius, left = at.h // 2, at.x + (at.w - width(placed.lines[0], SMALL, bold=True)) // 2
+        radius, left = at.h // 2, at.x + (at.w - width(placed.lines[0][1], SMALL, bold=True)) // 2
     yield f'<rect class="outline" x="{at.x}" y="{at.y}" width="{at.w}" height="{at.h}" rx="{radius}"/>'
-    for number, line in enumerate(placed.lines):
+    for number, (y, line) in enumerate(placed.lines):
         kind = "title" if number == 0 else "small"
-        y = at.y + 15 + number * LEADING
         yield f'<text class="{kind}" font-size="{SMALL}" x="{left}" y="{y}">{escape(line)}</text>'
+    for inside, measured in placed.sparklines:
+        yield from sparkline(measured, inside)
     yield from ("</a>", "</g>") if note.link else ("</g>",)
 
 

@@ -12,6 +12,7 @@ from weakref import ReferenceType, ref
 
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import RULES
+from btq_lang.evidence.boxes import measured_of
 from btq_lang.evidence.open_verdicts import open_clauses, open_reason
 from btq_lang.evidence.outline import Demand, outline
 from btq_lang.evidence.rejudging import Shown, shown_now
@@ -28,6 +29,7 @@ from btq_lang.evidence.verdicts import (
     RequirementVerdict,
 )
 from btq_lang.evidence.written_verdicts import WrittenMission
+from btq_lang.graph.missions import MeasuredBy
 from btq_lang.ide.clause_enforcement import MOST_MISSIONS, missions_of
 from btq_lang.ide.meaning import Subject, definition
 from btq_lang.render.gfm import code, escaped, table
@@ -166,6 +168,11 @@ def is_outdated(workspace: Workspace, mission: str, evidence: Evidence) -> bool:
         return False
     was_edited = judged.written.outline != outline(requirements(workspace, mission))
     return was_edited or any(each.verdict is None for each in judged.shown)
+
+
+def measured_in(workspace: Workspace, path: str, evidence: Evidence) -> MeasuredBy:
+    """A function from a requirement at what it applies to, to what logs of the file's missions show of it."""
+    return measured_of(shown for judged in _on_missions(workspace, path, evidence) for shown in judged.shown)
 
 
 def _on_missions(workspace: Workspace, path: str, evidence: Evidence) -> Iterator[Judged]:

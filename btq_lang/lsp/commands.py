@@ -60,9 +60,15 @@ def register(server: Server) -> None:
         workspace, path = mission(document, reads=True)
         from btq_lang.graph.picture import picture as drawn  # as above
 
-        found = drawn(workspace, path, folded)
-        places = {key: convert.range(workspace, path, span).start for key, span in found.places.items()}
-        return {"svg": found.svg, "nodes": places}
+        evidence = server.session.evidence(workspace)
+        if evidence is None:
+            shown = drawn(workspace, path, folded)
+        else:
+            from btq_lang.ide.verdicts import measured_in  # few projects have logs
+
+            shown = drawn(workspace, path, folded, measured_in(workspace, path, evidence))
+        places = {key: convert.range(workspace, path, span).start for key, span in shown.places.items()}
+        return {"svg": shown.svg, "nodes": places}
 
     @server.command(OVERVIEW)
     def overview(document: types.TextDocumentIdentifier) -> str:

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 RUNS = "btq.server.runs"
 RUN = "btq.server.run"
+JUDGED = "$/btq/judged"  # a notification: pictures and overviews that the editor shows are outdated
 
 
 def register(server: Server) -> None:
@@ -192,6 +193,7 @@ class Logs:
         self._server.session.show(root, Evidence(root, by_path))
         self._server.check_soon(self._server.session.paths())
         self._server.refresh()
+        self._server.protocol.notify_plain(JUDGED, {})
         _forget_others(summary, root)
 
 

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.qualities import Edition, get, qualities
 from btq_lang.diagnostics.model import Place
+from btq_lang.evidence.boxes import measured_by
 from btq_lang.evidence.sentences import result
 from btq_lang.evidence.verdicts import WORST_FIRST, RequirementVerdict
-from btq_lang.graph.figure import Box, Note
-from btq_lang.graph.missions import by_tree, clauses_in_words, concerns, figure
-from btq_lang.requirements.model import Applied, Mission, Requirement, Span, Target, Total
+from btq_lang.graph.figure import Box, Measured, Note
+from btq_lang.graph.missions import by_tree, concerns, figure, requirement_note
+from btq_lang.requirements.model import Applied, Mission, Requirement, Target
 from btq_lang.requirements.resolve import Requirements, requirements
 from btq_lang.syntax.tree import QualityDecl
 from btq_lang.trace.meanings import Meaning, Meanings
@@ -207,6 +208,7 @@ class _Collector:
         for name in dict.fromkeys(each.requirement.name for each in found.applied):
             known = self._loose.get(places[name], [claim.text for claim in found.all[name].claims])
             self._loose[places[name]] = [text for text in known if (name, text) in loose]
+        measured = measured_by(found, self._verdicts_of(path)) if self._verdicts_of is not None else lambda _: ()
         for applied, clauses in zip(found.applied, self._ways(workspace, path, found), strict=True):
             at = places[applied.requirement.name]
             sources = applied.nodes
@@ -220,7 +222,7 @@ class _Collector:
                 tuple(clauses),
             )
             self._uses[at][use] = None
-            note = _note(self._requirements[at].key, applied, use)
+            note = _note(self._requirements[at].key, applied, use, measured(applied))
             for source in sources:
                 self._notes[id(source.node)].setdefault((note.key, use.arguments, tuple(note.lines)), note)
         for trace in found.traces:
@@ -330,16 +332,11 @@ def _name(source: ResolvedNode) -> str:
     return source.shown.removeprefix("`").removesuffix("`")
 
 
-def _note(key: str, applied: Applied, use: Use) -> Note:
+def _note(key: str, applied: Applied, use: Use, measured: tuple[Measured, ...]) -> Note:
     """The note at a node; its state is that of the weakest clause."""
-    name = applied.requirement.name
-    found = {clause.way for clause in use.clauses}
-    state = next((way for way in ("reviewed", "monitored", "enforced") if way in found), "")
-    lines = clauses_in_words(applied)
-    if isinstance(applied.subject, Span | Total):
-        lines = (applied.requirement.claims[0].text, *lines[1:])
-    text = "; ".join((f"{name}{use.arguments}", *lines, *([state] if state else [])))
-    return Note("requirement", key, name + use.arguments, lines, text, state, f"#{key}")
+    ways = {clause.way for clause in use.clauses}
+    state = next((way for way in ("reviewed", "monitored", "enforced") if way in ways), "")
+    return replace(requirement_note(key, applied, measured, state), link=f"#{key}")
 
 
 def _stated(requirement: Requirement) -> Iterator[str]:

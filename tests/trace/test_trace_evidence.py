@@ -184,9 +184,8 @@ def test_evidence_that_cannot_be_read(folder: Path, capsys: pytest.CaptureFixtur
     printed = capsys.readouterr()
     assert printed.out == without
     assert printed.err.splitlines() == [
-        "btq trace: kept: a store; write its verdicts with btq verify --store kept -o verdicts.json,"
-        " and give that file",
         "btq trace: other.json: expected what btq verify --format json writes;"
         " write such a file with btq verify LOG -o verdicts.json",
+        "btq trace: kept: no verdicts are kept there; keep some with btq verify LOG --store kept",
         "btq trace: gone.btlog: cannot be read: No such file or directory",
     ]

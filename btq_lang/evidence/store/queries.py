@@ -199,6 +199,43 @@ QUERIES: Final = {
     """,
 }
 
+# The last runs with a judgement of each clause, among the last thousand of the mission: the worst verdict of each, and
+# the measure closest to its bound, or furthest beyond it.
+BY_RUN: Final = """
+    SELECT * FROM (
+        SELECT worst.*, ROW_NUMBER() OVER (
+            PARTITION BY {by}, requirement, clause, node ORDER BY run_start_us DESC, log DESC, run DESC
+        ) AS back
+        FROM (
+            SELECT measures.*,
+                MIN(rank) OVER (PARTITION BY {by}, requirement, clause, node, log, run) AS worst_rank,
+                ROW_NUMBER() OVER (
+                    PARTITION BY {by}, requirement, clause, node, log, run
+                    ORDER BY CASE WHEN si IS NULL THEN 1 ELSE 0 END, rank,
+                        CASE WHEN rank = 0 THEN -ABS(si - bound_si) ELSE ABS(si - bound_si) END
+                ) AS place
+            FROM (
+                SELECT {by_verdicts}, requirement, clause, node, verdicts.log AS log, verdicts.run AS run,
+                    recent.start_us AS run_start_us, bound_si,
+                    CASE WHEN most_si IS NULL OR verdict = 'violated' THEN measured_si END AS si,
+                    CASE WHEN verdict = 'violated' THEN 0 WHEN verdict = 'unknown' THEN 1 ELSE 2 END AS rank
+                FROM verdicts
+                JOIN (
+                    SELECT log, run, start_us, ROW_NUMBER() OVER (
+                        PARTITION BY mission ORDER BY start_us DESC, log DESC, run DESC
+                    ) AS back
+                    FROM runs
+                ) AS recent
+                    ON verdicts.log = recent.log AND verdicts.run = recent.run
+                WHERE recent.back <= 1000
+            ) AS measures
+        ) AS worst
+        WHERE place = 1
+    ) AS placed
+    WHERE back <= {most}
+    ORDER BY back DESC
+"""
+
 # What an overview shows beside the verdicts.
 OVERVIEW: Final = {
     # The labels in the order of time.

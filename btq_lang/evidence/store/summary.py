@@ -16,21 +16,24 @@ from btq_lang.diagnostics.model import Place
 from btq_lang.evidence.clause_findings import verdict_of
 from btq_lang.evidence.conditions import Measure
 from btq_lang.evidence.odds import Limits
-from btq_lang.evidence.store.queries import QUERIES, Ask, Row
-from btq_lang.evidence.tally import Run, Tally
+from btq_lang.evidence.store.queries import BY_RUN, QUERIES, Ask, Row
+from btq_lang.evidence.tally import MOST_RUNS, Run, Tally
 from btq_lang.evidence.verbs import Judgement
 from btq_lang.evidence.verdicts import (
     OPEN,
     OUTCOMES,
     SATISFIED,
     UNKNOWN,
+    VIOLATED,
     Bounded,
     ClauseVerdict,
     MissionVerdicts,
     Repeats,
     Report,
     RequirementVerdict,
+    RunValue,
     Source,
+    Verdict,
     Violation,
     Worst,
     worst_of,
@@ -43,32 +46,35 @@ from btq_lang.util.text import Span, counted
 _VIOLATIONS: Final = 10  # named of each clause
 
 
-def summary(ask: Ask, store: str, parts: Sequence[str] = ()) -> Report:
+def summary(ask: Ask, store: str, parts: Sequence[str] = (), *, by_run: bool = False) -> Report:
     """The verdicts of all runs in a store.
 
     Args:
         ask: gives an engine a question.
         store: its name, as people read it.
         parts: `label` and `robot`, as far as those have verdicts of their own.
+        by_run: as of `parted`.
     """
-    return Report(tuple(mission for _, mission in parted(ask, store, parts)), (), ())
+    return Report(tuple(mission for _, mission in parted(ask, store, parts, by_run=by_run)), (), ())
 
 
 def parted(
-    ask: Ask, store: str, parts: Sequence[str], violations: int = _VIOLATIONS
+    ask: Ask, store: str, parts: Sequence[str], violations: int = _VIOLATIONS, *, by_run: bool = False
 ) -> Iterator[tuple[Row, MissionVerdicts]]:
     """What happened in the runs of each mission and part, as counts, and their verdicts.
 
     Args:
         violations: how many of each clause are named.
+        by_run: what the last runs show of each clause is asked for, too.
     """
     by = ("mission", *parts)
     columns = {"by": ", ".join(by), "by_verdicts": ", ".join(f"verdicts.{each}" for each in by)}
-    columns["violations"] = str(violations)
+    columns["violations"], columns["most"] = str(violations), str(MOST_RUNS)
     found = {name: ask(text.format(**columns)) for name, text in QUERIES.items()}
     part_of, clause_of = itemgetter(*by), itemgetter(*by, "requirement", "clause", "node")
     counts = {clause_of(row): row for row in found["verdicts"]}
     broken, recent = (grouped((clause_of(row), row) for row in found[name]) for name in ("violations", "recent"))
+    runs = grouped((clause_of(row), row) for row in ask(BY_RUN.format(**columns))) if by_run else {}
     clauses = grouped((part_of(row), row) for row in found["clauses"])
     repeated = {part_of(row): row for row in found["repeated"]}
     for part in found["runs"]:
@@ -76,7 +82,7 @@ def parted(
         titles = {}
         for row in clauses.get(part_of(part), ()):
             key = clause_of(row)
-            verdict = _verdict(row, counts.get(key), broken.get(key, ()), recent.get(key, ()))
+            verdict = _verdict(row, counts.get(key), broken.get(key, ()), recent.get(key, ()), runs.get(key, ()))
             judged.setdefault(row["requirement"], []).append(verdict)
             titles[row["requirement"]] = row["title"] or ""
         requirements = [
@@ -122,7 +128,9 @@ def _mission(
     )
 
 
-def _verdict(row: Row, counts: Row | None, broken: Sequence[Row], recent: Sequence[Row]) -> ClauseVerdict:
+def _verdict(
+    row: Row, counts: Row | None, broken: Sequence[Row], recent: Sequence[Row], runs: Sequence[Row]
+) -> ClauseVerdict:
     """The verdict on a clause.
 
     Args:
@@ -130,11 +138,13 @@ def _verdict(row: Row, counts: Row | None, broken: Sequence[Row], recent: Sequen
         counts: of its judgements; None without any.
         broken: its violations, the worst first.
         recent: the judgements that its window covers.
+        runs: what the last runs show of it.
     """
     unit = parse_unit(row["unit"] or "1")
     assert unit is not None, "a unit of the table, as it was written"
     is_windowed = row["last_number"] is not None or row["last_seconds"] is not None
     tally = _recent(row, recent, unit) if is_windowed else _counted(row, counts, broken, unit)
+    tally.by_run = tuple(_run_value(each, unit) for each in runs)
     verdict, why = verdict_of(tally, row["missing"] or "", bool(row["exercised"]))
     is_open = row["counts"] == OPEN
     return ClauseVerdict(
@@ -224,6 +234,12 @@ def _violation(row: Row, unit: Unit) -> Violation:
     )
 
 
+def _run_value(row: Row, unit: Unit) -> RunValue:
+    si = row["si"]
+    text = measured(si, unit, row["bound_si"]) if si is not None else ""
+    return RunValue(row["run"], row["run_start_us"], _RANKS[row["worst_rank"]], si, text)
+
+
 def _measure(row: Row, unit: Unit) -> Measure | None:
     """What was measured, on the side of its bound that the verdict tells."""
     si, bound = row["measured_si"], row["bound_si"]
@@ -233,4 +249,5 @@ def _measure(row: Row, unit: Unit) -> Measure | None:
     return Measure(si, relation, Value(quantity(bound, unit), bound, unit), unit)
 
 
+_RANKS: Final[tuple[Verdict, ...]] = (VIOLATED, UNKNOWN, SATISFIED)  # as in `BY_RUN`
 _SAME: Final = 1e-9  # of the larger value: what subtracting and adding a bound may round off

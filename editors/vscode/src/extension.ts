@@ -43,6 +43,10 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   const xml = new XmlView(context, ask);
   const tree = new TreeView(context, ask);
   const overview = new OverviewView(context, ask);
+  const judged = (): void => {
+    tree.soon();
+    void overview.draw();
+  };
   const tasks = new Tasks(line, () => {
     return (client?.isRunning() ?? false) && vscode.workspace.getConfiguration("btq").get("checkClosedFiles", true);
   });
@@ -52,7 +56,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   const restart = (): Promise<void> => {
     isWanted = true;
     waiting += 1;
-    return (turn = turn.then(() => start(context, log, status)));
+    return (turn = turn.then(() => start(context, log, status, judged)));
   };
   const again = async (): Promise<void> => (isWanted ? restart() : undefined);
   // The first document for btq is enough; other XML does not start the server.
@@ -147,6 +151,7 @@ async function start(
   context: vscode.ExtensionContext,
   log: vscode.LogOutputChannel,
   status: vscode.LanguageStatusItem,
+  judged: () => void,
 ): Promise<void> {
   await client?.dispose().catch((error: unknown) => log.warn(`the server did not stop: ${error}`));
   client = undefined;
@@ -190,6 +195,7 @@ async function start(
         newState === State.Stopped ? vscode.LanguageStatusSeverity.Error : vscode.LanguageStatusSeverity.Information;
       status.detail = newState === State.Stopped ? "stopped" : server?.origin;
     });
+    client.onNotification("$/btq/judged", judged);
     await client.start();
     const version = client.initializeResult?.serverInfo?.version;
     status.text = version ? `btq ${version}` : "btq";

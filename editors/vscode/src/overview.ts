@@ -55,7 +55,8 @@ export class OverviewView {
     await leaveHalf(this.panel.viewColumn);
   }
 
-  private async draw(): Promise<void> {
+  /** Draw again, if an overview is shown. */
+  async draw(): Promise<void> {
     if (!this.panel || !this.document) return;
     try {
       const page = await this.asked(this.document);

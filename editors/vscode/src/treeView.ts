@@ -128,7 +128,8 @@ export class TreeView {
     }
   }
 
-  private soon(): void {
+  /** Draw again shortly, if a tree is shown. */
+  soon(): void {
     clearTimeout(this.timer);
     if (this.panel) this.timer = setTimeout(() => void this.draw(), 200);
   }

@@ -1,4 +1,4 @@
-"""The verdicts beside the requirements of `btq trace`: those of a file, or judged by logs."""
+"""The verdicts beside the requirements of an overview or a drawing: those of a file or a store, or judged by logs."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.commands.candidates import candidate, name_of, side_of
 from btq_lang.commands.progress import Progress
+from btq_lang.commands.stored import store_of_project
 from btq_lang.commands.verify import logs_of
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.readers.side import side_files_beside
@@ -29,29 +30,39 @@ def verdicts_for(given: Sequence[str], groups: Sequence[Group], problems: list[s
     """A function from the path of a mission to the verdicts on it; None: there is no evidence.
 
     Args:
-        given: files that `btq verify --format json` wrote, and logs; none: the logs of the project, if there are any.
+        given: files that `btq verify --format json` wrote, stores, and logs; none: the logs of the project, if there
+            are any, else its store.
         problems: errors are appended.
     """
+    given = evidence_paths(given)
+    if not given:
+        return None
     documents = [path for path in given if path.endswith(".json")]
     logs = [path for path in given if path not in documents]
-    if not given:
-        logs = [path for path in logs_of(find_project(".").project) if os.path.exists(path)]
-        if not logs:
-            return None
-    stores = [path for path in logs if glob(os.path.join(escape(path), "*", ABOUT))]  # of btq verify --store
-    instead = "write its verdicts with btq verify --store {} -o verdicts.json, and give that file"
-    problems += [f"{path}: a store; {instead.format(path)}" for path in stores]
+    stores = [path for path in logs if is_store(path)]
     logs = [path for path in logs if path not in stores]
     found: dict[str, list[RequirementVerdict]] = {}
     missions = {key for group in groups for path in group.given for key in (path, name_of(path))}
     for path in documents:
         _read(path, missions, found, problems)
+    for store in stores:
+        for name, verdicts in _stored(store, problems):
+            found.setdefault(name, []).extend(verdicts)
     if logs:
         for file, verdicts in _judged(logs, groups, problems):
             found.setdefault(file, []).extend(verdicts)
     if problems and not found:
         return None
     return lambda mission: found.get(mission) or found.get(name_of(mission), [])
+
+
+def evidence_paths(given: Sequence[str]) -> Sequence[str]:
+    """The paths of the evidence that counts; `given`: as of `verdicts_for`."""
+    if given:
+        return given
+    logs = [path for path in logs_of(find_project(".").project) if os.path.exists(path)]
+    store = store_of_project()
+    return logs or ([store] if store is not None and is_store(store) else [])
 
 
 def _read(path: str, missions: set[str], found: dict[str, list[RequirementVerdict]], problems: list[str]) -> None:
@@ -76,6 +87,24 @@ def _read(path: str, missions: set[str], found: dict[str, list[RequirementVerdic
         found.setdefault(key, []).extend(requirements)
 
 
+def is_store(path: str) -> bool:
+    """Whether `btq verify --store` keeps verdicts there."""
+    return "://" in path or bool(glob(os.path.join(escape(path), "*", ABOUT)))
+
+
+def _stored(store: str, problems: list[str]) -> Sequence[tuple[str, Sequence[RequirementVerdict]]]:
+    """The verdicts of the runs in a store, by the name of the mission."""
+    from btq_lang.evidence.store.engine import NoEngine, asked  # which needs DuckDB
+    from btq_lang.evidence.store.summary import summary
+
+    try:
+        report = summary(asked(store), store, by_run=True)
+    except NoEngine as error:
+        problems.append(str(error))
+        return ()
+    return [(mission.name, mission.requirements) for mission in report.missions]
+
+
 def _judged(
     given: Sequence[str], groups: Sequence[Group], problems: list[str]
 ) -> Iterator[tuple[str, Sequence[RequirementVerdict]]]:
@@ -95,7 +124,7 @@ def _judged(
     with Progress(len(logs), "read") as progress:
         verification = judged(
             logs,
-            Means(missions, sources=sources, of_files=of_files),
+            Means(missions, sources=sources, of_files=of_files, with_measures=True),
             (),
             progress=lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"),
         )
