@@ -7,11 +7,13 @@ import json
 import re
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import pytest
+from evidence_logs import MAIN, MAIN_XML, btlog, rows
 
 from btq_lang.cli import main
 
@@ -204,3 +206,21 @@ def test_what_cannot_be_shown(
     said = capsys.readouterr().err.splitlines()
     assert [line.rpartition(": ")[2] for line in said[:2]] == ["no such file", "expected a file, found a folder"]
     assert [line.split(":")[1] for line in said[2:]] == [f" port {port}", " port 99999"]
+
+
+def test_what_logs_show_is_drawn_when_they_are_judged(preview: Callable[..., Previewed], tmp_path: Path) -> None:
+    demand = "QualityReq quick : performance-efficiency\n    Move takes at most 30 ms\n"
+    (tmp_path / "main.btq").write_text(demand + MAIN)
+    (tmp_path / "btq.toml").write_text('[evidence]\nlogs = ["*.btlog"]\n')
+    (tmp_path / "run.btlog").write_bytes(btlog(MAIN_XML, rows("0 1R 2R 20 2S 3R 60 3S 1S")))
+    previewed = preview("main.btq")
+
+    def wait_for(words: str) -> None:
+        while words not in previewed.ask("POST", "/picture", {"folded": []})[1]["svg"]:
+            time.sleep(0.05)
+
+    wait_for("last run: 20 ms, satisfied")
+    (tmp_path / "run.btlog").write_bytes(btlog(MAIN_XML, rows("0 1R 2R 40 2S 3R 60 3S 1S")))
+    wait_for("last run: 40 ms, violated")
+    (tmp_path / "main.btq").write_text(demand.replace("30", "50") + MAIN)
+    wait_for("last run: 40 ms, satisfied")

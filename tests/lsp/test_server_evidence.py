@@ -103,6 +103,23 @@ def test_an_edited_bound_is_judged_at_once_and_an_edited_tree_is_an_earlier_one(
     assert sorted((folder.parent / "cache" / "btq").iterdir()) == before
 
 
+def test_the_picture_has_what_logs_show_of_the_present_text(folder: Path, editor: Editor) -> None:
+    document = {"uri": editor.uri("main.btq")}
+
+    def picture() -> str:
+        svg: str = editor.request("workspace/executeCommand", command="btq.server.picture", arguments=[document])["svg"]
+        return svg
+
+    editor.open("main.btq", TEXT)
+    editor.wait_for(lambda message: message.get("method") == "$/btq/judged")
+    assert "last run: 40 ms, violated" in picture()
+    assert picture().count('class="broken"') == 1
+    editor.change("main.btq", TEXT.replace("30 ms", "45 ms"))
+    assert "last run: 40 ms, satisfied" in picture()
+    editor.change("main.btq", TEXT.replace("30 ms", "15 ms"))
+    assert picture().count('class="broken"') == 2
+
+
 def test_other_logs_are_read(folder: Path, editor: Editor) -> None:
     editor.open("main.btq", TEXT)
     found(editor, "requirement-violated", "never-exercised")
