@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.commands.candidates import candidate, name_of, side_of
 from btq_lang.commands.progress import Progress
-from btq_lang.commands.stored import store_of_project
+from btq_lang.commands.stored import store_of
 from btq_lang.commands.verify import logs_of
 from btq_lang.evidence.judging import Means
 from btq_lang.evidence.readers.side import side_files_beside
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from btq_lang.commands.files import Group
     from btq_lang.evidence.verdicts import RequirementVerdict
     from btq_lang.trace.collect import VerdictsOf
+    from btq_lang.workspace.config import Project
 
 
 def verdicts_for(given: Sequence[str], groups: Sequence[Group], problems: list[str]) -> VerdictsOf | None:
@@ -34,38 +35,39 @@ def verdicts_for(given: Sequence[str], groups: Sequence[Group], problems: list[s
             are any, else its store.
         problems: errors are appended.
     """
-    given = evidence_paths(given)
+    given = evidence_paths(given, groups)
     if not given:
         return None
     documents = [path for path in given if path.endswith(".json")]
     logs = [path for path in given if path not in documents]
     stores = [path for path in logs if is_store(path)]
     logs = [path for path in logs if path not in stores]
-    found: dict[str, list[RequirementVerdict]] = {}
+    by_mission: dict[str, list[RequirementVerdict]] = {}
     missions = {key for group in groups for path in group.given for key in (path, name_of(path))}
     for path in documents:
-        _read(path, missions, found, problems)
+        _read(path, missions, by_mission, problems)
     for store in stores:
         for name, verdicts in _stored(store, problems):
-            found.setdefault(name, []).extend(verdicts)
+            by_mission.setdefault(name, []).extend(verdicts)
     if logs:
         for file, verdicts in _judged(logs, groups, problems):
-            found.setdefault(file, []).extend(verdicts)
-    if problems and not found:
+            by_mission.setdefault(file, []).extend(verdicts)
+    if problems and not by_mission:
         return None
-    return lambda mission: found.get(mission) or found.get(name_of(mission), [])
+    return lambda mission: by_mission.get(mission) or by_mission.get(name_of(mission), [])
 
 
-def evidence_paths(given: Sequence[str]) -> Sequence[str]:
+def evidence_paths(given: Sequence[str], groups: Sequence[Group]) -> Sequence[str]:
     """The paths of the evidence that counts; `given`: as of `verdicts_for`."""
     if given:
         return given
-    logs = [path for path in logs_of(find_project(".").project) if os.path.exists(path)]
-    store = store_of_project()
+    project = _project(groups)
+    logs = [path for path in logs_of(project) if os.path.exists(path)]
+    store = store_of(project)
     return logs or ([store] if store is not None and is_store(store) else [])
 
 
-def _read(path: str, missions: set[str], found: dict[str, list[RequirementVerdict]], problems: list[str]) -> None:
+def _read(path: str, missions: set[str], by_mission: dict[str, list[RequirementVerdict]], problems: list[str]) -> None:
     """Add the verdicts of a file, by the path of the mission and, for a file written elsewhere, by its name."""
     text, problem = read(absolute(path))
     if text is None or problem is not None:
@@ -84,7 +86,11 @@ def _read(path: str, missions: set[str], found: dict[str, list[RequirementVerdic
         names = "; ".join(key for key in of_file if not os.path.isabs(key))
         problems.append(f"{shown(absolute(path))}: no verdicts of these missions, only of {names}")
     for key, requirements in of_file.items():
-        found.setdefault(key, []).extend(requirements)
+        by_mission.setdefault(key, []).extend(requirements)
+
+
+def _project(groups: Sequence[Group]) -> Project:
+    return groups[0].project if groups else find_project(".").project
 
 
 def is_store(path: str) -> bool:
@@ -108,7 +114,7 @@ def _stored(store: str, problems: list[str]) -> Sequence[tuple[str, Sequence[Req
 def _judged(
     given: Sequence[str], groups: Sequence[Group], problems: list[str]
 ) -> Iterator[tuple[str, Sequence[RequirementVerdict]]]:
-    project = groups[0].project if groups else find_project(".").project
+    project = _project(groups)
     logs, wrong = logs_below(given, project)
     sides = {side.mission: side for side in side_files_beside(logs)}
     missions = [

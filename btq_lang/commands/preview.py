@@ -145,8 +145,8 @@ class _Mission:
         while self._is_outdated.wait():
             self._is_outdated.clear()
             problems: list[str] = []
-            self._logs = tuple(evidence_paths(self._evidence))
             groups, _ = Files().groups([self.path])  # as saved: `measured_by` judges again what has been typed since
+            self._logs = tuple(evidence_paths(self._evidence, groups))
             verdicts_of = verdicts_for(self._logs, groups, problems) if self._logs else None
             for problem in problems:
                 print(f"btq preview: {problem}", file=sys.stderr)

@@ -15,11 +15,16 @@ from btq_lang.workspace.loader import find_project, shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.store.sets import Keeping
+    from btq_lang.workspace.config import Project
 
 
 def store_of_project() -> str | None:
-    """The folder that this folder's project names as its store, or what an engine knows, such as `s3://fleet/evidence`."""
-    project = find_project(".").project
+    """As of `store_of`, for this folder's project."""
+    return store_of(find_project(".").project)
+
+
+def store_of(project: Project) -> str | None:
+    """The folder that a project names as its store, or what an engine knows, such as `s3://fleet/evidence`."""
     store = project.evidence.store if project.evidence is not None else None
     return store if store is None or "://" in store else shown(os.path.join(project.root, store))
 

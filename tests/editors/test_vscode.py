@@ -462,6 +462,8 @@ def test_logs_are_judged_as_a_bound_is_typed_and_a_run_is_stepped_through_in_the
         assert frame.locator(".mark").all_text_contents() == [*marks]
 
     sees(6, "50 ms: Sequence::1 succeeded, 50 ms", "✔ 50 ms", "✔ 40 ms", "✔ 10 ms")
+    frame.locator(".note.violated", has_text="last run: 40 ms, violated").wait_for(state="attached")
+    assert frame.locator(".note .broken").count() == 2
     frame.locator("#step").click()  # in this browser the page has the keys only then
     code.keys("p")
     sees(5, "50 ms: Pick::3 succeeded, 10 ms", "…", "✔ 40 ms", "✔ 10 ms")
@@ -471,6 +473,8 @@ def test_logs_are_judged_as_a_bound_is_typed_and_a_run_is_stepped_through_in_the
     sees(4, "40 ms: Pick::3 starts", "…", "✔ 40 ms", "…")
     code.focus()
     code.save()
+    log.write_bytes(btlog(MAIN_XML, rows("0 1R 2R 10 2S 3R 60 3S 1S")))
+    frame.locator(".note.satisfied", has_text="last run: 10 ms, satisfied").wait_for(state="attached")
 
 
 COLUMNS = """[...document.querySelectorAll(".editor-group-container")].map(column =>

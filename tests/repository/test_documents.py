@@ -155,7 +155,7 @@ def environment(tmp_path: Path) -> dict[str, str]:
 @pytest.mark.skipif(os.name == "nt", reason="the blocks are for a POSIX shell")
 @pytest.mark.parametrize("block", [block for block in blocks("sh") if not block.values[0].startswith(INSTALLS)])
 def test_a_shell_block_runs(block: str, clone: Path, environment: dict[str, str], tmp_path: Path) -> None:
-    if "btq verify" in block or "run.db3" in block:
+    if any(words in block for words in ("btq verify", "run.db3", "--evidence logs")):
         _write_logs(clone)
     if "btq nodes" in block:
         pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
