@@ -50,19 +50,15 @@ def test_the_picture_is_that_of_the_mission(
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_the_verdicts_are_those_of_the_day(
-    page: str, shared: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+def test_the_verdicts_are_those_of_the_example(
+    page: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of docs/day-in-the-life.md, on a terminal of 88 columns."""
+    """On a terminal of 88 columns."""
     monkeypatch.chdir(tmp_path)
-    shutil.copy(shared / "logs" / "lab.btlog", "laboratory.btlog")
-    shutil.copy(shared / "logs" / "lab.battery.csv", "battery.csv")
-    Path("laboratory.btq").write_text(blocks("docs/day-in-the-life.md", "btq")[0], encoding="utf-8")
-    assert main(["build", "laboratory.btq"]) == 0
-    capsys.readouterr()
+    shutil.copytree(ROOT / "examples", "examples")
     monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     monkeypatch.setattr("btq_lang.commands.verdict_report.terminal_width", lambda: 88)
     command, _, shown = blocks(page, "console")[1].partition("\n")
     assert main(shlex.split(command)[2:]) == 1
-    assert f"\n\n{shown}\n" in capsys.readouterr().out
+    assert capsys.readouterr().out == shown
