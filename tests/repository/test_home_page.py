@@ -62,3 +62,30 @@ def test_the_verdicts_are_those_of_the_example(
     command, _, shown = blocks(page, "console")[1].partition("\n")
     assert main(shlex.split(command)[2:]) == 1
     assert capsys.readouterr().out == shown
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_both_missions_of_the_page_are_in_one_folder(
+    page: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both are called `deliver`, and the XML is the reader's own."""
+    monkeypatch.chdir(tmp_path)
+    (xml, *_), (mission, *_) = blocks(page, "xml"), blocks(page, "btq")
+    Path("deliver.xml").write_text(xml, encoding="utf-8")
+    Path("deliver.btq").write_text(mission, encoding="utf-8")
+
+    def btq(command: str) -> tuple[int, str, str]:
+        code = main(shlex.split(command)[1:])
+        return code, *capsys.readouterr()
+
+    check, _, findings = blocks(page, "console")[0].removeprefix("$ ").partition("\n")
+    assert btq(check) == (1, findings, "")
+    assert btq(PICTURE) == (0, "", "")
+    for command in ("btq build", "btq build deliver.btq"):
+        code, printed, messages = btq(command)
+        assert (code, printed) == (2, "")
+        assert "deliver.xml is in the way" in messages
+        assert "-o FOLDER" in messages
+    assert btq("btq build deliver.btq -o build")[:2] == (0, "wrote build/deliver.xml\nwrote build/deliver.qreq.json\n")
+    assert btq(check) == (1, findings, "")
+    assert Path("deliver.xml").read_text(encoding="utf-8") == xml
