@@ -24,6 +24,8 @@ class Endless(Exception):
 class Run:
     """Runs of one tree, one after the other: what a node remembers from one to the next it keeps."""
 
+    last = 500.0  # s, when a run that still goes on counts as endless
+
     def __init__(self, found: Requirements, root: ResolvedNode, seed: int, report: Report) -> None:
         self.found = found
         self.chance = random.Random(seed)
@@ -50,6 +52,10 @@ class Run:
         """How an activation of the leaf ends."""
         return self.chance.choice([SUCCESS, FAILURE])
 
+    def answer(self, condition: ResolvedNode) -> str:
+        """What a condition says when it is asked."""
+        return self.chance.choice([SUCCESS, SUCCESS, SUCCESS, FAILURE])
+
     def mission(self) -> None:
         """One run, from the first tick to the end.
 
@@ -63,7 +69,7 @@ class Run:
                 return
             later = [alarm for alarm in self.alarms if alarm > self.now]
             idle = 0 if later and not self.wakes else idle + 1
-            if idle > 20 or self.now > 500.0:
+            if idle > 20 or self.now > self.last:
                 break
             if later and not self.wakes:
                 following = min(later)
@@ -149,13 +155,12 @@ class Sim:
 
 class Leaf(Sim):
     def tick(self) -> str:
-        chance = self.run.chance
         if self.source.tag in ("AlwaysSuccess", "Script"):
             return SUCCESS
         if self.source.tag == "AlwaysFailure":
             return FAILURE
         if self.source.category == "Condition":
-            return chance.choice([SUCCESS, SUCCESS, SUCCESS, FAILURE])
+            return self.run.answer(self.source)
         assert self.started is not None
         if self.length is None:
             self.length = self.number("msec", 0) / 1000 if self.source.tag == "Sleep" else self.run.drawn(self.source)

@@ -50,19 +50,42 @@ def test_the_picture_is_that_of_the_mission(
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_the_verdicts_are_those_of_the_day(
-    page: str, shared: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+def test_the_verdicts_are_those_of_the_example(
+    page: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of docs/day-in-the-life.md, on a terminal of 88 columns."""
+    """On a terminal of 88 columns."""
     monkeypatch.chdir(tmp_path)
-    shutil.copy(shared / "logs" / "lab.btlog", "laboratory.btlog")
-    shutil.copy(shared / "logs" / "lab.battery.csv", "battery.csv")
-    Path("laboratory.btq").write_text(blocks("docs/day-in-the-life.md", "btq")[0], encoding="utf-8")
-    assert main(["build", "laboratory.btq"]) == 0
-    capsys.readouterr()
+    shutil.copytree(ROOT / "examples", "examples")
     monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     monkeypatch.setattr("btq_lang.commands.verdict_report.terminal_width", lambda: 88)
     command, _, shown = blocks(page, "console")[1].partition("\n")
     assert main(shlex.split(command)[2:]) == 1
-    assert f"\n\n{shown}\n" in capsys.readouterr().out
+    assert capsys.readouterr().out == shown
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_both_missions_of_the_page_are_in_one_folder(
+    page: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both are called `deliver`, and the XML is the reader's own."""
+    monkeypatch.chdir(tmp_path)
+    (xml, *_), (mission, *_) = blocks(page, "xml"), blocks(page, "btq")
+    Path("deliver.xml").write_text(xml, encoding="utf-8")
+    Path("deliver.btq").write_text(mission, encoding="utf-8")
+
+    def btq(command: str) -> tuple[int, str, str]:
+        code = main(shlex.split(command)[1:])
+        return code, *capsys.readouterr()
+
+    check, _, findings = blocks(page, "console")[0].removeprefix("$ ").partition("\n")
+    assert btq(check) == (1, findings, "")
+    assert btq(PICTURE) == (0, "", "")
+    for command in ("btq build", "btq build deliver.btq"):
+        code, printed, messages = btq(command)
+        assert (code, printed) == (2, "")
+        assert "deliver.xml is in the way" in messages
+        assert "-o FOLDER" in messages
+    assert btq("btq build deliver.btq -o build")[:2] == (0, "wrote build/deliver.xml\nwrote build/deliver.qreq.json\n")
+    assert btq(check) == (1, findings, "")
+    assert Path("deliver.xml").read_text(encoding="utf-8") == xml

@@ -1,0 +1,118 @@
+"""The log of examples/laboratory and its samples: fifty runs of the example's mission by a robot that is a model.
+
+The model of the engine runs the mission as it is written, without guards.  How long a skill takes, whether it fails,
+and what the battery loses meanwhile is drawn.  The same bytes come out every time.
+"""
+
+from __future__ import annotations
+
+import random
+from bisect import bisect_right
+from math import inf
+
+import engine_simulator as engine
+from evidence_logs import btlog
+from random_runs import START, LoggedRun
+from robot_log import logged_xml
+
+from btq_lang.evidence.identity import Candidate
+from btq_lang.evidence.model import Transition
+from btq_lang.workspace.resolved import ResolvedNode
+
+SEED = 7
+RUNS = 50
+MONDAY = 1_795_420_800  # s since the epoch: 2026-11-23 08:00 UTC
+SECONDS = {
+    "ToSolidStation": (9.0, 16.0),
+    "ToCharger": (14.0, 24.0),
+    "Pick": (4.0, 7.0),
+    "ReadLabel": (1.5, 3.0),
+    "Place": (4.0, 6.0),
+}
+DETOUR, DETOURS = (28.0, 38.0), 0.12  # s; the share of drives to the charger
+FAILURES = {"ToSolidStation": 0.003, "Pick": 0.003}  # shares of activations
+DRIVING, OTHERWISE, CHARGING = -0.5, -0.1, 1.0  # % of battery per s
+LOW, FULL = 20.0, 95.0  # %
+PERIOD = 4  # s between samples; the mission's `fresh within` is longer
+REPORT = 1.5  # kB that the label reader sends after each run
+PAUSE = 15.0  # s after each run
+
+
+def campaign(mission: Candidate) -> tuple[bytes, str]:
+    """The .btlog, and the CSV file of the signals."""
+    root = mission.requirements.mission
+    assert root is not None
+    rows: list[Transition] = []
+    robot = Robot(mission, root, random.Random(SEED), rows, resets=True)
+    reports = []
+    for _ in range(RUNS):
+        first = len(rows)
+        robot.tubes = robot.chance.choice([6, 6, 6, 5])
+        robot.mission()
+        robot.write(robot.root, engine.IDLE)
+        # Those of one tick have the same time in the model.
+        rows[first:] = [(time - START + 20 * index, *row) for index, (time, *row) in enumerate(rows[first:])]
+        reports.append(robot.now + PAUSE / 2)
+        robot.spend(PAUSE, OTHERWISE)
+        robot.now += PAUSE
+    lines = [
+        f"{MONDAY + second},{robot.battery(second):.1f},{REPORT * bisect_right(reports, second):g}"
+        for second in range(0, int(robot.now), PERIOD)
+    ]
+    csv = "\n".join(["t,battery,label_traffic", *lines, ""])
+    return btlog(logged_xml(mission), rows, MONDAY * 1_000_000), csv
+
+
+class Robot(LoggedRun):
+    """Runs of the mission, in which one skill works at a time.
+
+    Attributes:
+        tubes: left in the microplate.
+        changes: of the battery: from when on (s), from which level (%), and by how much per s.
+    """
+
+    last = inf
+    tubes = 0
+    changes: tuple[tuple[float, float, float], ...] = ((0.0, FULL, OTHERWISE),)
+
+    def drawn(self, leaf: ResolvedNode) -> float:
+        name = name_of(leaf)
+        if name == "Charge":  # until it is halted
+            seconds, rate = (FULL - self.battery(self.now)) / CHARGING, CHARGING
+        else:
+            bounds = DETOUR if name == "ToCharger" and self.chance.random() < DETOURS else SECONDS[name]
+            seconds, rate = round(self.chance.uniform(*bounds), 2), DRIVING if name.startswith("To") else OTHERWISE
+        self.spend(seconds, rate)
+        return seconds
+
+    def ended(self, leaf: ResolvedNode) -> str:
+        name = name_of(leaf)
+        if self.chance.random() < FAILURES.get(name, 0.0):
+            return engine.FAILURE
+        self.tubes -= name == "Pick"
+        return engine.SUCCESS
+
+    def answer(self, condition: ResolvedNode) -> str:
+        level = self.battery(self.now)
+        holds = {
+            "SensorsAlive": True,
+            "BatteryOk": level >= LOW,
+            "BatteryFull": level >= FULL,
+            "MicroplateNotEmpty": self.tubes > 0,
+        }[name_of(condition)]
+        return engine.SUCCESS if holds else engine.FAILURE
+
+    def spend(self, seconds: float, rate: float) -> None:
+        """The battery changes for a while, and then as it does otherwise."""
+        until = self.now + seconds
+        level = self.battery(self.now)
+        self.changes += ((self.now, level, rate), (until, level + seconds * rate, OTHERWISE))
+
+    def battery(self, time: float) -> float:
+        """Its level at a time, in %."""
+        begin, level, rate = self.changes[bisect_right(self.changes, time, key=lambda change: change[0]) - 1]
+        return level + (time - begin) * rate
+
+
+def name_of(leaf: ResolvedNode) -> str:
+    return (leaf.name or leaf.id).text
