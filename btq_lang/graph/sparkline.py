@@ -36,5 +36,7 @@ def sparkline(measured: Measured, at: Rectangle) -> Iterator[str]:
     for x, y, is_broken in shown:
         if is_broken:
             yield f'<path class="broken" d="M{x - 3:g} {y - 3:g}l6 6m0 -6l-6 6"/>'
-    x, y, _ = shown[-1]
-    yield f'<path class="last" d="M{x} {y}h0"/></g>'
+    x, y, is_broken = shown[-1]
+    if not is_broken:
+        yield f'<path class="last" d="M{x} {y}h0"/>'
+    yield "</g>"

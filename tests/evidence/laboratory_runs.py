@@ -1,6 +1,6 @@
-"""The log of examples/laboratory and its samples: fifty runs of the example's mission by a robot that is a model.
+"""The logs of examples/laboratory and examples/paper, and their samples: fifty runs of each by a robot that is a model.
 
-The model of the engine runs the mission as it is written, without guards.  How long a skill takes, whether it fails,
+The model of the engine runs a mission as it is written, without guards.  How long a skill takes, whether it fails,
 and what the battery loses meanwhile is drawn.  The same bytes come out every time.
 """
 
@@ -32,18 +32,19 @@ SECONDS = {
 DETOUR, DETOURS = (28.0, 38.0), 0.12  # s; the share of drives to the charger
 FAILURES = {"ToSolidStation": 0.003, "Pick": 0.003}  # shares of activations
 DRIVING, OTHERWISE, CHARGING = -0.5, -0.1, 1.0  # % of battery per s
+LONGER, ARM = 1.1, -0.3  # of the paper's robot: s for each drive to the charger, % of battery per s
 LOW, FULL = 20.0, 95.0  # %
 PERIOD = 4  # s between samples; the mission's `fresh within` is longer
 REPORT = 1.5  # kB that the label reader sends after each run
 PAUSE = 15.0  # s after each run
 
 
-def campaign(mission: Candidate) -> tuple[bytes, str]:
-    """The .btlog, and the CSV file of the signals."""
+def campaign(mission: Candidate, kind: type[Robot]) -> tuple[bytes, str]:
+    """The .btlog of a robot of a kind, and the CSV file of the signals."""
     root = mission.requirements.mission
     assert root is not None
     rows: list[Transition] = []
-    robot = Robot(mission, root, random.Random(SEED), rows, resets=True)
+    robot = kind(mission, root, random.Random(SEED), rows, resets=True)
     reports = []
     for _ in range(RUNS):
         first = len(rows)
@@ -64,7 +65,7 @@ def campaign(mission: Candidate) -> tuple[bytes, str]:
 
 
 class Robot(LoggedRun):
-    """Runs of the mission, in which one skill works at a time.
+    """Runs of the laboratory's mission, in which one skill works at a time.
 
     Attributes:
         tubes: left in the microplate.
@@ -76,7 +77,7 @@ class Robot(LoggedRun):
     changes: tuple[tuple[float, float, float], ...] = ((0.0, FULL, OTHERWISE),)
 
     def drawn(self, leaf: ResolvedNode) -> float:
-        name = name_of(leaf)
+        name = self.name_of(leaf)
         if name == "Charge":  # until it is halted
             seconds, rate = (FULL - self.battery(self.now)) / CHARGING, CHARGING
         else:
@@ -86,7 +87,7 @@ class Robot(LoggedRun):
         return seconds
 
     def ended(self, leaf: ResolvedNode) -> str:
-        name = name_of(leaf)
+        name = self.name_of(leaf)
         if self.chance.random() < FAILURES.get(name, 0.0):
             return engine.FAILURE
         self.tubes -= name == "Pick"
@@ -97,9 +98,11 @@ class Robot(LoggedRun):
         holds = {
             "SensorsAlive": True,
             "BatteryOk": level >= LOW,
+            "BatteryLow?": level < LOW,
             "BatteryFull": level >= FULL,
             "MicroplateNotEmpty": self.tubes > 0,
-        }[name_of(condition)]
+            "MicroplateNotEmpty?": self.tubes > 0,
+        }[self.name_of(condition)]
         return engine.SUCCESS if holds else engine.FAILURE
 
     def spend(self, seconds: float, rate: float) -> None:
@@ -113,6 +116,40 @@ class Robot(LoggedRun):
         begin, level, rate = self.changes[bisect_right(self.changes, time, key=lambda change: change[0]) - 1]
         return level + (time - begin) * rate
 
+    def name_of(self, leaf: ResolvedNode) -> str:
+        """What a leaf does."""
+        return (leaf.name or leaf.id).text
 
-def name_of(leaf: ResolvedNode) -> str:
-    return (leaf.name or leaf.id).text
+
+class Inspector(Robot):
+    """Runs of the paper's mission, in which both drives have one name, and a plate is brought before the tubes.
+
+    The arm takes more of the battery, and the way to the charger gets longer.
+
+    Attributes:
+        drives: to the charger.
+    """
+
+    drives = 0
+
+    def drawn(self, leaf: ResolvedNode) -> float:
+        if self.name_of(leaf) != "ToCharger":
+            return super().drawn(leaf)
+        seconds = round(self.chance.uniform(17.0, 21.0) + LONGER * self.drives, 2)
+        self.drives += 1
+        self.spend(seconds, DRIVING)
+        return seconds
+
+    def spend(self, seconds: float, rate: float) -> None:
+        super().spend(seconds, ARM if rate == OTHERWISE else rate)
+
+    def mission(self) -> None:
+        self.tubes += 1 - self.tubes // 6  # the plate; after the sixth tube Retry gives up
+        super().mission()
+
+    def name_of(self, leaf: ResolvedNode) -> str:
+        name = super().name_of(leaf)
+        if name != "MoveBase":
+            return name
+        assert leaf.parent is not None
+        return "ToCharger" if super().name_of(leaf.parent) == "BatteryCheck" else "ToSolidStation"

@@ -1,23 +1,26 @@
-"""The log of examples/laboratory is the one that laboratory_runs.py makes; `--update` writes it again."""
+"""The logs of examples are those that laboratory_runs.py makes; `--update` writes them again."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from laboratory_runs import campaign
+import pytest
+from laboratory_runs import Inspector, Robot, campaign
 
 from btq_lang.commands.opening import open_workspace
 from btq_lang.evidence.identity import Candidate
 
-FOLDER = Path(__file__).parents[2] / "examples" / "laboratory"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def test_the_log_and_its_samples_come_out_again(update: bool) -> None:
-    mission = str(FOLDER / "mission.btq")
-    log, samples = campaign(Candidate(open_workspace(mission), mission, "mission", None))
+@pytest.mark.parametrize(("example", "kind"), [("laboratory", Robot), ("paper", Inspector)])
+def test_the_log_and_its_samples_come_out_again(example: str, kind: type[Robot], update: bool) -> None:
+    folder = EXAMPLES / example
+    mission = str(folder / "mission.btq")
+    log, samples = campaign(Candidate(open_workspace(mission), mission, "mission", None), kind)
     if update:
-        (FOLDER / "runs.btlog").write_bytes(log)
-        (FOLDER / "signals.csv").write_text(samples, encoding="utf-8", newline="\n")
-    assert (FOLDER / "runs.btlog").read_bytes() == log
-    assert (FOLDER / "signals.csv").read_text(encoding="utf-8") == samples
+        (folder / "runs.btlog").write_bytes(log)
+        (folder / "signals.csv").write_text(samples, encoding="utf-8", newline="\n")
+    assert (folder / "runs.btlog").read_bytes() == log
+    assert (folder / "signals.csv").read_text(encoding="utf-8") == samples
     assert len(log) + len(samples) < 200_000

@@ -44,7 +44,14 @@ def files_and_blocks() -> list[object]:
 
 
 def test_examples_are_found() -> None:
-    assert [folder.name for folder in FOLDERS] == ["classic", "hospital", "laboratory", "navigation", "pick-and-place"]
+    assert [folder.name for folder in FOLDERS] == [
+        "classic",
+        "hospital",
+        "laboratory",
+        "navigation",
+        "paper",
+        "pick-and-place",
+    ]
     for folder in FOLDERS:
         assert (folder / "README.md").is_file()
         assert [path for path in EXAMPLES if folder in path.parents]
