@@ -54,8 +54,7 @@ def run(options: Namespace) -> int:
         if ended.wait(seconds):
             raise EOFError
 
-    judging = Thread(target=mission.judge, args=(preview.changed,), daemon=True)
-    judging.start()
+    Thread(target=mission.judge, args=(preview.changed,), daemon=True).start()
     try:
         for _ in watch(mission.watched, stamp, wait, time.monotonic):
             mission.judge_again()
@@ -113,9 +112,9 @@ class _Mission:
         title = os.path.basename(self.path)
         if isinstance(workspace, str):
             return {"title": title, "trouble": workspace}
-        found = picture(workspace, self.path, folded, self._measured_by(workspace))
-        lines = {key: self._position(workspace, span)[0] for key, span in found.places.items()}
-        return {"title": title, "svg": found.svg, "lines": lines}
+        drawing = picture(workspace, self.path, folded, self._measured_by(workspace))
+        lines = {key: self._position(workspace, span)[0] for key, span in drawing.places.items()}
+        return {"title": title, "svg": drawing.svg, "lines": lines}
 
     def reveal(self, key: str) -> dict[str, object]:
         """Print the place of a node, which terminals turn into a link, and open it in the user's editor."""

@@ -5,12 +5,13 @@ The box is the run-time stage of Ghzouli, Wohlrab and Horkoff (REFSQ 2025), figu
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.edges import edge_of
 from btq_lang.evidence.rejudging import shown_now
 from btq_lang.evidence.verdicts import SATISFIED, UNKNOWN, VIOLATED, ClauseVerdict
+from btq_lang.evidence.wording import measured
 from btq_lang.graph.figure import Measured
 from btq_lang.requirements.model import Value
 from btq_lang.util.grouping import grouped
@@ -44,26 +45,37 @@ def measured_of(shown: Iterable[Shown]) -> MeasuredBy:
         for applied, demand, verdict in judged
         if applied is not None and verdict is not None
     )
-    return lambda applied: tuple(_measured(by_key.get(_key(applied), ())))
+
+    def of(applied: Applied) -> tuple[Measured, ...]:
+        clauses = by_key.get(_key(applied), [])
+        return tuple(_measured(demand, clause, is_named=len(clauses) > 1) for demand, clause in clauses)
+
+    return of
 
 
-def _measured(clauses: Iterable[tuple[Demand, ClauseVerdict]]) -> Iterator[Measured]:
-    clauses = [*clauses]
-    for demand, clause in clauses:
-        lines = (*([demand.claim.text] if len(clauses) > 1 else []), *_last(clause), _standing(clause))
-        values = tuple((value.si, value.verdict == VIOLATED) for value in clause.by_run)
-        if all(value is None for value, _ in values):  # nothing is measured: whether it held
-            states = (value.verdict for value in clause.by_run)
-            values = tuple((_HELD.get(state), state == VIOLATED) for state in states)
-        text = "; ".join(filter(None, (*lines, _history(clause))))
-        yield Measured(lines, clause.verdict.replace(" ", "-"), values, _bounds(demand), text)
+def _measured(demand: Demand, clause: ClauseVerdict, is_named: bool) -> Measured:
+    """What logs show of a clause; is_named: its text is among the lines."""
+    bounds, by_run = _bounds(demand), clause.by_run
 
+    def shown(si: float | None) -> str:
+        return measured(si, bounds[0].unit, bounds[0].si) if si is not None and bounds else ""
 
-def _last(clause: ClauseVerdict) -> Iterator[str]:
-    """What the last run shows, if anything."""
-    last = clause.by_run[-1] if clause.by_run else None
-    if last is not None and (last.text or last.verdict != UNKNOWN):
-        yield f"last run: {', '.join(filter(None, (last.text, last.verdict)))}"
+    lines = [demand.claim.text] if is_named else []
+    if by_run and (by_run[-1].si is not None or by_run[-1].verdict != UNKNOWN):
+        lines.append(f"last run: {', '.join(filter(None, (shown(by_run[-1].si), by_run[-1].verdict)))}")
+    lines.append(_standing(clause))
+    history = f"{counted(len(by_run), 'run')}, {sum(value.verdict == VIOLATED for value in by_run)} violated"
+    numbers = [value.si for value in by_run if value.si is not None]
+    if numbers and bounds:
+        history += f", from {shown(min(numbers))} to {shown(max(numbers))}"
+    return Measured(
+        tuple(lines),
+        clause.verdict.replace(" ", "-"),
+        # Where nothing is measured, whether it held.
+        tuple((value.si if numbers else _HELD.get(value.verdict), value.verdict == VIOLATED) for value in by_run),
+        tuple(bound.si for bound in bounds),
+        "; ".join((*lines, history)),
+    )
 
 
 def _standing(clause: ClauseVerdict) -> str:
@@ -73,23 +85,13 @@ def _standing(clause: ClauseVerdict) -> str:
     return f"{clause.verdict}: {clause.violated:,} of {clause.counted:,} broke it"
 
 
-def _history(clause: ClauseVerdict) -> str:
-    """The values of the runs in words."""
-    measures = [(value.si, value.text) for value in clause.by_run if value.si is not None]
-    if not measures:
-        return ""
-    broken = sum(value.verdict == VIOLATED for value in clause.by_run)
-    (_, least), (_, most) = min(measures), max(measures)
-    return f"{counted(len(clause.by_run), 'run')} from {least} to {most}, {broken} violated"
-
-
-def _bounds(demand: Demand) -> tuple[float, ...]:
-    """The bounds of a clause that are numbers, in SI."""
+def _bounds(demand: Demand) -> tuple[Value, ...]:
+    """The bounds of a clause that are numbers."""
     limit = demand.claim.limit
     if limit is not None:
-        return tuple(bound.si for bound in (limit.value, limit.upper) if isinstance(bound, Value))
+        return tuple(bound for bound in (limit.value, limit.upper) if isinstance(bound, Value))
     edge = edge_of(demand.claim, demand.applied.subject if demand.applied is not None else None, demand.requirement)
-    return (edge.value.si,) if edge is not None else ()
+    return (edge.value,) if edge is not None else ()
 
 
 def _key(applied: Applied) -> _Key:
@@ -98,4 +100,4 @@ def _key(applied: Applied) -> _Key:
     return applied.requirement.name, applied.given, where
 
 
-_HELD: Final = {SATISFIED: 1.0, VIOLATED: 0.0, UNKNOWN: None}
+_HELD: Final = {SATISFIED: 1.0, VIOLATED: 0.0}

@@ -117,7 +117,7 @@ def _clause(clause: ClauseVerdict) -> Json:
 
 
 def _run_value(value: RunValue) -> Json:
-    return {**_fields(value), "start": timestamp(value.start), "text": value.text or None}
+    return {**_fields(value), "start": timestamp(value.start)}
 
 
 def _measures(measures: Measures) -> Json:

@@ -5,7 +5,7 @@ One invariant: counts are enough for the verdict, so the only judgements kept ar
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from copy import copy
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Final
@@ -134,17 +134,16 @@ class Tally:
     def _end_worst(self, run: Run, verdict: Verdict) -> None:
         """Keep the worst measure of a run, which has this verdict."""
         worst, self._worst_now = self._worst_now, None
-        si, text = None, ""
-        if worst is not None:
-            si, text = worst.si, measured(worst.si, worst.unit, worst.bound.si)
-            if worst.excess > self._worst_excess:
-                self._worst_excess = worst.excess
-                self.worst = Worst(si, text, run.number)
-        self._add_by_run([RunValue(run.number, run.begin, verdict, si, text)])
+        if worst is not None and worst.excess > self._worst_excess:
+            self._worst_excess = worst.excess
+            self.worst = Worst(worst.si, measured(worst.si, worst.unit, worst.bound.si), run.number)
+        self._add_by_run(RunValue(run.number, run.begin, verdict, worst.si if worst is not None else None))
 
-    def _add_by_run(self, values: Sequence[RunValue]) -> None:
+    def _add_by_run(self, *values: RunValue) -> None:
         """Keep what runs show, whatever the order in which logs are read."""
-        self.by_run = tuple(sorted((*self.by_run, *values), key=_START)[-MOST_RUNS:])
+        by_run = (*self.by_run, *values)
+        is_in_order = len(values) == 1 and (not self.by_run or self.by_run[-1].start <= values[0].start)
+        self.by_run = (by_run if is_in_order else tuple(sorted(by_run, key=attrgetter("start"))))[-MOST_RUNS:]
 
     def is_worst_in(self, run: Run) -> bool:
         """Whether the worst violation, the one furthest beyond the bound or else the first, is in a run already
@@ -167,7 +166,7 @@ class Tally:
             self._worst_excess = other._worst_excess
             self.worst = replace(other.worst, run=(other.worst.run or 0) + runs)
         self.distribution.add_all(other.distribution)
-        self._add_by_run([replace(value, run=value.run + runs) for value in other.by_run])
+        self._add_by_run(*(replace(value, run=value.run + runs) for value in other.by_run))
         if other.bounded is not None:
             number = other.bounded.number + (self.bounded.number if self.bounded is not None else 0)
             largest = max(other.bounded, self.bounded or other.bounded, key=lambda bounded: bounded.si)
@@ -258,7 +257,6 @@ def _violation(judgement: Judgement, path: str, chain: tuple[Link, ...], run: Ru
     return Violation(run.number, run.source, path, run.begin, at, value, bound, why, chain)
 
 
-_START: Final = attrgetter("start")
 MOST_RUNS: Final = 60  # whose values are kept: as many as a small drawing can show
 USUAL_CONFIDENCE: Final = 0.95  # of the limits shown, if the requirement names none
 _MOST_VIOLATIONS: Final = 1000

@@ -91,14 +91,13 @@ class RunValue(Record):
         run: its number; in the summary of a store, that in its log.
         start: when it began, in µs since the epoch.
         verdict: `satisfied`, `violated` or `unknown`.
-        si, text: the measure closest to the bound, or furthest beyond it; None and empty if none is known.
+        si: the measure closest to the bound, or furthest beyond it; None if none is known.
     """
 
     run: int
     start: int
     verdict: Verdict
     si: float | None
-    text: str
 
 
 class Bounded(Record):

@@ -109,7 +109,7 @@ def _clause(found: dict[str, Any]) -> ClauseVerdict:
 
 
 def _run_value(found: dict[str, Any]) -> RunValue:
-    return RunValue(**{**found, "start": time_of(found["start"]), "text": found["text"] or ""})
+    return RunValue(**{**found, "start": time_of(found["start"])})
 
 
 def _measures(found: dict[str, Any]) -> Measures:

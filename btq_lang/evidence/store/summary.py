@@ -144,7 +144,9 @@ def _verdict(
     assert unit is not None, "a unit of the table, as it was written"
     is_windowed = row["last_number"] is not None or row["last_seconds"] is not None
     tally = _recent(row, recent, unit) if is_windowed else _counted(row, counts, broken, unit)
-    tally.by_run = tuple(_run_value(each, unit) for each in runs)
+    tally.by_run = tuple(
+        RunValue(each["run"], each["run_start_us"], _RANKS[each["worst_rank"]], each["si"]) for each in runs
+    )
     verdict, why = verdict_of(tally, row["missing"] or "", bool(row["exercised"]))
     is_open = row["counts"] == OPEN
     return ClauseVerdict(
@@ -232,12 +234,6 @@ def _violation(row: Row, unit: Unit) -> Violation:
         why=(row["why"] or "").replace("{}", value),
         chain=(),
     )
-
-
-def _run_value(row: Row, unit: Unit) -> RunValue:
-    si = row["si"]
-    text = measured(si, unit, row["bound_si"]) if si is not None else ""
-    return RunValue(row["run"], row["run_start_us"], _RANKS[row["worst_rank"]], si, text)
 
 
 def _measure(row: Row, unit: Unit) -> Measure | None:
