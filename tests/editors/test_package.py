@@ -74,7 +74,7 @@ def test_every_setting_and_every_command_is_tested() -> None:
 
 def test_the_node_of_the_readme_packs_it_without_a_warning() -> None:
     """npm warns (EBADENGINE) of each package of the lock file whose `engines` exclude the Node that runs."""
-    assert "with Node.js 20 or\nnewer to pack the extension" in (ROOT / "README.md").read_text(encoding="utf-8")
+    assert "needs Node.js 20 or newer to pack the extension" in (ROOT / "README.md").read_text(encoding="utf-8")
     lock = json.loads((ROOT / "editors/vscode/package-lock.json").read_text(encoding="utf-8"))
     needs = {name: package.get("engines", {}).get("node", "*") for name, package in lock["packages"].items()}
     assert len(needs) > 100

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
 import sys
+from html import unescape
 from pathlib import Path
 
 import pytest
+from chromium import CHROMIUM, FLAGS
 
 from btq_lang.catalog.language import PHRASES
 from btq_lang.catalog.nodes import BUILTINS
@@ -79,3 +82,35 @@ def test_nothing_is_asked_of_another_server(site: Path) -> None:
         for link in re.findall(r'<(?:script|img|link)[^>]+(?:src|href)="(https?://[^"]+)"', page.read_text("utf-8"))
     ]
     assert asked == []
+
+
+# Material puts tables into boxes when the page has been loaded.
+ON_A_PHONE = """<script>
+addEventListener("load", () => setTimeout(() => {
+  const style = (element) => getComputedStyle(element);
+  const tables = [...document.querySelectorAll(".md-typeset__scrollwrap")].map((box) => ({
+    scrolls: box.scrollWidth > box.clientWidth && style(box).overflowX === "auto",
+    shadows: style(box).backgroundAttachment,
+    over: style(box.querySelector("table")).backgroundColor,
+  }));
+  document.body.dataset.seen = JSON.stringify({ page: document.documentElement.scrollWidth, tables });
+}, 200));
+</script></body>"""
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: only a browser can tell")
+@pytest.mark.parametrize(("page", "wide"), [("index.html", 1), ("evidence/index.html", 1), ("nodes/index.html", 5)])
+def test_a_wide_table_scrolls_in_its_box_on_a_phone(site: Path, page: str, wide: int) -> None:
+    """The page itself does not, and shadows show where there is more."""
+    html = (site / page).read_text(encoding="utf-8")
+    phone = (site / page).with_name("phone.html")
+    phone.write_text(html.replace("</body>", ON_A_PHONE), encoding="utf-8")
+    command = [CHROMIUM, *FLAGS, "--window-size=390,844", "--virtual-time-budget=5000", "--dump-dom", phone.as_uri()]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    phone.unlink()
+    (attribute,) = re.findall(r'data-seen="([^"]*)"', printed)
+    seen = json.loads(unescape(attribute))
+    assert seen["page"] <= 390
+    assert [table["scrolls"] for table in seen["tables"]].count(True) == wide
+    for table in seen["tables"]:
+        assert (table["shadows"], table["over"]) == ("local, local, scroll, scroll", "rgba(0, 0, 0, 0)")
