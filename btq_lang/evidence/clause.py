@@ -101,6 +101,7 @@ class JudgedClause:
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [each.target for each in parts_in(parts) if isinstance(each, Running)]
         measures_time = VERBS[claim.verb].operand not in ("condition", "use")
+        self._bounds_time: Final = VERBS[claim.verb].operand in _OF_TIME and not isinstance(subject, Total)
         self._reads: Final = None if measures_time else [*signals_in((parts, claim.signal))]
         is_whole = any(scope.word == "while" for scope in requirement.scopes) and claim.verb not in _AT_ANY_TIME
         is_of_all = any(isinstance(each, Aggregate) for each in parts_in(parts))
@@ -408,6 +409,9 @@ class JudgedClause:
             self._add(judgement, path, since, of.end, chain)
 
     def _add(self, judgement: Judgement, path: str, begin: int, end: int, chain: tuple[Link, ...]) -> None:
+        measure = judgement.measure
+        if judgement.holds is False and self._bounds_time and measure is not None and measure.is_upper:
+            judgement = judgement._replace(passed=begin + round(measure.bound.si * 1e6))
         self._tally.add(judgement, path, end, chain)
         for record in self._records:
             record(judgement, begin, end, path)
@@ -555,5 +559,6 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
 
 
 _WITHOUT_SUCCESS: Final[dict[Outcome, str]] = {"F": "failed", "H": "halted"}
+_OF_TIME: Final = ("duration", "deadline", "reaction")  # operands that bound the time since something began
 _AT_ANY_TIME: Final = ("keeps", "never")
 _FINAL: Final = ("takes", "succeeds", "needs", *_AT_ANY_TIME)  # verbs whose violation stays one, whatever follows

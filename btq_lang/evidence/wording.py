@@ -75,6 +75,12 @@ def moment(time: int) -> datetime | None:
         return None
 
 
+def clock_time(time: int) -> str:
+    """A time in µs since the epoch, to the millisecond; empty outside the calendar."""
+    found = moment(time)
+    return f"{found:%Y-%m-%d %H:%M:%S}.{found.microsecond // 1000:03} UTC" if found is not None else ""
+
+
 def period(begin: int, end: int) -> str:
     """Two times in µs since the epoch, to the minute."""
     first, last = moment(begin), moment(end)

@@ -7,7 +7,6 @@ the same `data-note` and are highlighted together.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from html import escape
 from typing import Final
@@ -17,7 +16,7 @@ from btq_lang.graph.placing import place
 from btq_lang.graph.svg import STYLE, colours, part
 from btq_lang.render.page_style import PAGE_STYLE
 from btq_lang.trace.overview import WAYS, At, Overview, RequirementRow, TreeRow
-from btq_lang.trace.page_parts import SCRIPT, TRACE_STYLE
+from btq_lang.trace.page_parts import SCRIPT, TRACE_STYLE, coded
 from btq_lang.trace.verdicts import VERDICT_STYLE, verdicts
 from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
 from btq_lang.util.text import counted
@@ -141,7 +140,7 @@ def _ways(each: RequirementRow) -> str:
         return f'<span class="way none">{escape(each.way)}</span>'
     lines = []
     for way, why in dict.fromkeys((clause.way, clause.why) for use in each.uses for clause in use.clauses):
-        text = f" <small>{_coded(why)}</small>" if why else ""
+        text = f" <small>{coded(why)}</small>" if why else ""
         lines.append(f'<li><span class="way {way}">{way}</span>{text}</li>')
     for clause in each.loose:
         text = f"<small><code>{escape(clause)}</code> applies to no node</small>"
@@ -151,14 +150,10 @@ def _ways(each: RequirementRow) -> str:
 
 def _evidence(each: RequirementRow) -> str:
     lines = [
-        f'<li><span class="verdict {verdict.replace(" ", "-")}">{verdict}</span> <small>{_coded(text)}</small></li>'
+        f'<li><span class="verdict {verdict.replace(" ", "-")}">{verdict}</span> <small>{coded(text)}</small></li>'
         for verdict, text in evidence_lines(each)
     ]
     return f"<ul>{''.join(lines)}</ul>" if lines else _NONE
-
-
-def _coded(text: str) -> str:
-    return _CODE.sub(r"<code>\1</code>", escape(text))
 
 
 def _concerns(overview: Overview) -> Iterator[str]:
@@ -249,7 +244,6 @@ def _at(at: At) -> str:
     return f'<small class="at" title="{escape(at.path)}:{at.line}:{at.column}">{escape(name)}:{at.line}</small>'
 
 
-_CODE: Final = re.compile("`([^`]*)`")
 _NONE: Final = '<span class="missing">none</span>'
 _EMPTY: Final = "<p>There are none.</p></section>"
 _FILES: Final = 3  # files named in the title

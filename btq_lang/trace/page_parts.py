@@ -1,8 +1,18 @@
-"""The page's own style sheet, and its script."""
+"""The page's own style sheet, its script, and texts with code in them."""
 
 from __future__ import annotations
 
+import re
+from html import escape
 from typing import Final
+
+
+def coded(text: str) -> str:
+    """A text for the page, with what is between backticks as code."""
+    return _CODE.sub(r"<code>\1</code>", escape(text))
+
+
+_CODE: Final = re.compile("`([^`]*)`")
 
 TRACE_STYLE: Final = """\
 .filter { display: flex; flex-wrap: wrap; gap: .5rem 1rem; align-items: end; padding: .75rem; margin: .5rem 0;
