@@ -491,7 +491,6 @@ class JudgedClause:
         if verdict == NEVER and found.missed and self.claim.event is not None:
             event = self.claim.text.partition(" after ")[2].removeprefix("when ")
             why = f"it was not running when {event} ({counted(found.missed, 'time')})"
-        goal = self.requirement.goal
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
         is_once_a_run = isinstance(self._subject, Total) or (is_of_run and len(found.paths) == 1)
         return ClauseVerdict(
@@ -502,7 +501,7 @@ class JudgedClause:
             why=why,
             unit="runs" if tally.counts_runs or is_once_a_run else "activations",
             confidence=self.requirement.confidence,
-            histogram=tally.distribution.histogram(goal if isinstance(goal, Value) else None),
+            histogram=tally.distribution.histogram(self._marks()),
             timeline=found.timeline if verdict == VIOLATED else None,
             measures=self._measures() if self._with_measures else None,
             failed=found.left_out["failed"],
@@ -510,6 +509,12 @@ class JudgedClause:
             idle=found.left_out["idle"],
             **tally.fields(),
         )
+
+    def _marks(self) -> dict[str, Value]:
+        """What measured values are compared with, as of `Histogram`, as far as it does not vary."""
+        limit, goal = self.claim.limit, self.requirement.goal
+        marks = {"lower bound": limit.value, "upper bound": limit.upper} if limit is not None and limit.upper else {}
+        return {kind: each for kind, each in {**marks, "goal": goal}.items() if isinstance(each, Value)}
 
     def _measures(self) -> Measures:
         edge, odds = self._edge, self.requirement.odds

@@ -105,7 +105,7 @@ class Histogram(Record):
     Attributes:
         low, step: where the first step begins, and how large each is.
         counts: how many values are in each step.
-        marks: the bound and perhaps a goal, to compare them with, by what each is.
+        marks: `bound`, or `lower bound` and `upper bound`, and perhaps `goal`, to compare them with, by these names.
         unit: of the bound, to print values in.
     """
 

@@ -90,6 +90,24 @@ def test_the_histogram_has_bound_and_goal(page: str) -> None:
     assert (bound["d"], goal["d"]) == ("M219.3 0V92", "M151.1 13V92")
 
 
+@pytest.mark.parametrize(
+    ("bound", "label"),
+    [
+        ("between 15 ms and 25 ms", "lower bound 15 ms, upper bound 25 ms, goal 20 ms"),
+        ("at most 24 ms if hurried else 26 ms", "bound 26 ms, goal 20 ms"),
+    ],
+)
+def test_the_histogram_has_all_bounds_that_do_not_vary(bound: str, label: str, verify: Verify) -> None:
+    mission = f"signal hurried : bool from {{hurried}}\n{MISSION.replace('at most 25 ms', bound)}"
+    (verify.folder / "main.btq").write_text(mission, encoding="utf-8")
+    (verify.folder / "run.btlog").write_bytes(btlog(verify.build(mission), rows(RUNS)))
+    (verify.folder / "samples.csv").write_text(samples("hurried", {-1: 0}), encoding="utf-8")
+    page = verify.text("run.btlog", "--mission", "main.btq", "--signals", "samples.csv", "--format", "html")
+    (histogram,) = Tags(page).of("svg", "histogram")
+    assert histogram["aria-label"].partition("; ")[2] == label
+    assert len(Tags(page).of("path", "bound")) == label.count("bound")
+
+
 def test_the_run_that_was_worst_is_drawn(page: str) -> None:
     tags = Tags(page)
     assert [each["id"] for each in tags.of("figure", "run")] == ["run-1"]
