@@ -1,8 +1,8 @@
 """The overview as one self-contained HTML page: without network, fonts or other files.
 
-One invariant: without its script the page has the same contents; the script only filters and highlights.  Each
-mission's trees are beside the table, with qualities and requirements at their nodes; all marks of the same thing have
-the same `data-note` and are highlighted together.
+One invariant: without its script the page has the same contents; the script only filters, sorts and highlights.  Each
+mission's trees are beside the table, or below it if one is too broad for that, with qualities and requirements at their
+nodes; all marks of the same thing have the same `data-note` and are highlighted together.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from html import escape
 from typing import Final
 
 from btq_lang.evidence.verdicts import MissionVerdicts
-from btq_lang.graph.placing import place
-from btq_lang.graph.svg import STYLE, colours, part
+from btq_lang.graph.placing import Drawing, place
+from btq_lang.graph.svg import LEAST_SHARE, STYLE, colours, part
 from btq_lang.render.page_style import PAGE_STYLE
 from btq_lang.trace.overview import WAYS, At, Overview, RequirementRow, TreeRow
 from btq_lang.trace.page_parts import SCRIPT, TRACE_STYLE, coded
@@ -45,14 +45,16 @@ def _lines(overview: Overview, missions: Sequence[MissionVerdicts]) -> Iterator[
     yield "<main>"
     if missions:
         yield from verdicts(missions, {each.name: each.key for each in overview.requirements})
-    yield '<div class="beside">'
+    drawings = [_drawing(tree) for tree in overview.trees]
+    is_broad = any(each.width * LEAST_SHARE > _COLUMN for each in drawings)
+    yield f'<div class="{"below" if is_broad else "beside"}">'
     yield '<div class="tables">'
     yield from _requirements(overview)
     yield from _concerns(overview)
     yield from _gaps(overview)
     yield from _totals(overview)
     yield "</div>"
-    yield from _trees(overview)
+    yield from _trees(overview, drawings)
     yield "</div></main>"
     yield '<p class="live" role="status" aria-live="polite"></p>'
     yield f"<script>\n{SCRIPT}</script>"
@@ -202,34 +204,40 @@ def _gaps(overview: Overview) -> Iterator[str]:
 
 def _totals(overview: Overview) -> Iterator[str]:
     yield _section("totals", "Totals")
-    yield f"<table class='numbers'><caption>By characteristic of ISO/IEC 25010:{overview.edition}</caption>"
+    yield '<div class="scroll" tabindex="0" role="region" aria-label="Totals">'
+    yield f'<table class="numbers"><caption>By characteristic of ISO/IEC 25010:{overview.edition}</caption>'
     yield _head("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed")
     for each in overview.totals:
         cells = "".join(f"<td>{number or '–'}</td>" for number in each.numbers)
         kind = "" if any(each.numbers) else ' class="empty"'
         yield f'<tr{kind}><th scope="row">{escape(each.name)}</th>{cells}</tr>'
-    yield "</tbody></table></section>"
+    yield "</tbody></table></div></section>"
 
 
 # ---- trees ----
 
 
-def _trees(overview: Overview) -> Iterator[str]:
+def _trees(overview: Overview, drawings: Sequence[Drawing]) -> Iterator[str]:
     yield '<section class="trees" id="trees" aria-labelledby="h-trees"><h2 id="h-trees">Trees</h2>'
     yield '<p class="legend"><span class="key enforced">enforced</span> <span class="key monitored">monitored</span>'
     yield '<span class="key reviewed">reviewed</span> <span class="key quality">concern</span></p>'
-    for tree in overview.trees:
-        yield from _figure(tree)
+    for tree, drawing in zip(overview.trees, drawings, strict=True):
+        yield from _figure(tree, drawing)
     yield "</section>"
 
 
-def _figure(tree: TreeRow) -> Iterator[str]:
+def _drawing(tree: TreeRow) -> Drawing:
     drawing = place(tree.figure)
     if drawing.width > _BROAD:
         turned = place(tree.figure, "right")
         drawing = turned if turned.width < drawing.width else drawing
+    return drawing
+
+
+def _figure(tree: TreeRow, drawing: Drawing) -> Iterator[str]:
     bare = ' <span class="missing">without any quality</span>' if tree.is_bare else ""
-    yield f"<figure><figcaption><h3>{escape(tree.name)}</h3> {_at(tree.at)}{bare}</figcaption>"
+    yield f'<figure style="--wide: {drawing.width}px">'
+    yield f"<figcaption><h3>{escape(tree.name)}</h3> {_at(tree.at)}{bare}</figcaption>"
     yield f'<div class="scroll" tabindex="0" role="region" aria-label="Tree {escape(tree.name)}">'
     yield part(drawing, f"The tree {tree.name}: {counted(len(tree.nodes), 'node')}")
     yield "</div></figure>"
@@ -248,3 +256,4 @@ _NONE: Final = '<span class="missing">none</span>'
 _EMPTY: Final = "<p>There are none.</p></section>"
 _FILES: Final = 3  # files named in the title
 _BROAD: Final = 720  # pixels: a broader tree is drawn from left to right
+_COLUMN: Final = 560  # pixels that are beside the tables in a window of 1400

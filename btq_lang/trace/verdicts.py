@@ -10,7 +10,7 @@ from html import escape
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.folding import folded_sources
-from btq_lang.evidence.node_rows import node_rows
+from btq_lang.evidence.node_rows import node_columns
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import VIOLATED, WORST_FIRST
 from btq_lang.evidence.wording import duration
@@ -88,16 +88,28 @@ def _mission(mission: MissionVerdicts, keys: Mapping[str, str]) -> Iterator[str]
             if violation.run == run
         )
         yield from run_figure(timeline, [*breaches])
+    if mission.nodes:
+        yield f"<details><summary>What each of {counted(len(mission.nodes), 'node')} did</summary>"
+        yield from _nodes(mission)
+        yield "</details>"
 
 
 def _nodes(mission: MissionVerdicts) -> Iterator[str]:
-    heads, rows = node_rows(mission.nodes)
-    yield f'<table class="numbers"><caption>Nodes of {escape(mission.name)}</caption><thead><tr>'
-    yield "".join(f'<th scope="col">{head}</th>' for head in heads)
+    """The table of nodes, in the order of the mission; a script sorts it by the values of a column."""
+    columns, name = node_columns(mission.nodes), f"Nodes of {escape(mission.name)}"
+    yield f'<div class="scroll" tabindex="0" role="region" aria-label="{name}">'
+    yield f'<table class="numbers sortable"><caption>{name}</caption><thead><tr>'
+    yield "".join(f'<th scope="col">{head}</th>' for head in ("node", *(column.head for column in columns)))
     yield "</tr></thead><tbody>"
-    for path, *numbers in rows:
-        yield f'<tr><th scope="row">{escape(path)}</th>{"".join(f"<td>{each}</td>" for each in numbers)}</tr>'
-    yield "</tbody></table>"
+    for place, node in enumerate(mission.nodes):
+        cells = "".join(_number(column.values[place], column.texts[place]) for column in columns)
+        yield f'<tr><th scope="row">{escape(node.path)}</th>{cells}</tr>'
+    yield "</tbody></table></div>"
+
+
+def _number(value: float | None, text: str) -> str:
+    """A cell, with its value if the text is not just that."""
+    return f"<td>{text}</td>" if value is None or text == str(value) else f'<td data-value="{value:.9g}">{text}</td>'
 
 
 def _row(requirement: RequirementVerdict, clause: ClauseVerdict, mission: MissionVerdicts, key: str) -> str:

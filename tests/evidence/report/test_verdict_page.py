@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import re
-import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 
 import pytest
-from chromium import ARTIFACTS, CHROMIUM, FLAGS
+from chromium import BROAD, CHROMIUM, keep_screenshots, seen_in
 from evidence_logs import START, Verify, btlog, rows, samples
 
 MISSION = """
@@ -321,22 +319,59 @@ def test_a_long_run_is_drawn_in_part(verify: Verify) -> None:
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: only a browser can tell")
-@pytest.mark.parametrize(("scheme", "size"), [("light", "1500,1600"), ("dark", "1200,1600"), ("light", "500,1600")])
-def test_the_page_fits_a_screen(scheme: str, size: str, page: str, tmp_path: Path) -> None:
-    width = size.partition(",")[0]
-    measure = "document.body.dataset.broad = document.documentElement.scrollWidth - innerWidth"
-    source = tmp_path / "seen.html"
-    source.write_text(page.replace("</body>", f"<script>{measure}</script></body>"), encoding="utf-8")
-    ARTIFACTS.mkdir(exist_ok=True)
-    target = ARTIFACTS / f"verdicts-{scheme}-{width}.png"
-    shown = ("--blink-settings=preferredColorScheme=0",) if scheme == "dark" else ()
+@pytest.mark.parametrize("width", [1400, 390])
+def test_the_page_fits_a_screen(width: int, page: str, tmp_path: Path) -> None:
+    assert seen_in(tmp_path, page, BROAD, width) == 0
+    keep_screenshots(tmp_path, "verdicts", page, width, 2000)
 
-    def run(*more: str) -> Any:
-        command = (CHROMIUM, *FLAGS, f"--user-data-dir={tmp_path / 'profile'}", f"--window-size={size}", *shown, *more)
-        return subprocess.run(
-            [str(each) for each in (*command, source.as_uri())], capture_output=True, text=True, check=True, timeout=120
-        ).stdout
 
-    assert 'data-broad="0"' in run("--dump-dom")
-    run(f"--screenshot={target}")
-    assert target.read_bytes().startswith(b"\x89PNG")
+@pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: only a browser can tell")
+def test_bars_and_numbers_are_on_one_axis(page: str, tmp_path: Path) -> None:
+    """On a phone every second number is left out, and names are above their bars."""
+    script = """
+    const box = (selector) => document.querySelector(`#run-1 ${selector}`).getBoundingClientRect();
+    const numbers = [...document.querySelectorAll("#run-1 tfoot span")].filter((each) => each.offsetParent);
+    const first = box("tbody td"), drive = [...document.querySelectorAll("#run-1 .bar")][1].getBoundingClientRect();
+    const passed = [...document.querySelectorAll("#run-1 .at")].at(-1).getBoundingClientRect();
+    return {
+      numbers: numbers.map((each) => each.textContent),
+      share: Math.round((drive.right - drive.left) / first.width * 100),
+      passed: Math.round((passed.left + passed.width / 2 - first.left) / first.width * 1000),
+      stacked: box("tbody th").bottom <= first.top + 1,
+    };"""
+    every = [f"{ms} ms" if ms else "0" for ms in range(0, 45, 5)]
+    assert seen_in(tmp_path, page, script, 1400) == {"numbers": every, "share": 75, "passed": 625, "stacked": False}
+    phone = seen_in(tmp_path, page, script, 390)
+    assert (phone["numbers"], phone["share"], phone["stacked"]) == (every[::2], 75, True)
+
+
+SORT = """
+const table = document.querySelector("table.sortable");
+const head = (name) => [...table.tHead.rows[0].cells].find((each) => each.textContent === name);
+const order = () => [...table.tBodies[0].rows].map((row) => row.cells[0].textContent);
+const click = (name) => {
+  const button = head(name).querySelector("button");
+  button.focus();
+  button.click();
+  return [document.activeElement === button, head(name).getAttribute("aria-sort"), ...order()];
+};
+"""
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: only a browser can tell")
+def test_the_table_of_nodes_is_sorted_by_the_head_that_is_chosen(page: str, tmp_path: Path) -> None:
+    """By a button, so with a keyboard as well; durations by their lengths, nodes without one last."""
+    names = ["Errand", "Drive", "Grip", "Wave"]
+    folded = page[page.index("<details><summary>What each of 4 nodes did</summary>") :]
+    assert re.findall(r'<th scope="row">(\w+)</th>', folded)[:4] == names
+    steps = """document.querySelector("table.sortable").closest("details").open = true;
+    return { before: head("p95").getAttribute("aria-sort"), down: click("p95"), up: click("p95"), off: click("p95"),
+      name: click("node"), other: head("p95").getAttribute("aria-sort") };"""
+    assert seen_in(tmp_path, page, SORT + steps, 1400) == {
+        "before": "none",
+        "down": [True, "descending", "Errand", "Drive", "Grip", "Wave"],
+        "up": [True, "ascending", "Grip", "Wave", "Drive", "Errand"],
+        "off": [True, "none", *names],
+        "name": [True, "ascending", "Drive", "Errand", "Grip", "Wave"],
+        "other": "none",
+    }
