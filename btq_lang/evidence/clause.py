@@ -501,7 +501,7 @@ class JudgedClause:
             why=why,
             unit="runs" if tally.counts_runs or is_once_a_run else "activations",
             confidence=self.requirement.confidence,
-            histogram=tally.distribution.histogram(self._marks()),
+            histogram=tally.distribution.histogram(self.marks()),
             timeline=found.timeline if verdict == VIOLATED else None,
             measures=self._measures() if self._with_measures else None,
             failed=found.left_out["failed"],
@@ -510,7 +510,7 @@ class JudgedClause:
             **tally.fields(),
         )
 
-    def _marks(self) -> dict[str, Value]:
+    def marks(self) -> dict[str, Value]:
         """What measured values are compared with, as of `Histogram`, as far as it does not vary."""
         limit, goal = self.claim.limit, self.requirement.goal
         marks = {"lower bound": limit.value, "upper bound": limit.upper} if limit is not None and limit.upper else {}

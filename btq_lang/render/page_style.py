@@ -18,7 +18,7 @@ body { margin: 0; color: var(--ink); background: var(--ground); line-height: 1.4
 header, main { padding: 0 1.5rem; }
 h1 { font-size: 1.45rem; margin: 1.25rem 0 .25rem; overflow-wrap: anywhere; }
 h2 { font-size: 1.15rem; margin: 1.5rem 0 .5rem; }
-h3 { font-size: 1rem; margin: 1rem 0 .25rem; display: inline-block; }
+h3 { font-size: 1rem; margin: 1rem 0 .25rem; display: inline-block; overflow-wrap: anywhere; max-width: 100%; }
 a { color: var(--accent); text-underline-offset: .15em; }
 .skip { position: absolute; left: -99rem; }
 .skip:focus { left: 1rem; top: .5rem; background: var(--ground); padding: .25rem .5rem; }
@@ -40,7 +40,7 @@ small { color: var(--soft); }
 .numbers th, .numbers td { overflow-wrap: normal; } .numbers td { white-space: nowrap; }
 @media (max-width: 700px) { header, main { padding: 0 .8rem; }
   .numbers th, .numbers td { padding: .3rem .4rem; font-size: .85rem; }
-  .numbers th:first-child { position: sticky; left: 0; max-width: 40vw; overflow-wrap: anywhere;
+  .numbers th:first-child { position: sticky; left: 0; min-width: 9rem; overflow-wrap: anywhere;
     background: var(--ground); } }
 .verdict { font-weight: 700; white-space: nowrap; }
 .verdict::before { content: "\\25CB\\00A0"; }
@@ -52,8 +52,8 @@ small { color: var(--soft); }
 .scroll { overflow: auto; border: 1px solid var(--line); border-radius: 6px; background:
   linear-gradient(to right, var(--ground) 40%, transparent) left / 2.5rem 100% no-repeat local,
   linear-gradient(to left, var(--ground) 40%, transparent) right / 2.5rem 100% no-repeat local,
-  linear-gradient(to right, var(--soft), transparent) left / .8rem 100% no-repeat,
-  linear-gradient(to left, var(--soft), transparent) right / .8rem 100% no-repeat, var(--ground); }
+  linear-gradient(to right, rgb(110 120 130 / .6), transparent) left / .9rem 100% no-repeat,
+  linear-gradient(to left, rgb(110 120 130 / .6), transparent) right / .9rem 100% no-repeat, var(--ground); }
 .scroll::-webkit-scrollbar { height: .7rem; } .scroll::-webkit-scrollbar-track { background: var(--raised); }
 .scroll::-webkit-scrollbar-thumb { background: var(--soft); border-radius: .35rem; }
 :focus-visible { outline: 3px solid var(--accent); outline-offset: 2px; }

@@ -26,6 +26,7 @@ TRACE_STYLE: Final = """\
 .beside .trees { position: sticky; top: 0; max-height: 100vh; overflow-y: auto; }
 .below .trees { display: flex; flex-wrap: wrap; gap: 0 2rem; align-items: start; }
 .below .trees > h2, .below .trees > p { width: 100%; }
+.below .gaps { columns: 22rem; }
 .below figure { flex: 0 1 max(var(--wide) + 2px, 14rem); min-width: 0; max-width: 100%; }
 @media (max-width: 1100px) { .beside { grid-template-columns: minmax(0, 1fr); }
   .beside .trees { position: static; max-height: none; } }

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.compare.comparison import WORSE, Change, Comparison
 from btq_lang.evidence.compare.requirements import Newly
 from btq_lang.evidence.compare.words import difference, heading, remarks, subject, turn, untestable
-from btq_lang.evidence.report.parts import NO_NAME, REPORT_STYLE, bars
+from btq_lang.evidence.report.charts import bars, measure_charts
+from btq_lang.evidence.report.parts import NO_NAME, REPORT_STYLE
 from btq_lang.evidence.sentences import explained, result, worst_violation
 from btq_lang.evidence.verdicts import NEVER, OPEN, VIOLATED, WORST_FIRST, ClauseVerdict, RequirementVerdict
 from btq_lang.evidence.wording import period, share
@@ -158,6 +159,7 @@ class _Mission:
             earlier = counted(left, "earlier label")
             yield f"<p>{earlier} not shown here; <code>btq verify --store DIR --by label</code> shows all.</p>"
         yield from self._requirements()
+        yield from measure_charts(self._mission.measures, self._keys)
         yield from self._runs()
         yield from self._failures()
         yield from self._robots()
