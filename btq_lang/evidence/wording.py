@@ -26,7 +26,7 @@ def quantity(si: float, unit: Unit | None, bound: float | None = None) -> str:
 
 
 def measured(si: float, unit: Unit | None, bound: float | None = None) -> str:
-    """A value in the unit of its bound, as `quantity`; a time below one such unit, in the unit that `duration` chooses."""
+    """A value in the unit of its bound; a time below one such unit, in the unit that `duration` chooses."""
     if unit is not None and unit.dimension == _SECOND.dimension and from_si(si, unit) < 1:
         unit = _readable(si)
     return quantity(si, unit, bound)
