@@ -411,7 +411,7 @@ class JudgedClause:
     def _add(self, judgement: Judgement, path: str, begin: int, end: int, chain: tuple[Link, ...]) -> None:
         measure = judgement.measure
         if judgement.holds is False and self._bounds_time and measure is not None and measure.is_upper:
-            judgement = judgement._replace(passed=begin + round(measure.bound.si * 1e6))
+            judgement = judgement._replace(passed=min(begin + round(measure.bound.si * 1e6), judgement.at))
         self._tally.add(judgement, path, end, chain)
         for record in self._records:
             record(judgement, begin, end, path)

@@ -54,6 +54,7 @@ small { color: var(--soft); }
   linear-gradient(to left, var(--ground) 40%, transparent) right / 2.5rem 100% no-repeat local,
   linear-gradient(to right, rgb(110 120 130 / .6), transparent) left / .9rem 100% no-repeat,
   linear-gradient(to left, rgb(110 120 130 / .6), transparent) right / .9rem 100% no-repeat, var(--ground); }
+.scroll caption { padding: .35rem .6rem; }
 .scroll::-webkit-scrollbar { height: .7rem; } .scroll::-webkit-scrollbar-track { background: var(--raised); }
 .scroll::-webkit-scrollbar-thumb { background: var(--soft); border-radius: .35rem; }
 :focus-visible { outline: 3px solid var(--accent); outline-offset: 2px; }

@@ -206,7 +206,7 @@ RUN_STYLE: Final = """\
 .timeline { border: 1px solid var(--line); border-collapse: separate; border-spacing: 0; }
 .timeline caption { position: absolute; left: -99rem; }
 .timeline th { width: 16rem; padding: .1rem .4rem; font: .8rem ui-monospace, Menlo, Consolas, monospace; }
-.timeline td { position: relative; padding: 0; height: 1.35rem; background-size: var(--grid, 100%) 100%;
+.timeline td { position: relative; overflow: clip; padding: 0; height: 1.35rem; background-size: var(--grid, 100%) 100%;
   background-image: linear-gradient(to right, var(--line) 1px, transparent 1px); }
 .bar { position: absolute; top: .2rem; bottom: .2rem; min-width: 2px; border-radius: 2px; background: var(--enforced); }
 .bar.F { background: var(--missing); outline: 1.5px solid var(--ink); }
@@ -239,8 +239,9 @@ RUN_STYLE: Final = """\
 .key.S { border: 0; background: var(--enforced); color: var(--ground); }
 .key.F { border: 2px solid var(--ink); background: var(--missing); color: var(--ground); }
 .key.H { border: 1.5px solid var(--reviewed); } .key.O { border: 1.5px dashed var(--soft); }
-.key.breach { border: 0; border-left: 3px solid var(--missing); border-radius: 0; }
+.key.breach { white-space: nowrap; border: 0; border-left: 3px solid var(--missing); border-radius: 0; }
 @media (max-width: 700px) { .timeline, .timeline tbody, .timeline tfoot, .timeline tr, .timeline th, .timeline td {
     display: block; width: auto; }
-  .timeline th { border-bottom: 0; } .timeline .minor { display: none; } .timeline tfoot th { display: none; } }
+  .timeline th { border-bottom: 0; } .timeline .breach td { height: auto; min-height: 1.35rem; }
+  .timeline .minor { display: none; } .timeline tfoot th { display: none; } }
 """

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def violating_runs(requirement: str, clause: ClauseVerdict, medians: Mapping[str, float]) -> Iterator[str]:
-    """A row for each violation, in the order of time.
+    """A row for each violation that is kept.
 
     Args:
         requirement: its name.

@@ -10,7 +10,7 @@ from html import escape
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.units import from_si, to_si
-from btq_lang.evidence.report.parts import NO_NAME
+from btq_lang.evidence.report.parts import DOTTED, NO_NAME
 from btq_lang.evidence.wording import measured as written
 from btq_lang.evidence.wording import moment
 from btq_lang.render.axis import round_values
@@ -143,6 +143,5 @@ _LARGE: Final = (420, 170)
 _TICKS: Final = 5
 _SHOWN: Final = 12
 _EXPLAINED: Final = (
-    "The worst of each run while there are few, else the median as a line and the worst as dots; "
-    "a dotted line is where the first run of a label begins."
+    f"The worst of each run while there are few, else the median as a line and the worst as dots; {DOTTED}."
 )

@@ -7,6 +7,7 @@ from typing import Final
 from btq_lang.render.chart import CHART_STYLE
 
 NO_NAME: Final = "(none)"
+DOTTED: Final = "a dotted line is where the first run of a label begins"
 REPORT_STYLE: Final = f"""{CHART_STYLE}\
 main {{ max-width: 90rem; padding-bottom: 3rem; }}
 h3 {{ display: block; margin-top: 1.5rem; }}
