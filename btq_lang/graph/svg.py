@@ -79,14 +79,10 @@ def render(figures: Sequence[Figure], direction: str) -> str:
 
 
 def part(drawing: Drawing, label: str) -> str:
-    """A drawing for a page, which has the style sheet and may shrink it to `LEAST_SHARE`.
-
-    Args:
-        label: for screen readers.
-    """
+    """A drawing for a page, which has the style sheet and may shrink it to 70 %; `label`: for screen readers."""
     lines = [
         f'<svg class="tree" width="{drawing.width}" height="{drawing.height}"'
-        f' viewBox="0 0 {drawing.width} {drawing.height}" style="min-width: {int(drawing.width * LEAST_SHARE)}px"'
+        f' viewBox="0 0 {drawing.width} {drawing.height}" style="min-width: {drawing.width * 7 // 10}px"'
         f' role="group" aria-label="{escape(label)}">',
         *_drawn(drawing),
         "</svg>",
@@ -165,5 +161,4 @@ def _path(line: Line) -> str:
     return "M" + "L".join(f"{x} {y}" for x, y in line)
 
 
-LEAST_SHARE: Final = 0.7  # of its size: smaller texts cannot be read
 _CAPTION: Final = 28

@@ -13,7 +13,7 @@ from typing import Final
 
 from btq_lang.evidence.verdicts import MissionVerdicts
 from btq_lang.graph.placing import Drawing, place
-from btq_lang.graph.svg import LEAST_SHARE, STYLE, colours, part
+from btq_lang.graph.svg import STYLE, colours, part
 from btq_lang.render.page_style import PAGE_STYLE
 from btq_lang.trace.overview import WAYS, At, Overview, RequirementRow, TreeRow
 from btq_lang.trace.page_parts import SCRIPT, TRACE_STYLE, coded
@@ -46,7 +46,7 @@ def _lines(overview: Overview, missions: Sequence[MissionVerdicts]) -> Iterator[
     if missions:
         yield from verdicts(missions, {each.name: each.key for each in overview.requirements})
     drawings = [_drawing(tree) for tree in overview.trees]
-    is_broad = any(each.width * LEAST_SHARE > _COLUMN for each in drawings)
+    is_broad = any(each.width > _BESIDE for each in drawings)
     yield f'<div class="{"below" if is_broad else "beside"}">'
     yield '<div class="tables">'
     yield from _requirements(overview)
@@ -256,4 +256,4 @@ _NONE: Final = '<span class="missing">none</span>'
 _EMPTY: Final = "<p>There are none.</p></section>"
 _FILES: Final = 3  # files named in the title
 _BROAD: Final = 720  # pixels: a broader tree is drawn from left to right
-_COLUMN: Final = 560  # pixels that are beside the tables in a window of 1400
+_BESIDE: Final = 800  # pixels, which shrink into the column beside the tables in a window of 1400
