@@ -19,7 +19,7 @@ One invariant: what a log does not show is unknown, with the reason; nothing is 
     edges.py, margins.py, rejudging.py   the counts for every bound, and a clause judged again with an edited one
     tally.py, recent.py, odds.py   judgements counted, over all runs or the last ones, and confidence limits
     explain.py, explain_run.py   what led to a violation
-    distribution.py, timeline.py   a histogram of values and a timeline of a run, for the page
+    distribution.py, timeline.py, signal_lines.py   a histogram of values, and a run with its signals, for the page
     coverage.py   which nodes ran, how long they took, and how long they blocked the tree
     session_remarks.py   what times and samples look as if had gone wrong
     store/         what was found in each log, kept and summarised

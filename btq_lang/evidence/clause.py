@@ -101,6 +101,7 @@ class JudgedClause:
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [each.target for each in parts_in(parts) if isinstance(each, Running)]
         measures_time = VERBS[claim.verb].operand not in ("condition", "use")
+        self._bounds_time: Final = VERBS[claim.verb].operand in _OF_TIME and not isinstance(subject, Total)
         self._reads: Final = None if measures_time else [*signals_in((parts, claim.signal))]
         is_whole = any(scope.word == "while" for scope in requirement.scopes) and claim.verb not in _AT_ANY_TIME
         is_of_all = any(isinstance(each, Aggregate) for each in parts_in(parts))
@@ -408,6 +409,9 @@ class JudgedClause:
             self._add(judgement, path, since, of.end, chain)
 
     def _add(self, judgement: Judgement, path: str, begin: int, end: int, chain: tuple[Link, ...]) -> None:
+        measure = judgement.measure
+        if judgement.holds is False and self._bounds_time and measure is not None and measure.is_upper:
+            judgement = judgement._replace(passed=min(begin + round(measure.bound.si * 1e6), judgement.at))
         self._tally.add(judgement, path, end, chain)
         for record in self._records:
             record(judgement, begin, end, path)
@@ -487,7 +491,6 @@ class JudgedClause:
         if verdict == NEVER and found.missed and self.claim.event is not None:
             event = self.claim.text.partition(" after ")[2].removeprefix("when ")
             why = f"it was not running when {event} ({counted(found.missed, 'time')})"
-        goal = self.requirement.goal
         is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
         is_once_a_run = isinstance(self._subject, Total) or (is_of_run and len(found.paths) == 1)
         return ClauseVerdict(
@@ -498,7 +501,7 @@ class JudgedClause:
             why=why,
             unit="runs" if tally.counts_runs or is_once_a_run else "activations",
             confidence=self.requirement.confidence,
-            histogram=tally.distribution.histogram(goal if isinstance(goal, Value) else None),
+            histogram=tally.distribution.histogram(self.marks()),
             timeline=found.timeline if verdict == VIOLATED else None,
             measures=self._measures() if self._with_measures else None,
             failed=found.left_out["failed"],
@@ -506,6 +509,12 @@ class JudgedClause:
             idle=found.left_out["idle"],
             **tally.fields(),
         )
+
+    def marks(self) -> dict[str, Value]:
+        """What measured values are compared with, as of `Histogram`, as far as it does not vary."""
+        limit, goal = self.claim.limit, self.requirement.goal
+        marks = {"lower bound": limit.value, "upper bound": limit.upper} if limit is not None and limit.upper else {}
+        return {kind: each for kind, each in {**marks, "goal": goal}.items() if isinstance(each, Value)}
 
     def _measures(self) -> Measures:
         edge, odds = self._edge, self.requirement.odds
@@ -555,5 +564,6 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
 
 
 _WITHOUT_SUCCESS: Final[dict[Outcome, str]] = {"F": "failed", "H": "halted"}
+_OF_TIME: Final = ("duration", "deadline", "reaction")  # operands that bound the time since something began
 _AT_ANY_TIME: Final = ("keeps", "never")
 _FINAL: Final = ("takes", "succeeds", "needs", *_AT_ANY_TIME)  # verbs whose violation stays one, whatever follows

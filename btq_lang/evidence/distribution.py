@@ -7,6 +7,7 @@ edge.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from math import floor
 from typing import TYPE_CHECKING, Final
 
@@ -61,16 +62,21 @@ class Distribution:
         self._counts = doubled
         self._step *= 2
 
-    def histogram(self, goal: Value | None) -> Histogram | None:
-        """The histogram with the bound and a goal; None where nothing was measured."""
+    def histogram(self, marks: Mapping[str, Value]) -> Histogram | None:
+        """The histogram; None where nothing was measured.
+
+        Args:
+            marks: the bounds and a goal, by what each is; without a bound, that of the last measure is one.
+        """
         if self._last is None:
             return None
+        bound = {} if any(kind.endswith("bound") for kind in marks) else {"bound": self._last.bound}
         low, high = min(self._counts), max(self._counts)
         return Histogram(
             low=self._origin + low * self._step,
             step=self._step,
             counts=tuple(self._counts[at] for at in range(low, high + 1)),
-            marks={"bound": self._last.bound, **({"goal": goal} if goal is not None else {})},
+            marks={**bound, **marks},
             unit=self._last.unit,
         )
 

@@ -6,7 +6,7 @@ One invariant: the only state is open activations, the current run, and counts.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Final, Protocol
 
@@ -24,6 +24,7 @@ from btq_lang.evidence.open_verdicts import open_clauses, unread_clauses
 from btq_lang.evidence.outline import demands, outline
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.session_remarks import clock_remarks, sample_remarks
+from btq_lang.evidence.signal_lines import read_signals
 from btq_lang.evidence.signals import Signals
 from btq_lang.evidence.tally import Run
 from btq_lang.evidence.timeline import OpenRun
@@ -140,7 +141,7 @@ class MissionEvaluation:
         self._clauses: Final = clauses
         self._contexts: Final = Contexts(found.contexts)
         self.found: Final = Findings([each.found for each in clauses], self._contexts.counts)
-        self._open_run: Final = OpenRun() if with_timelines else None
+        self._open_run: Final = OpenRun(read_signals(_reading(mission, clauses))) if with_timelines else None
 
     def read(
         self,
@@ -218,7 +219,7 @@ class MissionEvaluation:
                 history.clear()
                 explainer.end_run()
                 if self._open_run is not None:
-                    self._open_run.end(run, tree, self.found.clauses)
+                    self._open_run.end(run, tree, self.found.clauses, signals)
                 signals.forget_before(end)
                 self._ran(run.number)
                 run_ended(activation)
@@ -285,3 +286,10 @@ class MissionEvaluation:
             recoveries=found.coverage.recoveries.summary(),
             outline=outline(requirements) if self._with_measures else "",
         )
+
+
+def _reading(mission: Candidate, clauses: Sequence[JudgedClause]) -> Iterator[tuple[str, object]]:
+    """The parts of the model that read signals, each with the name of its requirement or context."""
+    for each in clauses:
+        yield each.requirement.name, (each.claim, each.requirement.scopes)
+    yield from ((name, each) for name, each in mission.requirements.contexts.items() if each is not None)

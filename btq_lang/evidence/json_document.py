@@ -103,7 +103,7 @@ def _clause(clause: ClauseVerdict) -> Json:
         "limits": clause.limits if clause.interval is not None else None,
         "violations": [
             {
-                **_fields(each),
+                **_fields(each, but=("passed",)),
                 "start": timestamp(each.start),
                 "measured": each.measured or None,
                 "bound": each.bound or None,

@@ -2,33 +2,61 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from btq_lang.evidence.wording import duration
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import NodeSummary
 
 
+class Column(Record):
+    """A column: of each node a number, durations in seconds, None where there is nothing to say, and that as a text."""
+
+    head: str
+    values: tuple[float | None, ...]
+    texts: tuple[str, ...]
+
+
+def node_columns(nodes: Sequence[NodeSummary]) -> Sequence[Column]:
+    """The columns beside the nodes' paths; the seldom ones only if a node has a number there."""
+    columns = [
+        _counts("starts", nodes, lambda node: node.succeeded + node.failed + node.halted + node.interrupted),
+        _counts("succeeded", nodes, lambda node: node.succeeded),
+        _counts("failed", nodes, lambda node: node.failed),
+        _counts("halted", nodes, lambda node: node.halted),
+    ]
+    if any(node.interrupted for node in nodes):
+        columns.append(_counts("interrupted", nodes, lambda node: node.interrupted))
+    columns += [_times("p50", nodes, lambda node: node.p50), _times("p95", nodes, lambda node: node.p95)]
+    if any(node.bounded for node in nodes):
+        longest = tuple(node.longest if node.bounded else None for node in nodes)
+        columns.append(Column("not exact", longest, tuple(map(_bounded, nodes))))
+    ticks = (
+        _times("tick p95", nodes, lambda node: node.tick_p95),
+        _times("tick max", nodes, lambda node: node.tick_worst),
+    )
+    return [*columns, *ticks]
+
+
 def node_rows(nodes: Sequence[NodeSummary]) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
     """The heads of the columns, and a row for each node; all but the first column are numbers."""
-    heads = ["node", "starts", "succeeded", "failed", "halted"]
-    has_open = any(node.interrupted for node in nodes)
-    heads += ["interrupted"] if has_open else []
-    has_bounded = any(node.bounded for node in nodes)
-    rows = []
-    for node in nodes:
-        ended = [node.succeeded, node.failed, node.halted]
-        counts = [sum(ended) + node.interrupted, *ended, *([node.interrupted] if has_open else [])]
-        p50, p95, *ticks = ("" if each is None else duration(each) for each in _times(node))
-        bounded = [_bounded(node)] if has_bounded else []
-        rows.append([node.path, *map(str, counts), p50, p95, *bounded, *ticks])
-    return [*heads, "p50", "p95", *(["not exact"] if has_bounded else []), "tick p95", "tick max"], rows
+    columns = node_columns(nodes)
+    paths = tuple(node.path for node in nodes)
+    rows = zip(paths, *(column.texts for column in columns), strict=True)
+    return ["node", *(column.head for column in columns)], [[*row] for row in rows]
 
 
-def _times(node: NodeSummary) -> Sequence[float | None]:
-    return node.p50, node.p95, node.tick_p95, node.tick_worst
+def _counts(head: str, nodes: Sequence[NodeSummary], value: Callable[[NodeSummary], int]) -> Column:
+    numbers = tuple(map(value, nodes))
+    return Column(head, numbers, tuple(map(str, numbers)))
+
+
+def _times(head: str, nodes: Sequence[NodeSummary], value: Callable[[NodeSummary], float | None]) -> Column:
+    times = tuple(map(value, nodes))
+    return Column(head, times, tuple("" if each is None else duration(each) for each in times))
 
 
 def _bounded(node: NodeSummary) -> str:

@@ -8,7 +8,7 @@ from typing import Final
 
 from btq_lang.evidence.tally import USUAL_CONFIDENCE
 from btq_lang.evidence.verdicts import NEVER, OPEN, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict, Violation
-from btq_lang.evidence.wording import duration, moment, share
+from btq_lang.evidence.wording import clock_time, duration, share
 from btq_lang.util.text import counted
 
 
@@ -53,15 +53,20 @@ def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
 
 def explained(clause: ClauseVerdict, violation: Violation, medians: Mapping[str, float]) -> str:
     """Explains one violation: what was measured, the first link of each kind that led to it, and where it is."""
+    return f"{clause.of or violation.path}: {reason(violation, medians)} ({_where(violation)})"
+
+
+def reason(violation: Violation, medians: Mapping[str, float]) -> str:
+    """What was measured, and the first link of each kind that led to it."""
     bound = f", bound {violation.bound}" if violation.bound else ""
-    parts = [f"{clause.of or violation.path}: {violation.why}{bound}"]
+    parts = [f"{violation.why}{bound}"]
     kinds = {link.kind: link for link in reversed(violation.chain)}
     if "origin" in kinds:
         kinds.pop("part", None)
     if "self" in kinds and violation.path in medians:  # its duration is already in the sentence
         parts.append(f"its median is {duration(medians[violation.path])}")
     parts += [link.text for link in violation.chain if kinds.get(link.kind) is link and link.kind != "self"]
-    return f"{'; '.join(parts)} ({_where(violation)})"
+    return "; ".join(parts)
 
 
 def worst_violation(clause: ClauseVerdict) -> Violation:
@@ -117,8 +122,7 @@ def _counted(clause: ClauseVerdict) -> str:
 
 def _where(violation: Violation) -> str:
     """The run, and the time in it."""
-    start = moment(violation.start)
-    begun = f" at {start:%Y-%m-%d %H:%M:%S}.{start.microsecond // 1000:03} UTC" if start is not None else ""
+    begun = f" at {clock}" if (clock := clock_time(violation.start)) else ""
     return f"run {violation.run} of {violation.source}, {duration(violation.at)} after its start{begun}"
 
 

@@ -254,7 +254,8 @@ def _violation(judgement: Judgement, path: str, chain: tuple[Link, ...], run: Ru
     bound = measure.bound.text if measure is not None else ""
     at = (judgement.at - run.begin) / 1e6
     why = judgement.sentence.replace("{}", value)
-    return Violation(run.number, run.source, path, run.begin, at, value, bound, why, chain)
+    passed = (judgement.passed - run.begin) / 1e6 if judgement.passed is not None else None
+    return Violation(run.number, run.source, path, run.begin, at, value, bound, why, chain, passed)
 
 
 MOST_RUNS: Final = 60  # whose values are kept: as many as a small drawing can show

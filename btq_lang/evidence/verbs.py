@@ -31,6 +31,7 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
         starts: for such a clause, the activations that it counts or adds up.
         note: what is unusual about it; a log has each once.
         most: if it is known only between which limits what is measured lies, the upper one; `measure` is the lower one.
+        passed: when a duration became longer than its bound.
     """
 
     holds: bool | None
@@ -41,6 +42,7 @@ class Judgement(NamedTuple):  # not a Record for the same reason as Measure
     starts: Sequence[Activation] = ()
     note: str = ""
     most: Measure | None = None
+    passed: int | None = None
 
 
 OUT: Final = Judgement(None, 0, "it does not count")

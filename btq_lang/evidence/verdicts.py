@@ -13,9 +13,9 @@ from btq_lang.util.record import Record
 if TYPE_CHECKING:
     from btq_lang.catalog.units import Unit
     from btq_lang.evidence.margins import Margins
-    from btq_lang.evidence.model import Outcome
+    from btq_lang.evidence.model import Outcome, SampleValue
     from btq_lang.evidence.odds import Limits
-    from btq_lang.requirements.model import Value
+    from btq_lang.requirements.model import Sort, Value
     from btq_lang.workspace.resolved import ResolvedNode
 
 Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised", "open"]
@@ -63,6 +63,7 @@ class Violation(Record):
         measured, bound: in the bound's unit; empty if there is no number to compare.
         why: what happened, in words.
         chain: what led to it, the most important first.
+        passed: when a duration became longer than its bound, in seconds since the run's start; None for all else.
     """
 
     run: int
@@ -74,6 +75,7 @@ class Violation(Record):
     bound: str
     why: str
     chain: tuple[Link, ...]
+    passed: float | None = None
 
 
 class Worst(Record):
@@ -119,7 +121,7 @@ class Histogram(Record):
     Attributes:
         low, step: where the first step begins, and how large each is.
         counts: how many values are in each step.
-        marks: the bound and perhaps a goal, to compare them with, by what each is.
+        marks: `bound`, or `lower bound` and `upper bound`, and perhaps `goal`, to compare them with, by these names.
         unit: of the bound, to print values in.
     """
 
@@ -147,20 +149,42 @@ class Bar(Record):
     took: str
 
 
+class SignalLine(Record):
+    """The values of a signal in a run.
+
+    Attributes:
+        unit: of a number; None if unknown.
+        points: seconds since the run's start, and the value from then on, numbers in SI; None: it is unknown.
+        bounds: the numbers that it is compared with, each with the name of the requirement or the context that does.
+        left_out: how many later changes are omitted.
+    """
+
+    name: str
+    unit: Unit | None
+    sort: Sort
+    points: tuple[tuple[float, SampleValue | None], ...]
+    bounds: tuple[tuple[str, Value], ...]
+    left_out: int
+
+
 class Timeline(Record):
     """A run.
 
     Attributes:
         start: in µs since the epoch.
+        length: in seconds.
         bars: in the order of the nodes' uids.
         left_out: how many activations are omitted.
+        signals: those that the mission's requirements and contexts read.
     """
 
     run: int
     source: str
     start: int
+    length: float
     bars: tuple[Bar, ...]
     left_out: int
+    signals: tuple[SignalLine, ...]
 
 
 class Measures(Record):

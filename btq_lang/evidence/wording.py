@@ -25,7 +25,7 @@ def quantity(si: float, unit: Unit | None, bound: float | None = None) -> str:
     return number if unit is None or unit.symbol == "1" else f"{number} {unit.symbol}"
 
 
-def measured(si: float, unit: Unit | None, bound: float) -> str:
+def measured(si: float, unit: Unit | None, bound: float | None = None) -> str:
     """A value in the unit of its bound; a time below one such unit, in the unit that `duration` chooses."""
     if unit is not None and unit.dimension == _SECOND.dimension and from_si(si, unit) < 1:
         unit = _readable(si)
@@ -73,6 +73,12 @@ def moment(time: int) -> datetime | None:
         return _EPOCH + timedelta(microseconds=time)
     except OverflowError:
         return None
+
+
+def clock_time(time: int) -> str:
+    """A time in µs since the epoch, to the millisecond; empty outside the calendar."""
+    found = moment(time)
+    return f"{found:%Y-%m-%d %H:%M:%S}.{found.microsecond // 1000:03} UTC" if found is not None else ""
 
 
 def period(begin: int, end: int) -> str:

@@ -18,7 +18,7 @@ body { margin: 0; color: var(--ink); background: var(--ground); line-height: 1.4
 header, main { padding: 0 1.5rem; }
 h1 { font-size: 1.45rem; margin: 1.25rem 0 .25rem; overflow-wrap: anywhere; }
 h2 { font-size: 1.15rem; margin: 1.5rem 0 .5rem; }
-h3 { font-size: 1rem; margin: 1rem 0 .25rem; display: inline-block; }
+h3 { font-size: 1rem; margin: 1rem 0 .25rem; display: inline-block; overflow-wrap: anywhere; max-width: 100%; }
 a { color: var(--accent); text-underline-offset: .15em; }
 .skip { position: absolute; left: -99rem; }
 .skip:focus { left: 1rem; top: .5rem; background: var(--ground); padding: .25rem .5rem; }
@@ -37,8 +37,11 @@ small { color: var(--soft); }
 .missing { color: var(--missing); }
 .numbers td { text-align: right; font-variant-numeric: tabular-nums; }
 .numbers thead th:not(:first-child) { text-align: right; }
-@media (max-width: 700px) { .numbers th, .numbers td { padding: .3rem .2rem; font-size: .75rem; hyphens: auto; }
-  .numbers thead th { overflow-wrap: anywhere; } }
+.numbers th, .numbers td { overflow-wrap: normal; } .numbers td { white-space: nowrap; }
+@media (max-width: 700px) { header, main { padding: 0 .8rem; }
+  .numbers th, .numbers td { padding: .3rem .4rem; font-size: .85rem; }
+  .numbers th:first-child { position: sticky; left: 0; min-width: 9rem; overflow-wrap: anywhere;
+    background: var(--ground); } }
 .verdict { font-weight: 700; white-space: nowrap; }
 .verdict::before { content: "\\25CB\\00A0"; }
 .verdict.violated { color: var(--missing); } .verdict.violated::before { content: "\\2716\\00A0"; }
@@ -46,7 +49,14 @@ small { color: var(--soft); }
 .verdict.undecided, .verdict.unknown, .verdict.never-exercised, .verdict.open { color: var(--reviewed); }
 .empty { color: var(--soft); }
 .legend { margin: .25rem 0; font-size: .85rem; }
-.scroll { overflow: auto; border: 1px solid var(--line); border-radius: 6px; background: var(--ground); }
+.scroll { overflow: auto; border: 1px solid var(--line); border-radius: 6px; background:
+  linear-gradient(to right, var(--ground) 40%, transparent) left / 2.5rem 100% no-repeat local,
+  linear-gradient(to left, var(--ground) 40%, transparent) right / 2.5rem 100% no-repeat local,
+  linear-gradient(to right, rgb(110 120 130 / .6), transparent) left / .9rem 100% no-repeat,
+  linear-gradient(to left, rgb(110 120 130 / .6), transparent) right / .9rem 100% no-repeat, var(--ground); }
+.scroll caption { padding: .35rem .6rem; }
+.scroll::-webkit-scrollbar { height: .7rem; } .scroll::-webkit-scrollbar-track { background: var(--raised); }
+.scroll::-webkit-scrollbar-thumb { background: var(--soft); border-radius: .35rem; }
 :focus-visible { outline: 3px solid var(--accent); outline-offset: 2px; }
 @media print { @page { margin: 14mm; } body { font-size: 10.5pt; } nav, .skip { display: none; }
   tr, figure { break-inside: avoid; } thead { display: table-header-group; }

@@ -1,23 +1,22 @@
 """The overview as one self-contained HTML page: without network, fonts or other files.
 
-One invariant: without its script the page has the same contents; the script only filters and highlights.  Each
-mission's trees are beside the table, with qualities and requirements at their nodes; all marks of the same thing have
-the same `data-note` and are highlighted together.
+One invariant: without its script the page has the same contents; the script only filters, sorts and highlights.  Each
+mission's trees are beside the table, or below it if one is too broad for that, with qualities and requirements at their
+nodes; all marks of the same thing have the same `data-note` and are highlighted together.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from html import escape
 from typing import Final
 
 from btq_lang.evidence.verdicts import MissionVerdicts
-from btq_lang.graph.placing import place
+from btq_lang.graph.placing import Drawing, place
 from btq_lang.graph.svg import STYLE, colours, part
 from btq_lang.render.page_style import PAGE_STYLE
 from btq_lang.trace.overview import WAYS, At, Overview, RequirementRow, TreeRow
-from btq_lang.trace.page_parts import SCRIPT, TRACE_STYLE
+from btq_lang.trace.page_parts import SCRIPT, TRACE_STYLE, coded
 from btq_lang.trace.verdicts import VERDICT_STYLE, verdicts
 from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
 from btq_lang.util.text import counted
@@ -46,14 +45,16 @@ def _lines(overview: Overview, missions: Sequence[MissionVerdicts]) -> Iterator[
     yield "<main>"
     if missions:
         yield from verdicts(missions, {each.name: each.key for each in overview.requirements})
-    yield '<div class="beside">'
+    drawings = [_drawing(tree) for tree in overview.trees]
+    is_broad = any(each.width > _BESIDE for each in drawings)
+    yield f'<div class="{"below" if is_broad else "beside"}">'
     yield '<div class="tables">'
     yield from _requirements(overview)
     yield from _concerns(overview)
     yield from _gaps(overview)
     yield from _totals(overview)
     yield "</div>"
-    yield from _trees(overview)
+    yield from _trees(overview, drawings)
     yield "</div></main>"
     yield '<p class="live" role="status" aria-live="polite"></p>'
     yield f"<script>\n{SCRIPT}</script>"
@@ -141,7 +142,7 @@ def _ways(each: RequirementRow) -> str:
         return f'<span class="way none">{escape(each.way)}</span>'
     lines = []
     for way, why in dict.fromkeys((clause.way, clause.why) for use in each.uses for clause in use.clauses):
-        text = f" <small>{_coded(why)}</small>" if why else ""
+        text = f" <small>{coded(why)}</small>" if why else ""
         lines.append(f'<li><span class="way {way}">{way}</span>{text}</li>')
     for clause in each.loose:
         text = f"<small><code>{escape(clause)}</code> applies to no node</small>"
@@ -151,14 +152,10 @@ def _ways(each: RequirementRow) -> str:
 
 def _evidence(each: RequirementRow) -> str:
     lines = [
-        f'<li><span class="verdict {verdict.replace(" ", "-")}">{verdict}</span> <small>{_coded(text)}</small></li>'
+        f'<li><span class="verdict {verdict.replace(" ", "-")}">{verdict}</span> <small>{coded(text)}</small></li>'
         for verdict, text in evidence_lines(each)
     ]
     return f"<ul>{''.join(lines)}</ul>" if lines else _NONE
-
-
-def _coded(text: str) -> str:
-    return _CODE.sub(r"<code>\1</code>", escape(text))
 
 
 def _concerns(overview: Overview) -> Iterator[str]:
@@ -207,34 +204,40 @@ def _gaps(overview: Overview) -> Iterator[str]:
 
 def _totals(overview: Overview) -> Iterator[str]:
     yield _section("totals", "Totals")
-    yield f"<table class='numbers'><caption>By characteristic of ISO/IEC 25010:{overview.edition}</caption>"
+    yield '<div class="scroll" tabindex="0" role="region" aria-label="Totals">'
+    yield f'<table class="numbers"><caption>By characteristic of ISO/IEC 25010:{overview.edition}</caption>'
     yield _head("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed")
     for each in overview.totals:
         cells = "".join(f"<td>{number or '–'}</td>" for number in each.numbers)
         kind = "" if any(each.numbers) else ' class="empty"'
         yield f'<tr{kind}><th scope="row">{escape(each.name)}</th>{cells}</tr>'
-    yield "</tbody></table></section>"
+    yield "</tbody></table></div></section>"
 
 
 # ---- trees ----
 
 
-def _trees(overview: Overview) -> Iterator[str]:
+def _trees(overview: Overview, drawings: Sequence[Drawing]) -> Iterator[str]:
     yield '<section class="trees" id="trees" aria-labelledby="h-trees"><h2 id="h-trees">Trees</h2>'
     yield '<p class="legend"><span class="key enforced">enforced</span> <span class="key monitored">monitored</span>'
     yield '<span class="key reviewed">reviewed</span> <span class="key quality">concern</span></p>'
-    for tree in overview.trees:
-        yield from _figure(tree)
+    for tree, drawing in zip(overview.trees, drawings, strict=True):
+        yield from _figure(tree, drawing)
     yield "</section>"
 
 
-def _figure(tree: TreeRow) -> Iterator[str]:
+def _drawing(tree: TreeRow) -> Drawing:
     drawing = place(tree.figure)
     if drawing.width > _BROAD:
         turned = place(tree.figure, "right")
         drawing = turned if turned.width < drawing.width else drawing
+    return drawing
+
+
+def _figure(tree: TreeRow, drawing: Drawing) -> Iterator[str]:
     bare = ' <span class="missing">without any quality</span>' if tree.is_bare else ""
-    yield f"<figure><figcaption><h3>{escape(tree.name)}</h3> {_at(tree.at)}{bare}</figcaption>"
+    yield f'<figure style="--wide: {drawing.width}px">'
+    yield f"<figcaption><h3>{escape(tree.name)}</h3> {_at(tree.at)}{bare}</figcaption>"
     yield f'<div class="scroll" tabindex="0" role="region" aria-label="Tree {escape(tree.name)}">'
     yield part(drawing, f"The tree {tree.name}: {counted(len(tree.nodes), 'node')}")
     yield "</div></figure>"
@@ -249,8 +252,8 @@ def _at(at: At) -> str:
     return f'<small class="at" title="{escape(at.path)}:{at.line}:{at.column}">{escape(name)}:{at.line}</small>'
 
 
-_CODE: Final = re.compile("`([^`]*)`")
 _NONE: Final = '<span class="missing">none</span>'
 _EMPTY: Final = "<p>There are none.</p></section>"
 _FILES: Final = 3  # files named in the title
 _BROAD: Final = 720  # pixels: a broader tree is drawn from left to right
+_BESIDE: Final = 800  # pixels, which shrink into the column beside the tables in a window of 1400

@@ -1,8 +1,18 @@
-"""The page's own style sheet, and its script."""
+"""The page's own style sheet, its script, and texts with code in them."""
 
 from __future__ import annotations
 
+import re
+from html import escape
 from typing import Final
+
+
+def coded(text: str) -> str:
+    """A text for the page, with what is between backticks as code."""
+    return _CODE.sub(r"<code>\1</code>", escape(text))
+
+
+_CODE: Final = re.compile("`([^`]*)`")
 
 TRACE_STYLE: Final = """\
 .filter { display: flex; flex-wrap: wrap; gap: .5rem 1rem; align-items: end; padding: .75rem; margin: .5rem 0;
@@ -13,9 +23,13 @@ TRACE_STYLE: Final = """\
   border: 1px solid var(--line); border-radius: 4px; padding: .3rem .5rem; }
 .filter input { min-width: 16rem; }
 .beside { display: grid; gap: 2rem; grid-template-columns: minmax(0, 11fr) minmax(0, 9fr); align-items: start; }
-.trees { position: sticky; top: 0; max-height: 100vh; overflow-y: auto; }
+.beside .trees { position: sticky; top: 0; max-height: 100vh; overflow-y: auto; }
+.below .trees { display: flex; flex-wrap: wrap; gap: 0 2rem; align-items: start; }
+.below .trees > h2, .below .trees > p { width: 100%; }
+.below .gaps { columns: 22rem; }
+.below figure { flex: 0 1 max(var(--wide) + 2px, 14rem); min-width: 0; max-width: 100%; }
 @media (max-width: 1100px) { .beside { grid-template-columns: minmax(0, 1fr); }
-  .trees { position: static; max-height: none; } }
+  .beside .trees { position: static; max-height: none; } }
 tr.row { cursor: pointer; }
 tr.row > th:first-child { width: 44%; border-left: 4px solid transparent; }
 .at { white-space: nowrap; }
@@ -42,8 +56,26 @@ tr.chosen > th:first-child, tr:target > th:first-child { border-left-color: var(
 .box.chosen .outline, .box:target .outline { fill: var(--chosen); }
 .choosing .box:not(.chosen):not(.near), .choosing .note:not(.chosen):not(.near) { opacity: .45; }
 .live { position: absolute; left: -99rem; }
+.sortable thead button { font: inherit; color: inherit; background: none; border: 0; padding: 0; cursor: pointer;
+  text-align: inherit; white-space: nowrap; }
+.sortable thead button::after { content: "\\00A0\\2195"; color: var(--soft); }
+[aria-sort="ascending"] button::after { content: "\\00A0\\2191"; color: var(--ink); }
+[aria-sort="descending"] button::after { content: "\\00A0\\2193"; color: var(--ink); }
+@media (max-width: 700px) { .tables > section > table, .tables > section > table > :not(thead),
+  .tables > section > table > tbody > tr > * { display: block; width: auto; }
+  .tables > section > table > tbody > tr { display: block; border-bottom: 1px solid var(--line); padding: .3rem 0; }
+  .tables > section > table > tbody > tr[hidden] { display: none; }
+  .tables > section > table > thead { display: none; }
+  .tables > section > table > tbody > tr > * { border-bottom: 0; padding: .2rem .5rem; }
+  tr.row > td:empty { display: none; } tr.row > td::before { color: var(--soft); font-size: .9rem; }
+  #requirements td:nth-of-type(1)::before { content: "Holds for"; }
+  #requirements td:nth-of-type(2)::before { content: "How"; }
+  #requirements td:nth-of-type(3)::before { content: "Evidence"; }
+  #concerns td:nth-of-type(1)::before { content: "Concern of"; }
+  #concerns td:nth-of-type(2)::before { content: "Requirements "; }
+  tr.row > th:first-child { width: auto; } .filter input { min-width: 0; } }
 @media print { .filter { display: none; } .beside { display: block; }
-  .trees { position: static; max-height: none; overflow: visible; } figure { content-visibility: visible; }
+  .beside .trees { position: static; max-height: none; overflow: visible; } figure { content-visibility: visible; }
   svg.tree { max-width: 100%; height: auto; } .choosing .box, .choosing .note { opacity: 1 !important; } }
 """
 
@@ -93,6 +125,33 @@ SCRIPT: Final = """\
     });
   }
   document.addEventListener("keydown", (event) => { if (event.key === "Escape" && chosen) choose(chosen.split(" ")); });
+  for (const table of all("table.sortable")) {
+    const body = table.tBodies[0], written = [...body.rows];
+    const heads = [...table.tHead.rows[0].cells];
+    const keyOf = (row, at) => row.cells[at].dataset.value ?? row.cells[at].textContent;
+    const compare = (one, other) => {
+      return isNaN(one) || isNaN(other) ? one.localeCompare(other, "en") : one - other;
+    };
+    const sort = (head, at) => {
+      const before = head.getAttribute("aria-sort");
+      const order = at ? ["descending", "ascending", "none"] : ["ascending", "descending", "none"];
+      const next = order[(order.indexOf(before) + 1) % order.length];
+      for (const each of heads) each.setAttribute("aria-sort", each === head ? next : "none");
+      const sign = next === "ascending" ? 1 : -1;
+      const isLast = (row) => keyOf(row, at) === "";
+      const sorted = next === "none" ? written : [...written].sort((one, other) =>
+        isLast(one) - isLast(other) || sign * compare(keyOf(one, at), keyOf(other, at)));
+      body.append(...sorted);
+      live.textContent = next === "none" ? "in the order of the mission" : `by ${head.textContent}, ${next}`;
+    };
+    heads.forEach((head, at) => {
+      const button = document.createElement("button");
+      button.append(...head.childNodes);
+      head.append(button);
+      head.setAttribute("aria-sort", "none");
+      button.addEventListener("click", () => sort(head, at));
+    });
+  }
   const form = document.querySelector(".filter");
   const rows = all("tr.row"), gaps = all(".gaps li");
   const filter = () => {

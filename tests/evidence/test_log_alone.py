@@ -46,7 +46,10 @@ def test_every_format(form: str, verify: Verify) -> None:
     if form == "markdown":
         assert "| `Move::2` | 2 | 1 | 1 | 0 | 5 ms | 10 ms | 0 ms | 0 ms |" in found
     elif form == "html":
-        assert '<th scope="row">Move::2</th><td>2</td><td>1</td><td>1</td><td>0</td><td>5 ms</td>' in found
+        assert (
+            '<th scope="row">Move::2</th><td>2</td><td>1</td><td>1</td><td>0</td><td data-value="0.005">5 ms</td>'
+            in found
+        )
         assert "2 starts, 1 failed" in found  # in the box of the tree
     elif form == "json":
         schema = Path(btq_lang.evidence.__file__).with_name("verdicts.schema.json").read_text(encoding="utf-8")

@@ -9,14 +9,13 @@ from __future__ import annotations
 import json
 import os
 import re
-import subprocess
 from collections.abc import Callable
 from html import unescape
 from pathlib import Path
 from typing import Any
 
 import pytest
-from chromium import ARTIFACTS, CHROMIUM, FLAGS
+from chromium import ARTIFACTS, BROAD, CHROMIUM, chromium, keep_screenshots, seen_in
 from missions import mission
 
 from btq_lang.commands.opening import open_workspace
@@ -80,13 +79,6 @@ def seen(tmp_path: Path) -> Callable[..., dict[str, Any]]:
     return look
 
 
-def chromium(folder: Path, *arguments: str) -> str:
-    assert CHROMIUM is not None
-    command = (CHROMIUM, *FLAGS, f"--user-data-dir={folder / 'profile'}", *arguments)
-    environment = {**os.environ, "HOME": str(folder)}
-    return subprocess.run(command, capture_output=True, text=True, check=True, timeout=120, env=environment).stdout
-
-
 def keep_screenshot(folder: Path, name: str, page: str, size: str, *more: str) -> None:
     ARTIFACTS.mkdir(exist_ok=True)
     source = folder / f"{name}{'.svg' if page.startswith('<svg') else '.html'}"
@@ -117,6 +109,27 @@ def test_in_the_page_nothing_overlaps_and_every_text_fits(
     assert found == {"over": [], "outside": [], "boxes": len(overview_of(example).nodes), "broad": 0}
     assert seen(page, script, "600,900")["broad"] == 0
     keep_screenshot(tmp_path, f"trace-{example.replace(' ', '-')}", page, "1500,1200")
+
+
+SCROLLS = """
+return [...document.querySelectorAll(".scroll")].map((part) =>
+  [part.getAttribute("aria-label"), part.scrollWidth > part.clientWidth]).filter(([, scrolls]) => scrolls);
+"""
+
+
+@pytest.mark.parametrize(("example", "place"), [("laboratory", "beside"), ("navigation", "below")])
+def test_every_tree_can_be_seen_as_a_whole(example: str, place: str, tmp_path: Path) -> None:
+    """One that is too broad for the column beside the tables puts all below them."""
+    page = write(overview_of(example), "html")
+    assert f'<div class="{place}">' in page
+    assert seen_in(tmp_path, page, SCROLLS, 1400) == []
+
+
+def test_on_a_phone_what_is_broad_scrolls_and_the_page_does_not(tmp_path: Path) -> None:
+    page = write(overview_of("navigation"), "html")
+    assert seen_in(tmp_path, page, BROAD, 390) == 0
+    assert ["Tree NavigateToPose", True] in seen_in(tmp_path, page, SCROLLS, 390)
+    keep_screenshots(tmp_path, "trace-navigation", page, 390, 4000)
 
 
 @pytest.mark.scheduled

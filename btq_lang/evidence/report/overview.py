@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from btq_lang.evidence.compare.comparison import Comparison, Unknown, compare
+from btq_lang.evidence.report.measures import Measured, measures
 from btq_lang.evidence.report.trends import Steps, Trends, steps_of, trends
 from btq_lang.evidence.store.queries import OVERVIEW, Ask, Row, only
 from btq_lang.evidence.store.summary import parted
@@ -57,6 +58,7 @@ class MissionOverview(Record):
         robots: that ran the last of them, those with the most violated requirements first; empty if not asked for.
         failures: where failures began, with the most of the last part first.
         nodes: in how many runs each was active, the fewest of the last part first.
+        measures: what clauses measured over time, in the order of the clauses.
     """
 
     name: str
@@ -65,6 +67,7 @@ class MissionOverview(Record):
     failures: tuple[Node, ...]
     nodes: tuple[Node, ...]
     trends: Trends
+    measures: tuple[Measured, ...]
 
 
 class Overview(Record):
@@ -107,7 +110,8 @@ def overview(ask: Ask, store: str, by: Sequence[str]) -> Overview:
     except Unknown:  # each mission was run with one of them
         comparisons = ()
     steps = steps_of(min(row["first_us"] for row in rows), max(row["last_us"] for row in rows))
-    of_time = trends(ask, steps)
+    labels_at = tuple((row["label"], row["first_us"]) for row in rows)
+    of_time, measured = trends(ask, steps), measures(ask, steps, labels_at)
     failures, active = (grouped((row["mission"], row) for row in ask(OVERVIEW[name])) for name in ("failures", "nodes"))
     missions = []
     for name, parts in _parts(ask, store, names if "label" in by else None).items():
@@ -121,9 +125,9 @@ def overview(ask: Ask, store: str, by: Sequence[str]) -> Overview:
                 failures=tuple(sorted(began, key=lambda each: ([-number for number in each.runs[::-1]], each.name))),
                 nodes=tuple(sorted(ran, key=lambda each: (each.runs[-1], each.name))),
                 trends=of_time[name],
+                measures=tuple(measured.get(name, ())),
             )
         )
-    labels_at = tuple((row["label"], row["first_us"]) for row in rows)
     return Overview(store, tuple(by), labels_at, steps, tuple(missions), sides, comparisons)
 
 

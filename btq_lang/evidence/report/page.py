@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.compare.comparison import WORSE, Change, Comparison
 from btq_lang.evidence.compare.requirements import Newly
 from btq_lang.evidence.compare.words import difference, heading, remarks, subject, turn, untestable
-from btq_lang.evidence.report.parts import NO_NAME, REPORT_STYLE, bars
+from btq_lang.evidence.report.charts import bars, measure_charts
+from btq_lang.evidence.report.parts import DOTTED, NO_NAME, REPORT_STYLE
 from btq_lang.evidence.sentences import explained, result, worst_violation
 from btq_lang.evidence.verdicts import NEVER, OPEN, VIOLATED, WORST_FIRST, ClauseVerdict, RequirementVerdict
 from btq_lang.evidence.wording import period, share
@@ -158,6 +159,7 @@ class _Mission:
             earlier = counted(left, "earlier label")
             yield f"<p>{earlier} not shown here; <code>btq verify --store DIR --by label</code> shows all.</p>"
         yield from self._requirements()
+        yield from measure_charts(self._mission.measures, self._keys)
         yield from self._runs()
         yield from self._failures()
         yield from self._robots()
@@ -179,9 +181,8 @@ class _Mission:
             values = self._mission.trends.violated.get(name, ())
             row = [_demand(head, self._keys), *map(_standing, found[:-1]), _standing(found[-1], is_last=True)]
             rows.append(self._row(row, values, share, key=self._keys[name]))
-        yield from self._of_parts(
-            f"Verdicts, and the share of violations; {_DOTTED}", "Requirement", rows, "Violations"
-        )
+        caption = f"Verdicts, and the share of violations; {DOTTED}"
+        yield from self._of_parts(caption, "Requirement", rows, "Violations")
 
     def _runs(self) -> Iterator[str]:
         def numbers(value: Callable[[Part], str]) -> list[str]:
@@ -204,7 +205,7 @@ class _Mission:
             ),
         ]
         yield "<h3>Runs</h3>"
-        yield from self._of_parts(f"What happened in runs; {_DOTTED}", "Measure", rows, "Trend")
+        yield from self._of_parts(f"What happened in runs; {DOTTED}", "Measure", rows, "Trend")
 
     def _failures(self) -> Iterator[str]:
         yield "<h3>Where failures begin</h3>"
@@ -400,5 +401,4 @@ _CLAUSES: Final = 3
 _LARGE: Final = 1000
 _NOT_TESTED: Final = "–"
 _NOTHING: Final = 1e-9
-_DOTTED: Final = "a dotted line is where the first run of a label begins"
 _LATE: Final = len(WORST_FIRST)

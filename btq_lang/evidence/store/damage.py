@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import Any, Final
 
-from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, ROWS, files_of, quoted
+from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, OPTIONAL, ROWS, files_of, quoted
 
 
 def incomplete(connection: Any, store: str) -> str | None:
@@ -81,11 +81,12 @@ def _files(connection: Any, store: str) -> list[str]:
 
 
 def _columns(table: str) -> dict[str, str]:
-    """The columns of a table and their types."""
+    """The columns that a table must have, and their types."""
+    others = ("clause_index",) if table == "verdicts" else OPTIONAL.get(table, ())
     texts = dict.fromkeys((*COMMON[table], *(OF_CLAUSE if table == "verdicts" else ())), "VARCHAR")
     return {
         **texts,
-        **{name: kind for name, kind in ROWS[table].items() if (table, name) != ("verdicts", "clause_index")},
+        **{name: kind for name, kind in ROWS[table].items() if name not in others},
     }
 
 

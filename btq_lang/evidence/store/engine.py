@@ -16,7 +16,7 @@ from typing import Any, Final
 from btq_lang.evidence.store.damage import damage, incomplete
 from btq_lang.evidence.store.queries import REPEATED
 from btq_lang.evidence.store.rows import file_of
-from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, ROWS, files_of, quoted
+from btq_lang.evidence.store.tables import COMMON, OF_CLAUSE, OPTIONAL, ROWS, files_of, quoted
 
 
 class NoEngine(Exception):
@@ -84,7 +84,10 @@ def asked(store: str, label: str | None = None) -> Callable[[str], list[dict[str
     wanted = f"label = {quoted(label)}" if label is not None else "true"
     for table in ROWS:
         files = quoted(files_of(store, table))
-        ask(f"CREATE VIEW all_{table} AS SELECT * FROM read_parquet({files}, union_by_name = true) WHERE {wanted}")
+        rows = f"SELECT * FROM read_parquet({files}, union_by_name = true)"
+        if optional := ", ".join(f"NULL::{ROWS[table][name]} AS {name}" for name in OPTIONAL.get(table, ())):
+            rows += f" UNION ALL BY NAME SELECT {optional} WHERE false"
+        ask(f"CREATE VIEW all_{table} AS SELECT * FROM ({rows}) WHERE {wanted}")
         ask(f"CREATE VIEW {table} AS FROM all_{table}")
     ask(f"CREATE TABLE left_out AS {REPEATED}")
     ask("CREATE VIEW repeated AS SELECT all_runs.* FROM all_runs JOIN left_out USING (log, run)")

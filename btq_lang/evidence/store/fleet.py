@@ -8,7 +8,7 @@ from typing import Any
 from btq_lang.evidence.store.damage import LATER, judged_earlier
 from btq_lang.evidence.store.engine import NoEngine
 from btq_lang.evidence.store.queries import REPEATED
-from btq_lang.evidence.store.tables import ROWS, files_of
+from btq_lang.evidence.store.tables import OPTIONAL, ROWS, files_of
 
 
 def asked_by(url: str, store: str) -> Callable[[str], list[dict[str, Any]]]:
@@ -38,6 +38,9 @@ def asked_by(url: str, store: str) -> Callable[[str], list[dict[str, Any]]]:
         for table, columns in LATER.items():
             if not {name for name, _ in columns} <= {*tables[table].columns}:
                 raise NoEngine(f"{store}: {judged_earlier('logs in it', store)}")
+        for table, names in OPTIONAL.items():
+            lacking = {name: ibis.null("float64") for name in names if name not in tables[table].columns}
+            tables[table] = tables[table].mutate(**lacking) if lacking else tables[table]
         left_out = ibis.memtable(ask(REPEATED), schema={"log": "string", "run": "int32"})
         kept = {name: each.anti_join(left_out, ["log", "run"]) for name, each in tables.items() if name != "clauses"}
         kept["clauses"] = tables["clauses"].semi_join(kept["runs"], ["log", "mission", "robot"])

@@ -260,6 +260,91 @@ OVERVIEW: Final = {
         WHERE counted AND verdict <> 'unknown'
         GROUP BY mission, requirement, place
     """,
+    # The clauses that measured something, in their order, and the extreme bounds.
+    "measured": """
+        SELECT clauses.mission AS mission, clauses.requirement AS requirement, clauses.clause AS clause,
+            clauses.node AS node, MIN(clauses.clause_index) AS clause_index, MAX(clauses.unit) AS unit,
+            MIN(bounds.least_si) AS least_si, MAX(bounds.most_si) AS most_si,
+            MAX(clauses.lower_si) AS lower_si, MAX(clauses.upper_si) AS upper_si, MAX(clauses.goal_si) AS goal_si
+        FROM clauses
+        JOIN (
+            SELECT mission, requirement, clause, node, MIN(bound_si) AS least_si, MAX(bound_si) AS most_si
+            FROM verdicts
+            WHERE measured_si IS NOT NULL
+            GROUP BY mission, requirement, clause, node
+        ) AS bounds
+            ON clauses.mission = bounds.mission AND clauses.requirement = bounds.requirement
+            AND clauses.clause = bounds.clause AND clauses.node = bounds.node
+        GROUP BY clauses.mission, clauses.requirement, clauses.clause, clauses.node
+        ORDER BY mission, clause_index, requirement, clause, node
+    """,
+    # Of those that did in few runs, the value of each run that is the furthest beyond the bound, or the closest to it.
+    "measured_runs": """
+        SELECT ranked.*, runs.label AS run_label, runs.start_us AS run_start_us
+        FROM (
+            SELECT verdicts.*, ROW_NUMBER() OVER (
+                PARTITION BY verdicts.mission, verdicts.requirement, verdicts.clause, verdicts.node,
+                    verdicts.log, verdicts.run
+                ORDER BY
+                    CASE WHEN verdict = 'violated' THEN -ABS(measured_si - bound_si)
+                        ELSE ABS(measured_si - bound_si) END,
+                    measured_si
+            ) AS place
+            FROM verdicts
+            JOIN (
+                SELECT mission, requirement, clause, node
+                FROM (
+                    SELECT DISTINCT mission, requirement, clause, node, log, run
+                    FROM verdicts
+                    WHERE measured_si IS NOT NULL
+                ) AS of_runs
+                GROUP BY mission, requirement, clause, node
+                HAVING COUNT(*) <= {runs}
+            ) AS few
+                ON verdicts.mission = few.mission AND verdicts.requirement = few.requirement
+                AND verdicts.clause = few.clause AND verdicts.node = few.node
+            WHERE measured_si IS NOT NULL AND (most_si IS NULL OR verdict = 'violated')
+        ) AS ranked
+        JOIN runs ON ranked.log = runs.log AND ranked.run = runs.run
+        WHERE place = 1
+    """,
+    # The same of each step of the time, and the median: the smallest value that half of them do not exceed.  Steps are
+    # numbered, for to rank values by texts takes twice as long.
+    "measured_steps": """
+        WITH placed AS (
+            SELECT mission, requirement, clause, node, measured_si,
+                CAST(FLOOR((start_us - {origin}) / {step}.0) AS BIGINT) AS place,
+                CASE WHEN verdict = 'violated' THEN -ABS(measured_si - bound_si)
+                    ELSE ABS(measured_si - bound_si) END AS excess
+            FROM verdicts
+            WHERE measured_si IS NOT NULL AND (most_si IS NULL OR verdict = 'violated')
+        ),
+        steps AS (
+            SELECT of_places.*, ROW_NUMBER() OVER (ORDER BY mission, requirement, clause, node, place) AS id
+            FROM (
+                SELECT mission, requirement, clause, node, place, COUNT(*) AS number, MIN(excess) AS least
+                FROM placed
+                GROUP BY mission, requirement, clause, node, place
+            ) AS of_places
+        ),
+        ranked AS (
+            SELECT id, number, least, excess, measured_si,
+                ROW_NUMBER() OVER (PARTITION BY id ORDER BY measured_si) AS by_size
+            FROM placed
+            JOIN steps
+                ON placed.mission = steps.mission AND placed.requirement = steps.requirement
+                AND placed.clause = steps.clause AND placed.node = steps.node AND placed.place = steps.place
+        ),
+        found AS (
+            SELECT id, MIN(CASE WHEN excess = least THEN measured_si END) AS worst_si,
+                MIN(CASE WHEN by_size * 2 >= number THEN measured_si END) AS median_si
+            FROM ranked
+            GROUP BY id
+        )
+        SELECT mission, requirement, clause, node, place, worst_si, median_si
+        FROM steps
+        JOIN found ON steps.id = found.id
+    """,
     # Where failures began.
     "failures": """
         SELECT mission, label, failure AS node, COUNT(*) AS runs

@@ -10,7 +10,7 @@ import csv
 import hashlib
 import os
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.clause import JudgedClause
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.evidence.verdicts import ClauseVerdict
-    from btq_lang.requirements.model import Requirement
+    from btq_lang.requirements.model import Requirement, Value
 
 
 class Rows(ExitStack):
@@ -121,23 +121,37 @@ class Part:
             same = requirement.name, verdict.text, node
             known[same] += 1  # a requirement with parameters may be applied to a node twice
             text = verdict.text if known[same] == 1 else f"{verdict.text} ({known[same]})"
-            self._write(written, requirement, replace(verdict, text=text, path=node), found.has_run, found.missing)
+            row = replace(verdict, text=text, path=node)
+            self._write(written, requirement, row, found.has_run, found.missing, clause.marks())
         for requirement in self._open:
             for verdict in open_clauses(requirement):
-                self._write(_Clause(self._rows.clauses), requirement, verdict, False, verdict.why)
+                self._write(_Clause(self._rows.clauses), requirement, verdict, False, verdict.why, {})
                 self._rows.clauses += 1
 
     def _write(
-        self, clause: _Clause, requirement: Requirement, verdict: ClauseVerdict, has_run: bool, missing: str
+        self,
+        clause: _Clause,
+        requirement: Requirement,
+        verdict: ClauseVerdict,
+        has_run: bool,
+        missing: str,
+        marks: Mapping[str, Value],
     ) -> None:
-        """Write a clause; `has_run`, `missing`: as of `ClauseFindings`."""
+        """Write a clause.
+
+        Args:
+            has_run, missing: as of `ClauseFindings`.
+            marks: as of `Histogram`.
+        """
         odds, window = requirement.odds, requirement.window
         named = (requirement.name, " ".join((requirement.title or "").split()), verdict.text, verdict.path)
         of_odds = (odds.probability, odds.relation, odds.experiments) if odds is not None else (None, None, None)
         of_window = (window.count, window.experiments, window.seconds) if window is not None else (None, None, None)
         counts = OPEN if verdict.verdict == OPEN else verdict.unit
         means = (verdict.of, counts, clause.unit, *of_odds, requirement.confidence, *of_window)
-        self._rows.write["clauses"]((*self._whose, clause.index, *named, *means, has_run, verdict.cut_off, missing))
+        marked = (marks[kind].si if kind in marks else None for kind in ("lower bound", "upper bound", "goal"))
+        found = has_run, verdict.cut_off, missing
+        self._rows.write["clauses"]((*self._whose, clause.index, *named, *means, *found, *marked))
 
     def _judged(self, clause: _Clause, of_runs: bool, judgement: Judgement, begin: int, end: int, path: str) -> None:
         verdict = UNKNOWN if judgement.holds is None else SATISFIED if judgement.holds else VIOLATED

@@ -217,7 +217,7 @@ def _folder_of(log: str, by: str) -> str:
 
 
 FORMAT: Final = "btq-evidence"
-VERSION: Final = 2  # one more with each new column: older versions then leave the set as it is
+VERSION: Final = 3  # one more with each new column: older versions then leave the set as it is
 ABOUT: Final = "about.json"
 DRAFT: Final = ".draft-"
 _OLD: Final = ".old-"

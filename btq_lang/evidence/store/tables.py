@@ -68,7 +68,8 @@ ROWS: Final = {
     # A clause at a node, whether something was judged or not.  `node`: all nodes at which it is counted together;
     # `counts`: `activations`, `runs`, or `open` if no log can show it; `unit`: of what is measured; `exercised`:
     # whether its node ran; `cut_off`: activations that the end of the log left undecided; `missing`: why it cannot be
-    # judged, or not at all its nodes.
+    # judged, or not at all its nodes; `lower_si`, `upper_si`: of a clause with two bounds, unless they vary; `goal_si`:
+    # what its requirement aims at.
     "clauses": {
         **_WHOSE,
         "clause_index": "INTEGER",
@@ -89,6 +90,9 @@ ROWS: Final = {
         "exercised": "BOOLEAN",
         "cut_off": "INTEGER",
         "missing": "VARCHAR",
+        "lower_si": "DOUBLE",
+        "upper_si": "DOUBLE",
+        "goal_si": "DOUBLE",
     },
     # What was judged: an activation, or a run for clauses about runs.  `verdict`: `satisfied`, `violated` or `unknown`;
     # `counted`: whether it counts: where runs are counted, one judgement of each run does; `at_us`: when it was
@@ -109,6 +113,8 @@ ROWS: Final = {
         "most_si": "DOUBLE",
     },
 }
+# What the sets of earlier versions may lack, which then is NULL.
+OPTIONAL: Final = {"clauses": ("lower_si", "upper_si", "goal_si")}
 # What a verdict has of its clause.
 OF_CLAUSE: Final = ("mission", "robot", "requirement", "clause", "node")
 _SETS: Final = "[0-9a-f]*"

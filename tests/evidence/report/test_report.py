@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
-import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
 
 import fleet
 import pytest
-from chromium import CHROMIUM, FLAGS
+from chromium import BROAD, CHROMIUM, keep_screenshots, seen_in
 from evidence_logs import MAIN, MAIN_XML, START, btlog, rows
 from in_process import run_btq
 
@@ -130,6 +128,24 @@ def test_the_page_counts_as_sql_by_hand_does(robots: Path) -> None:
     assert {(row[0], *re.findall(r"quick \| (\d+) of (\d+)", row[1])[0]) for row in rows_} == {*violated}
 
 
+def test_what_is_drawn_of_a_measure_is_what_sql_by_hand_gives(robots: Path) -> None:
+    """Of each day the median, the smallest value that half do not exceed, and the largest, for it is bounded above."""
+    import duckdb
+
+    asked = (
+        f"SELECT strftime(make_timestamp(start_us), '%Y-%m-%d') AS day, quantile_disc(measured_si, 0.5), "
+        f"max(measured_si) FROM '{robots}/evidence/*/verdicts.parquet' WHERE requirement = 'quick' AND most_si IS NULL"
+        " AND measured_si IS NOT NULL GROUP BY day ORDER BY day"
+    )
+    days = duckdb.sql(asked).fetchall()
+    figure = page_of(robots).partition('<figure><svg class="chart measure"')[2].partition("</figure>")[0]
+    assert re.findall("<title>([^<]*: worst [^<]*)</title>", figure) == [
+        f"{day}: worst {w:.3g} s" for day, _, w in days
+    ]
+    middle = [median for _, median, _ in days]
+    assert f"<p>the median from {middle[0]:.3g} s to {middle[-1]:.3g} s, between {min(middle):.3g} s" in figure
+
+
 def test_the_page_needs_nothing_but_itself(robots: Path) -> None:
     text = page_of(robots)
     assert not re.search(r"https?:|<script|<link|<img|@import|url\(", text)
@@ -147,16 +163,18 @@ def test_the_page_can_be_read_aloud(robots: Path) -> None:
     assert text.count("<table") == text.count("<caption>") == text.count("<thead>")
     assert text.count("<tr") - text.count("<thead>") == text.count('<th scope="row"')
     assert len(re.findall(r"<th(?! scope=)", text)) == text.count("<thead")
+    began = "; v1.3 begins 2026-11-20; v1.4 begins 2026-11-22"
     assert Page(text).labels == [
-        "by day: 0 % from 2026-11-20, 21.9 % from 2026-11-23, at most 21.9 %",
-        "by day: 0 % from 2026-11-20, 1.33 % from 2026-11-23, at most 1.33 %",
-        "by day: 4 % from 2026-11-20, 22.7 % from 2026-11-23, at most 34.7 %",
-        "by day: 2.59 % from 2026-11-20, 2.45 % from 2026-11-23, at most 2.87 %",
-        "by day: 75 from 2026-11-20, 75 from 2026-11-23, at most 75",
-        "by day: 4 % from 2026-11-20, 22.7 % from 2026-11-23, at most 34.7 %",
-        "by day: 7.24 from 2026-11-20, 8.83 from 2026-11-23, at most 8.83",
+        f"by day: 0 % from 2026-11-20, 21.9 % from 2026-11-23, at most 21.9 %{began}",
+        f"by day: 0 % from 2026-11-20, 1.33 % from 2026-11-23, at most 1.33 %{began}",
+        f"by day: 4 % from 2026-11-20, 22.7 % from 2026-11-23, at most 34.7 %{began}",
+        f"by day: 2.59 % from 2026-11-20, 2.45 % from 2026-11-23, at most 2.87 %{began}",
+        *(f"{change}{began}" for change in re.findall("<p>(the median from [^<]*)", text)),
+        f"by day: 75 from 2026-11-20, 75 from 2026-11-23, at most 75{began}",
+        f"by day: 4 % from 2026-11-20, 22.7 % from 2026-11-23, at most 34.7 %{began}",
+        f"by day: 7.24 from 2026-11-20, 8.83 from 2026-11-23, at most 8.83{began}",
     ]
-    assert text.count('<svg class="trend"') == len(Page(text).labels)
+    assert text.count('<svg class="chart ') == len(Page(text).labels)
 
 
 @pytest.mark.scheduled
@@ -167,20 +185,8 @@ def test_the_same_store_gives_the_same_page(robots: Path) -> None:
 @pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: only a browser can tell")
 @pytest.mark.parametrize("width", [1400, 390])
 def test_the_page_is_no_wider_than_the_window(width: int, robots: Path, tmp_path: Path) -> None:
-    measure = "<script>document.body.dataset.wide = document.documentElement.scrollWidth - innerWidth;</script>"
-    frame = tmp_path / "frame.html"  # a window without frames is at least 500 pixels wide
-    (tmp_path / "page.html").write_text(page_of(robots).replace("</body>", f"{measure}</body>"), encoding="utf-8")
-    frame.write_text(
-        f'<body><iframe src="page.html" width="{width}" height="900"></iframe><script>onload = () => document.body'
-        ".dataset.wide = frames[0].document.body.dataset.wide;</script></body>",
-        encoding="utf-8",
-    )
-    assert CHROMIUM is not None
-    command = [CHROMIUM, *FLAGS, "--allow-file-access-from-files", f"--user-data-dir={tmp_path / 'profile'}"]
-    command += ["--window-size=1500,1000", "--dump-dom", frame.as_uri()]
-    environment = {**os.environ, "HOME": str(tmp_path)}
-    dom = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120, env=environment).stdout
-    assert re.findall(r'data-wide="(-?\d+)"', dom) == ["0"]
+    assert seen_in(tmp_path, page_of(robots), BROAD, width) == 0
+    keep_screenshots(tmp_path, "report", page_of(robots), width, 4000)
 
 
 @pytest.mark.scheduled
@@ -203,6 +209,71 @@ def keep(folder: Path, number: int, log: str, *options: str, mission: str = "mai
     path.write_bytes(btlog(MAIN_XML, rows(log), START + number * DAY))
     asked = ("--mission", mission, "--store", "kept", *options)
     assert run_btq("verify", path.name, *asked, cwd=folder)[0] == (log == SLOW)
+
+
+PACED = """\
+QualityReq in_time : performance-efficiency "Reach the charger in time"
+    Move takes at most 30 s
+    goal 20 s
+QualityReq paced : reliability
+    Pick takes between 2 s and 6 s
+"""
+
+
+def drive(folder: Path, label: str, first: int, number: int) -> None:
+    """Keep runs of a label, one a minute, the first of all with this number: each drive takes 4/39 s longer."""
+    rows_ = []
+    for run in range(first, first + number):
+        begin = (run - first) * 60_000_000
+        arrived = begin + 21_000_000 + round(run * 4_000_000 / 39)
+        end = arrived + 4_000_000 + run % 2 * 1_000_000
+        rows_ += [(begin, 1, 1), (begin, 2, 1), (arrived, 2, 2), (arrived, 3, 1), (end, 3, 2), (end, 1, 2)]
+        rows_ += [(end + 1000, uid, 0) for uid in (2, 3, 1)]
+    log = btlog(MAIN_XML, rows_, START + first * 60_000_000)
+    (folder / f"{label}.btlog").write_bytes(log)
+    asked = ("verify", f"{label}.btlog", "--mission", "main.btq", "--store", "kept", "--label", label)
+    assert run_btq(*asked, cwd=folder)[::2] == (0, "")
+
+
+def test_a_drift_is_drawn_before_it_violates(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(PACED + MAIN, encoding="utf-8")
+    for label, first, number in (("v1", 0, 20), ("v<2>", 20, 5), ("v3", 25, 15)):
+        drive(tmp_path, label, first, number)
+    code, text, errors = run_btq("report", "kept", cwd=tmp_path)
+    assert (code, errors) == (0, "")
+    in_time, paced = re.findall(r"<figure>(.*?)</figure>", text)
+    dots = re.findall(r'<circle cx="([\d.]*)" cy="([\d.]*)" r="2.5"><title>(.*?)</title>', in_time)
+    levels = re.findall(r'class="(bound|goal)" d="M[\d.]* ([\d.]*)H', in_time)
+    assert [title for *_, title in dots] == [
+        f"2026-11-20 {21 + (22 + run) // 60}:{(22 + run) % 60:02}: worst {float(f'{21 + run * 4 / 39:.3g}'):g} s"
+        for run in range(40)
+    ]
+    # The axis goes from the goal, 20 s, to the bound, 30 s: 21 s is a tenth above the one, 25 s in the middle.
+    (_, top), (_, ground) = levels
+    assert [round((float(ground) - float(y)) / (float(ground) - float(top)), 3) for _, y, _ in (dots[0], dots[-1])] == [
+        pytest.approx(0.1, abs=1e-3),
+        pytest.approx(0.5, abs=1e-3),
+    ]
+    assert [float(x) for x, *_ in dots] == sorted(float(x) for x, *_ in dots)
+    assert re.findall(r'class="tick"[^>]*>(.*?)<', in_time) == ["20 s", "25 s", "30 s"]
+    assert re.findall(r"<title>(\S*) begins</title></path><text[^>]*>(.*?)<", in_time) == [
+        ("v1", "v1"),
+        ("v&lt;2&gt;", "v&lt;2&gt;"),
+        ("v3", "v3"),
+    ]
+    said = Page(text).texts
+    assert "the worst of each run from 21 s to 25 s; bound 30 s, goal 20 s" in said
+    assert "the worst of each run from 4 s to 5 s; lower bound 2 s, upper bound 6 s" in said
+    assert len(re.findall(r'<path class="bound"', paced)) == 2
+
+
+def test_many_runs_are_drawn_by_step(tmp_path: Path) -> None:
+    """More than sixty, of which the worst of a lower bound is the smallest."""
+    demands = "QualityReq slow : safety\n    Move takes at least 20 s\n"
+    (tmp_path / "main.btq").write_text(demands + MAIN, encoding="utf-8")
+    drive(tmp_path, "v1", 0, 70)
+    _, page = reported(tmp_path)
+    assert "the median from 22.8 s to 26.4 s; the worst of each hour from 21 s to 24.9 s; bound 20 s" in page.texts
 
 
 @pytest.fixture
@@ -341,7 +412,7 @@ def test_steps_are_as_short_as_their_number_allows(length: int, name: str, numbe
 @pytest.mark.scheduled
 def test_a_second_engine_says_the_same(robots: Path, polars: str) -> None:
     store = str(robots / "evidence")
-    words = {"by": "mission, label", "origin": START, "step": DAY}
+    words = {"by": "mission, label", "origin": START, "step": DAY, "runs": 60}
     for name, question in OVERVIEW.items():
         one, other = (ask(question.format(**words)) for ask in (engine.asked(store), asked_by(polars, store)))
         assert sorted(map(repr, one)) == sorted(map(repr, other)), name

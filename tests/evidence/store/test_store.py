@@ -97,7 +97,7 @@ def test_what_is_kept_of_a_log(robot: Path) -> None:
     ]
     none = (None,) * 7
     assert of(store, "clauses", "* EXCLUDE (title, measures)") == [
-        (*whose, 0, *clause, "activations", "ms", *none, True, 0, None),
+        (*whose, 0, *clause, "activations", "ms", *none, True, 0, None, None, None, None),
     ]
 
 

@@ -1,0 +1,147 @@
+"""The drawings of the page: what happened in each step of the time, and what clauses measured.
+
+One invariant: every fact in a drawing is also in a text, and colour is never the only sign.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from html import escape
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.catalog.units import from_si, to_si
+from btq_lang.evidence.report.parts import DOTTED, NO_NAME
+from btq_lang.evidence.wording import measured as written
+from btq_lang.evidence.wording import moment
+from btq_lang.render.axis import round_values
+from btq_lang.render.chart import Chart, Level, Mark, Series, drawn
+from btq_lang.util.text import counted
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.report.measures import Measured
+    from btq_lang.evidence.report.trends import Steps, Values
+
+
+def bars(values: Values, steps: Steps, labels: Sequence[tuple[str, int]], shown: Callable[[float], str]) -> str:
+    """A measure over time, a bar for each step; a dotted line where the first run of a label began.
+
+    Args:
+        shown: gives a value as people read it.
+    """
+    known = [(place, value) for place, value in enumerate(values) if value is not None]
+    if not known:
+        return ""
+    (first, begin), (last, end) = known[0], known[-1]
+    highest = max(value for _, value in known)
+    if not highest:
+        return f"<small>always {escape(shown(0.0))}</small>"
+    dates = [date(steps.begin(place), steps.name) for place in range(len(values))]
+    said = f"{shown(begin)} from {dates[first]}, {shown(end)} from {dates[last]}"
+    titles = tuple("" if each is None else f"{day}: {shown(each)}" for day, each in zip(dates, values, strict=True))
+    began = _began([(name, date(start, steps.name)) for name, start in labels])
+    chart = Chart(
+        kind="trend",
+        label=f"by {steps.name}: {said}, at most {shown(highest)}{began}",
+        size=_SMALL,
+        series=(Series("bars", values, titles),),
+        ticks=((0.0, shown(0.0)), (highest, shown(highest))),
+        ends=(dates[0], dates[-1]),
+        marks=tuple(Mark((start - steps.origin) / steps.length, name or NO_NAME) for name, start in labels),
+    )
+    return f"{drawn(chart)}<small>at most {escape(shown(highest))}</small>"
+
+
+def measure_charts(measured: Sequence[Measured], keys: Mapping[str, str]) -> Iterator[str]:
+    """A figure for each clause that measures something, the later ones folded if there are many.
+
+    Args:
+        keys: the ids of the rows of requirements on the page, by name.
+    """
+    if not measured:
+        return
+    yield "<h3>Measures over time</h3>"
+    yield f"<p>{_EXPLAINED}</p>"
+    figures = [_figure(each, keys) for each in measured]
+    yield f'<div class="measures">{"".join(figures[:_SHOWN])}</div>'
+    if more := figures[_SHOWN:]:
+        yield f"<details><summary>{counted(len(more), 'more measure')}</summary>"
+        yield f'<div class="measures">{"".join(more)}</div></details>'
+
+
+def _figure(measured: Measured, keys: Mapping[str, str]) -> str:
+    link = f'<a class="name" href="#{keys[measured.requirement]}">{escape(measured.requirement)}</a>'
+    where = "" if measured.node in measured.clause else f" at {escape(measured.node)}"
+    head = f"<p>{link} <code>{escape(measured.clause)}</code>{where}</p>"
+    return f"<figure>{_chart(measured)}<figcaption>{head}<p>{escape(_change(measured))}</p></figcaption></figure>"
+
+
+def _chart(measured: Measured) -> str:
+    unit = measured.unit
+    dates = [date(each, measured.by) for each in measured.starts]
+
+    def titles(values: Values, of: str) -> tuple[str, ...]:
+        pairs = zip(dates, values, strict=True)
+        return tuple("" if each is None else f"{day}: {of}{written(each, unit)}" for day, each in pairs)
+
+    series = [Series("dots", measured.worst, titles(measured.worst, "worst "))]
+    middle = measured.medians if measured.medians is not None else measured.worst
+    series.insert(0, Series("line", middle, titles(middle, "median ")))
+    values = [each for each in (*measured.worst, *middle) if each is not None]
+    levels = [Level(kind.rpartition(" ")[2], f"{kind} {written(si, unit)}", si) for kind, si in measured.levels]
+    every = [from_si(each, unit) for each in (*values, *(level.value for level in levels))]
+    ticks = round_values(min(every), max(every), _TICKS)
+    return drawn(
+        Chart(
+            kind="measure",
+            label=_change(measured) + _began([(name, dates[int(place)]) for name, place in measured.labels]),
+            size=_LARGE,
+            series=tuple(series),
+            ticks=tuple((to_si(each, unit), _number(each, unit.symbol)) for each in ticks),
+            ends=(dates[0], dates[-1]),
+            levels=tuple(levels),
+            marks=tuple(Mark(place, name or NO_NAME) for name, place in measured.labels),
+        )
+    )
+
+
+def _number(value: float, symbol: str) -> str:
+    return f"{value:.12g}" if symbol == "1" else f"{value:.12g} {symbol}"
+
+
+def _change(measured: Measured) -> str:
+    """The first and the last values in words, the extreme ones, and what they are compared with."""
+
+    def words(values: Values, of: str) -> str:
+        known = [each for each in values if each is not None]
+        first, last, least, most = (written(each, unit) for each in (known[0], known[-1], min(known), max(known)))
+        between = f", between {least} and {most}" if {least, most} != {first, last} else ""
+        return f"{of} from {first} to {last}{between}" if len(known) > 1 else f"{of} {first}"
+
+    unit = measured.unit
+    parts = [words(measured.worst, f"the worst of each {measured.by}")]
+    if measured.medians is not None:
+        parts.insert(0, words(measured.medians, "the median"))
+    parts.append(", ".join(f"{kind} {written(si, unit)}" for kind, si in measured.levels))
+    return "; ".join(parts)
+
+
+def _began(labels: Sequence[tuple[str, str]]) -> str:
+    """When labels began, for who cannot see the dotted lines."""
+    return "".join(f"; {name or NO_NAME} begins {when}" for name, when in labels)
+
+
+def date(time: int, by: str) -> str:
+    """A time, as exactly as what it is the begin of asks for: a run, a minute or longer."""
+    begin = moment(time)
+    if begin is None:
+        return f"{time} µs"
+    return f"{begin:%Y-%m-%d %H:%M}" if by in ("run", "minute", "hour") else f"{begin:%Y-%m-%d}"
+
+
+_SMALL: Final = (240, 72)  # pixels
+_LARGE: Final = (420, 170)
+_TICKS: Final = 5
+_SHOWN: Final = 12
+_EXPLAINED: Final = (
+    f"The worst of each run while there are few, else the median as a line and the worst as dots; {DOTTED}."
+)

@@ -1,0 +1,174 @@
+"""Values in their order as a drawing: bars, or dots on a line, with an axis, levels to compare them with, and marks.
+
+One invariant: a pure function of its values, whatever these measure; the page's style sheet paints it (`CHART_STYLE`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from html import escape
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
+from btq_lang.graph.widths import width
+from btq_lang.util.record import Record
+
+if TYPE_CHECKING:
+    Kind: TypeAlias = Literal["bars", "line", "dots"]
+
+
+class Series(Record):
+    """Values in the places of a chart.
+
+    Attributes:
+        values: from the left; None: there is none.
+        titles: of each place, what its value is.
+    """
+
+    kind: Kind
+    values: tuple[float | None, ...]
+    titles: tuple[str, ...]
+
+
+class Level(Record):
+    """A horizontal line: `bound` or `goal`, its text and its value."""
+
+    kind: str
+    text: str
+    value: float
+
+
+class Mark(Record):
+    """A dotted line at the left edge of a place, or within one, where something begins."""
+
+    place: float
+    text: str
+
+
+class Chart(Record):
+    """A drawing.
+
+    Attributes:
+        kind: its class: what it is for.
+        label: what it shows, for who cannot see it.
+        size: its width and height in pixels.
+        ticks: the values of the axis, each with its text.
+        ends: the texts below the first and the last place.
+    """
+
+    kind: str
+    label: str
+    size: tuple[int, int]
+    series: tuple[Series, ...]
+    ticks: tuple[tuple[float, str], ...]
+    ends: tuple[str, str]
+    levels: tuple[Level, ...] = ()
+    marks: tuple[Mark, ...] = ()
+
+
+def drawn(chart: Chart) -> str:
+    """The chart as SVG, in a line."""
+    wide, high = chart.size
+    return (
+        f'<svg class="chart {chart.kind}" viewBox="0 0 {wide} {high}" role="img" aria-label="{escape(chart.label)}">'
+        f"{''.join(_Frame(chart).parts())}</svg>"
+    )
+
+
+class _Frame:
+    """Where values are in the drawing."""
+
+    def __init__(self, chart: Chart) -> None:
+        values = [value for series in chart.series for value in series.values if value is not None]
+        values += [value for value, _ in chart.ticks] + [level.value for level in chart.levels]
+        self._low: Final = min(values)
+        self._high: Final = max(values)
+        self._chart: Final = chart
+        self._left: Final = max(width(text, _SIZE) for _, text in chart.ticks) + _GAP
+        self._right: Final = chart.size[0] - _GAP
+        self._top: Final = _LINE if chart.marks else _GAP
+        self._ground: Final = chart.size[1] - _LINE - _GAP
+        self._step: Final = (self._right - self._left) / max(len(each.values) for each in chart.series)
+
+    def parts(self) -> Iterator[str]:
+        chart = self._chart
+        for value, text in chart.ticks:
+            y = self._y(value)
+            yield f'<path class="grid" d="M{self._left:g} {y:g}H{self._right:g}"/>'
+            yield f'<text class="tick" x="{self._left - 4:g}" y="{y + 3.5:g}">{escape(text)}</text>'
+        yield from self._marks()
+        for series in chart.series:
+            yield from _DRAWN[series.kind](self, series)
+        yield from self._levels()
+        first, last = chart.ends
+        yield f'<text x="{self._left:g}" y="{chart.size[1] - 3}">{escape(first)}</text>'
+        if last != first:
+            yield f'<text class="last" x="{self._right:g}" y="{chart.size[1] - 3}">{escape(last)}</text>'
+
+    def bars(self, series: Series) -> Iterator[str]:
+        base = self._y(max(self._low, 0.0))
+        for x, value, title in self._known(series):
+            high = max(base - self._y(value), 1.0)
+            at = f'x="{x - self._step * 0.4:.1f}" y="{base - high:.1f}" width="{self._step * 0.8:.1f}"'
+            yield f'<rect {at} height="{high:.1f}"><title>{escape(title)}</title></rect>'
+
+    def line(self, series: Series) -> Iterator[str]:
+        points = "L".join(f"{x:.1f} {self._y(value):g}" for x, value, _ in self._known(series))
+        yield f'<path class="line" d="M{points}"/>'
+
+    def dots(self, series: Series) -> Iterator[str]:
+        for x, value, title in self._known(series):
+            yield f'<circle cx="{x:.1f}" cy="{self._y(value):g}" r="2.5"><title>{escape(title)}</title></circle>'
+
+    def _levels(self) -> Iterator[str]:
+        """The levels with their texts, from above, none over another."""
+        last = float("-inf")
+        for level in sorted(self._chart.levels, key=lambda each: -each.value):
+            y = self._y(level.value)
+            above = y - 3 if y - 3 - _SIZE >= self._top else y + _SIZE
+            last = max(above, last + _SIZE)
+            yield f'<path class="{level.kind}" d="M{self._left:g} {y:g}H{self._right:g}"/>'
+            yield f'<text class="last" x="{self._right:g}" y="{last:g}">{escape(level.text)}</text>'
+
+    def _marks(self) -> Iterator[str]:
+        """The marks, named as far as there is room."""
+        free: float = self._left
+        for mark in self._chart.marks:
+            x = round(self._left + mark.place * self._step, 1)
+            title = f"{mark.text} begins"
+            yield f'<path class="mark" d="M{x:g} 0V{self._ground:g}"><title>{escape(title)}</title></path>'
+            if x >= free and x + _NEAR + width(mark.text, _SIZE) <= self._right:
+                yield f'<text x="{x + _NEAR:g}" y="{_SIZE - 1}">{escape(mark.text)}</text>'
+                free = x + 2 * _NEAR + width(mark.text, _SIZE)
+
+    def _known(self, series: Series) -> Iterator[tuple[float, float, str]]:
+        """The middle of each place that has a value, that value and its title."""
+        for place, (value, title) in enumerate(zip(series.values, series.titles, strict=True)):
+            if value is not None:
+                yield self._left + (place + 0.5) * self._step, value, title
+
+    def _y(self, value: float) -> float:
+        share = (value - self._low) / (self._high - self._low or 1.0)
+        return round(self._ground - share * (self._ground - self._top), 1)
+
+
+_DRAWN: Final[dict[Kind, Callable[[_Frame, Series], Iterator[str]]]] = {
+    "bars": _Frame.bars,
+    "line": _Frame.line,
+    "dots": _Frame.dots,
+}
+_SIZE: Final = 10  # of texts, in pixels
+_LINE: Final = 13
+_GAP: Final = 7
+_NEAR: Final = 3
+
+CHART_STYLE: Final = """\
+.chart { display: block; width: 100%; }
+.chart text { font-size: 10px; fill: var(--ink); }
+.chart .tick, .chart .last { text-anchor: end; }
+.chart path { fill: none; stroke: var(--line); }
+.chart rect, .chart circle { fill: var(--monitored); }
+.chart .mark { stroke: var(--ink); stroke-dasharray: 2 2; }
+.chart .line { stroke: var(--monitored); stroke-width: 1.5; }
+.chart .bound { stroke: var(--missing); stroke-width: 1.75; stroke-dasharray: 7 3; }
+.chart .goal { stroke: var(--enforced); stroke-width: 1.75; stroke-dasharray: 3 3; }
+"""
