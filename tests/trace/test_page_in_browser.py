@@ -117,7 +117,7 @@ return [...document.querySelectorAll(".scroll")].map((part) =>
 """
 
 
-@pytest.mark.parametrize(("example", "place"), [("laboratory", "beside"), ("navigation", "below")])
+@pytest.mark.parametrize(("example", "place"), [("pick-and-place", "beside"), ("navigation", "below")])
 def test_every_tree_can_be_seen_as_a_whole(example: str, place: str, tmp_path: Path) -> None:
     """One that is too broad for the column beside the tables puts all below them."""
     page = write(overview_of(example), "html")

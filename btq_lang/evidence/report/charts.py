@@ -18,7 +18,7 @@ from btq_lang.render.chart import Chart, Level, Mark, Series, drawn
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.report.measures import Measured
+    from btq_lang.evidence.report.measures import MeasureTrend
     from btq_lang.evidence.report.trends import Steps, Values
 
 
@@ -51,7 +51,7 @@ def bars(values: Values, steps: Steps, labels: Sequence[tuple[str, int]], shown:
     return f"{drawn(chart)}<small>at most {escape(shown(highest))}</small>"
 
 
-def measure_charts(measured: Sequence[Measured], keys: Mapping[str, str]) -> Iterator[str]:
+def measure_charts(measured: Sequence[MeasureTrend], keys: Mapping[str, str]) -> Iterator[str]:
     """A figure for each clause that measures something, the later ones folded if there are many.
 
     Args:
@@ -68,14 +68,14 @@ def measure_charts(measured: Sequence[Measured], keys: Mapping[str, str]) -> Ite
         yield f'<div class="measures">{"".join(more)}</div></details>'
 
 
-def _figure(measured: Measured, keys: Mapping[str, str]) -> str:
+def _figure(measured: MeasureTrend, keys: Mapping[str, str]) -> str:
     link = f'<a class="name" href="#{keys[measured.requirement]}">{escape(measured.requirement)}</a>'
     where = "" if measured.node in measured.clause else f" at {escape(measured.node)}"
     head = f"<p>{link} <code>{escape(measured.clause)}</code>{where}</p>"
     return f"<figure>{_chart(measured)}<figcaption>{head}<p>{escape(_change(measured))}</p></figcaption></figure>"
 
 
-def _chart(measured: Measured) -> str:
+def _chart(measured: MeasureTrend) -> str:
     unit = measured.unit
     dates = [date(each, measured.by) for each in measured.starts]
 
@@ -108,7 +108,7 @@ def _number(value: float, symbol: str) -> str:
     return f"{value:.12g}" if symbol == "1" else f"{value:.12g} {symbol}"
 
 
-def _change(measured: Measured) -> str:
+def _change(measured: MeasureTrend) -> str:
     """The first and the last values in words, the extreme ones, and what they are compared with."""
 
     def words(values: Values, of: str) -> str:

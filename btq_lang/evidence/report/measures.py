@@ -16,7 +16,7 @@ from btq_lang.util.grouping import grouped
 from btq_lang.util.record import Record
 
 
-class Measured(Record):
+class MeasureTrend(Record):
     """What a clause measured.
 
     Attributes:
@@ -41,7 +41,7 @@ class Measured(Record):
     labels: tuple[tuple[str, float], ...]
 
 
-def measures(ask: Ask, steps: Steps, labels: Sequence[tuple[str, int]]) -> Mapping[str, Sequence[Measured]]:
+def measures(ask: Ask, steps: Steps, labels: Sequence[tuple[str, int]]) -> Mapping[str, Sequence[MeasureTrend]]:
     """What the clauses of each mission measured, in the order of the clauses.
 
     Args:
@@ -62,7 +62,7 @@ def measures(ask: Ask, steps: Steps, labels: Sequence[tuple[str, int]]) -> Mappi
     return grouped(found)
 
 
-def _by_run(clause: Row, rows: Sequence[Row]) -> Measured:
+def _by_run(clause: Row, rows: Sequence[Row]) -> MeasureTrend:
     rows = sorted(rows, key=itemgetter("run_start_us", "log", "run"))
     labels: dict[str, float] = {}
     for place, row in enumerate(rows):
@@ -71,7 +71,7 @@ def _by_run(clause: Row, rows: Sequence[Row]) -> Measured:
     return _measured(clause, "run", starts, worst, None, tuple(labels.items()))
 
 
-def _by_step(clause: Row, rows: Sequence[Row], steps: Steps, labels: Sequence[tuple[str, int]]) -> Measured:
+def _by_step(clause: Row, rows: Sequence[Row], steps: Steps, labels: Sequence[tuple[str, int]]) -> MeasureTrend:
     by_place = {int(row["place"]): row for row in rows}
     worst, medians = (
         tuple(by_place[place][name] if place in by_place else None for place in range(steps.number))
@@ -89,7 +89,7 @@ def _measured(
     worst: Values,
     medians: Values | None,
     labels: tuple[tuple[str, float], ...],
-) -> Measured:
+) -> MeasureTrend:
     both = [("lower bound", clause["lower_si"]), ("upper bound", clause["upper_si"])]
     levels = [(kind, si) for kind, si in both if si is not None]
     levels = levels or [("bound", si) for si in dict.fromkeys((clause["least_si"], clause["most_si"]))]
@@ -98,7 +98,7 @@ def _measured(
     unit = parse_unit(clause["unit"]) if clause["unit"] else ONE
     assert unit is not None, "a unit of the table, as it was written"
     of = clause["requirement"], clause["clause"], clause["node"], unit
-    return Measured(*of, by, starts, worst, medians, tuple(levels), labels)
+    return MeasureTrend(*of, by, starts, worst, medians, tuple(levels), labels)
 
 
 FEW_RUNS: Final = 60

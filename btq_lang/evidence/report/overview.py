@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from btq_lang.evidence.compare.comparison import Comparison, Unknown, compare
-from btq_lang.evidence.report.measures import Measured, measures
+from btq_lang.evidence.report.measures import MeasureTrend, measures
 from btq_lang.evidence.report.trends import Steps, Trends, steps_of, trends
 from btq_lang.evidence.store.queries import OVERVIEW, Ask, Row, only
 from btq_lang.evidence.store.summary import parted
@@ -67,7 +67,7 @@ class MissionOverview(Record):
     failures: tuple[Node, ...]
     nodes: tuple[Node, ...]
     trends: Trends
-    measures: tuple[Measured, ...]
+    measures: tuple[MeasureTrend, ...]
 
 
 class Overview(Record):
