@@ -31,8 +31,9 @@ def histogram(found: Histogram) -> str:
         if number:
             x, end = across(found.low + at * found.step), across(found.low + (at + 1) * found.step)
             height = max(round(number / max(found.counts) * (_GROUND - ceiling), 1), 1.0)
+            wide = min(max(end - x, 1), _WIDEST)
             parts.append(
-                f'<rect class="bin" x="{x}" y="{_GROUND - height:g}" width="{max(end - x, 1):.1f}" height="{height:g}">'
+                f'<rect class="bin" x="{x}" y="{_GROUND - height:g}" width="{wide:.1f}" height="{height:g}">'
                 f"<title>{number} from {escape(quantity(found.low + at * found.step, found.unit))}"
                 f" to {escape(quantity(found.low + (at + 1) * found.step, found.unit))}</title></rect>"
             )
@@ -43,7 +44,8 @@ def histogram(found: Histogram) -> str:
         shift = -3 if anchor == "end" else 3
         parts.append(f'<path class="{kind.rpartition(" ")[2]}" d="M{x} {_TEXT * line}V{_GROUND}"/>')
         parts.append(f'<text x="{x + shift:g}" y="{y}" style="text-anchor: {anchor}">{kind} {escape(mark.text)}</text>')
-    for x, anchor, value in ((_EDGE, "start", low), (_WIDE - _EDGE, "end", high)):
+    ends = [(_EDGE, "start", low), (_WIDE - _EDGE, "end", high)]
+    for x, anchor, value in ends if high - low > found.step else ends[:1]:  # where all are alike, one number
         text = escape(quantity(value, found.unit))
         parts.append(f'<text x="{x}" y="{_HIGH - 3}" style="text-anchor: {anchor}">{text}</text>')
     return "".join(parts) + "</svg>"
@@ -54,6 +56,7 @@ _HIGH: Final = 110
 _GROUND: Final = 92
 _TEXT: Final = 13
 _EDGE: Final = 6
+_WIDEST: Final = 24  # a bar, where there are few
 
 HISTOGRAM_STYLE: Final = """\
 .histogram { width: 100%; max-width: 20rem; display: block; }
