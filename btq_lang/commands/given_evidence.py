@@ -123,14 +123,14 @@ def _judged(
         for path in group.given
         if path not in group.workspace.included_files
     ]
-    sources, of_files = signal_sources(project, shown(project.root), missions, wrong)
+    declared = signal_sources(missions, wrong)
     problems += wrong
     if wrong:
         return
     with Progress(len(logs), "read") as progress:
         verification = judged(
             logs,
-            Means(missions, sources=sources, of_files=of_files, with_measures=True),
+            Means(missions, declared=declared, with_measures=True),
             (),
             progress=lambda files, runs: progress.reached(files, f", {counted(runs, 'run')} judged"),
         )

@@ -50,9 +50,7 @@ def run(options: Namespace) -> int:
         problems.append(problem)
     if options.run is not None and not problems:
         return print_run(logs, missions, options.run)
-    roots = (each.workspace.project.root for each in missions if each.workspace.project.evidence)
-    home = find_project(next(roots, "."))
-    sources, of_files = signal_sources(home.project, shown(home.path or home.project.root), missions, problems)
+    declared = signal_sources(missions, problems)
     keeping = opened(options, problems)
     refuse(*problems)
     with Progress(len(logs), "read") as progress:
@@ -60,8 +58,7 @@ def run(options: Namespace) -> int:
         means = Means(
             missions,
             samples,
-            sources,
-            of_files,
+            declared,
             with_timelines=form_of(options, FORMATS) == "html",
             with_measures=options.summary is not None,
             keeping=keeping,

@@ -19,6 +19,7 @@ from btq_lang.evidence.odds import Limits
 from btq_lang.evidence.readers import NotALog, read
 from btq_lang.evidence.repeats import LoggedRows, LoggedRuns
 from btq_lang.evidence.runs import activations
+from btq_lang.evidence.signal_sources import Declared
 from btq_lang.evidence.signals import by_signal
 from btq_lang.evidence.verdicts import Foreign, Report
 from btq_lang.evidence.wording import first_of
@@ -29,8 +30,8 @@ from btq_lang.workspace.loader import shown
 if TYPE_CHECKING:
     from btq_lang.evidence.store.sets import Draft, Keeping
     from btq_lang.evidence.watching import Watched
-    from btq_lang.workspace.project_evidence import SignalSource
 NO_SERIES: Final[Mapping[str, Series]] = {}
+NOTHING_DECLARED: Final = Declared()
 NOTHING: Final[Mapping[tuple[str, int], Sequence[tuple[int, int, int]]]] = {}
 
 
@@ -39,8 +40,8 @@ class Means(Record):
 
     Attributes:
         samples: by signal or entry.
-        sources: where further samples come from, with lower priority; topics are read from the bags among the logs.
-        of_files, of_bags: the samples of those sources, by signal, in files and in bags without a log of a tree.
+        declared: where further samples come from, with lower priority.
+        of_bags: the samples of those sources, by signal, in bags without a log of a tree.
         remarks: notes about these bags.
         with_timelines: include the run of the worst violation of each clause.
         with_measures: include what is needed to judge clauses with other bounds.
@@ -53,8 +54,7 @@ class Means(Record):
 
     missions: Sequence[Candidate]
     samples: Mapping[str, Series] = NO_SERIES
-    sources: Sequence[SignalSource] = ()
-    of_files: Mapping[str, Series] = NO_SERIES
+    declared: Declared = NOTHING_DECLARED
     of_bags: Mapping[str, Series] = NO_SERIES
     remarks: Sequence[str] = ()
     with_timelines: bool = False
@@ -121,7 +121,7 @@ def _judged(
     label = means.keeping.label_of(log) if means.keeping is not None else None
     runs = left_out = 0
     try:
-        sessions = read(log, means.sources) if running is None else running.sessions
+        sessions = read(log, means.declared.sources) if running is None else running.sessions
         for source, session, joined in joined_sessions(sessions, missions, shown(log)):
             if isinstance(joined, str):
                 if running is not None:
@@ -146,7 +146,10 @@ def _judged(
                     if running is not None:
                         running.judged_by(evaluation)
                 signals = mission.requirements.signals.values()
-                given = by_signal(signals, means.samples, means.of_files, session.signals, means.of_bags)
+                if problem := means.declared.problem(mission.path, (*session.signals, *means.of_bags)):
+                    problems = tuple(dict.fromkeys((*problems, f"{shown(log)}: {problem}")))
+                of_files = means.declared.of_files.get(mission.path, NO_SERIES)
+                given = by_signal(signals, means.samples, of_files, session.signals, means.of_bags)
                 session.remarks.extend(means.remarks)
                 if joined.others:
                     others = ", ".join(map(shown, joined.others))
@@ -161,9 +164,9 @@ def _judged(
                 left_out += len(here)
                 evaluations[key].found.leave_out([before + run + 1 for run, *_ in here])
     except NotALog as error:
-        problems = (f"{shown(log)}: {error}",)
+        problems += (f"{shown(log)}: {error}",)
     except OSError as error:
-        problems = (f"{shown(log)}: cannot be read: {error.strerror or error}",)
+        problems += (f"{shown(log)}: cannot be read: {error.strerror or error}",)
     for evaluation in evaluations.values():
         evaluation.end()
     findings = tuple((path, evaluation.found) for (path, _), evaluation in evaluations.items())

@@ -89,11 +89,10 @@ def verify_logs(
     except NoSamples as error:
         raise ValueError(f"{signals}: {error}") from error
     wrong: list[str] = []
-    project = workspace.project
-    sources, of_files = signal_sources(project, shown(project.root), [mission], wrong)
+    declared = signal_sources([mission], wrong)
     if wrong:
         raise ValueError("; ".join(wrong))
-    found = judged(readable, Means([mission], samples, sources, of_files), [path], signals or "")
+    found = judged(readable, Means([mission], samples, declared), [path], signals or "")
     return replace(found, problems=(*problems, *(found.problems if readable else ())))
 
 
@@ -124,7 +123,9 @@ def judged(
     """
     report = verify(logs, means, jobs, progress)
     read_from = [(file, each) for each in means.samples.values()]
-    read_from += [(each.file, means.of_files[each.signal]) for each in means.sources if each.signal in means.of_files]
+    files = {source.signal: source.file for source in means.declared.sources}
+    of_files = (means.declared.of_files.get(mission.file, {}) for mission in report.missions)
+    read_from += [(files[signal], series) for samples in of_files for signal, series in samples.items()]
     remarks = (*ignored_columns(file, means.samples, means.missions), *other_times(read_from, report))
     report = replace(report, remarks=(*remarks, *report.remarks))
     return _with_problems(report, means.missions, requested)
@@ -142,7 +143,7 @@ def verify(
         jobs: how many processes judge logs; the report is the same.
         progress: called with how many logs have been read, and how many runs have been judged.
     """
-    of_bags, remarks, bags = samples_of_bags(logs, means.sources)
+    of_bags, remarks, bags = samples_of_bags(logs, means.declared.sources)
     means = replace(means, of_bags=of_bags, remarks=remarks)
     wanted, copies = without_copies([log for log in logs if log not in bags])
     judging = _all(wanted, means, jobs, progress)

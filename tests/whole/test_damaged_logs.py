@@ -29,6 +29,7 @@ from btq_lang.evidence.readers import NotALog, read
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.runs import activations
+from btq_lang.evidence.signal_sources import Declared
 from btq_lang.evidence.verifying import verify
 from btq_lang.workspace.project_evidence import SignalSource
 from btq_lang.workspace.workspace import Workspace
@@ -108,7 +109,7 @@ def tried(file: Path) -> int:
             return 1
         return 0
     log = {"a.bb.jsonl": file.with_name("a.btlog"), "metadata.yaml": file.parent}.get(file.name, file)
-    report = verify([str(log)], Means([MISSION], sources=SOURCES, shown=str))
+    report = verify([str(log)], Means([MISSION], declared=Declared(SOURCES), shown=str))
     assert len(report.problems) <= 1
     assert all(len(problem) > len(f"{log}: ") for problem in report.problems)
     return len(report.problems)
