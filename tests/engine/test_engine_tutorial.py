@@ -35,7 +35,7 @@ def test_the_lines_about_evidence_are_of_that_program() -> None:
 def verdicts(program: str, commands: str, engine: Engine, folder: Path) -> tuple[int, dict[str, str]]:
     """What the commands of the page come to: the exit code of the last one, and the verdict of each requirement."""
     (folder / "guide.cpp").write_text(program, encoding="utf-8")
-    *before, judges = [line.removeprefix("$ ") for line in commands.splitlines()]
+    *before, judges = re.findall(r"^\$ (.*)$", commands, re.MULTILINE)
     for command in before:
         environment = {**os.environ, "PREFIX": str(prefix_of(engine))}
         subprocess.run(["bash", "-c", command], cwd=folder, env=environment, check=True)
