@@ -349,7 +349,12 @@ def _add_compare(parser: Parser) -> None:
     parser.add("after", metavar="B", nargs="?", help="the label, robot or folder that may have changed")
     parser.add("--by", choices=("label", "robot"), default="label", help="what A and B are; default: label")
     parser.add("--label", metavar="LABEL", help="with --by robot: only the runs of this label")
-    parser.add("--at-least", default="5 %", metavar="PERCENT", help="what a difference must be to be called a change; default: 5 %%")
+    parser.add(
+        "--at-least",
+        default="5 %",
+        metavar="PERCENT",
+        help="what a difference must be to be called a change; default: 5 %%",
+    )
     parser.add("--format", choices=COMPARISON_FORMATS, help="default: as the file of -o ends, else table")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 

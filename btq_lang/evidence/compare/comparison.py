@@ -10,8 +10,8 @@ from btq_lang.evidence.compare.causes import chains, with_causes
 from btq_lang.evidence.compare.chance import LEVEL, exact, expected, holm, is_too_few, shuffles_for
 from btq_lang.evidence.compare.failures import totals
 from btq_lang.evidence.compare.measures import difference, probability, sizes
-from btq_lang.evidence.compare.model import AT_LEAST, Change, Comparison, is_time
 from btq_lang.evidence.compare.mission_numbers import Numbers
+from btq_lang.evidence.compare.model import AT_LEAST, Change, Comparison, is_time
 from btq_lang.evidence.compare.requirements import edited, turned, verdicts
 from btq_lang.evidence.store.tables import quoted
 from btq_lang.evidence.verdicts import VIOLATED

@@ -40,7 +40,7 @@ class Line(Record):
 def certain(comparison: Comparison) -> list[Line]:
     """What is certain and large enough: what is newly violated, what got worse by the largest share, then the rest.
 
-    What another change explains has no line of its own, and what is measured for a requirement that has one is said there.
+    What another change explains has no line of its own; that of a requirement also says what is measured for it.
     """
     turned = [each for each in (*comparison.newly, *comparison.no_longer) if not each.may_be_chance]
     own = {each.id for each in turned}
@@ -79,7 +79,7 @@ def by_chance(comparison: Comparison) -> list[Line]:
     quiet = [
         each
         for each in comparison.changes
-        if each.p > LEVEL and each.p_alone < 1 and each.cause is None and each.is_at_least(comparison.at_least)
+        if each.p > LEVEL and each.p_alone <= _LIKELY and each.cause is None and each.is_at_least(comparison.at_least)
         if not (each.failed is not None and each.requirement in own)
     ]
     quiet.sort(key=lambda each: each.p_alone)
@@ -150,3 +150,4 @@ def _shown(si: float, change: Change) -> str:
 
 
 _MOST: Final = 5  # differences that chance may explain
+_LIKELY: Final = 0.5  # p-values of differences that are none

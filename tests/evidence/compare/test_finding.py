@@ -177,5 +177,5 @@ def test_two_folders_of_logs_without_a_store(lift: Path) -> None:
     )
     (lift / "fetch.btq").unlink()
     code, output, _ = run_btq("compare", "cmp_lift40/v2", "cmp_lift40/v3", cwd=lift)
-    assert (code, output.splitlines()[2]) == (1, LIFT[0].replace("p = 0.001", "p = 0.00086"))
+    assert (code, output.splitlines()[2]) == (1, LIFT[0].replace("p = 0.001", "p = 0.00083"))
     assert sorted(path.name for path in lift.iterdir()) == ["cmp_lift40"]
