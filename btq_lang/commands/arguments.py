@@ -323,21 +323,31 @@ def _add_verify(parser: Parser) -> None:
 
 @_command(
     "compare",
-    "compare what robots did with two versions, by the verdicts in a store",
-    "exit codes: 0 nothing got worse; 1 something slower, less reliable or newly violated;\n"
-    "2 usage, I/O, or nothing to compare\n\n"
+    "compare what robots did with two versions, by the verdicts in a store, or by logs",
+    "exit codes: 0 nothing got worse; 1 something slower, less reliable or newly violated that chance\n"
+    "does not explain; 2 usage, I/O, or nothing to compare\n\n"
     "examples:\n  btq compare evidence v1.3 v1.4                two labels of a store\n"
     "  btq compare evidence --by robot r7 r8         two robots\n"
+    "  btq compare logs/v1.3 logs/v1.4               two folders of logs, without a store\n"
     "  btq compare evidence v1.3 v1.4 -o report.md   for a pull request\n",
 )
 def _add_compare(parser: Parser) -> None:
     # Two names alone are `store` and `before`: if `store` were the optional one, `STORE --by robot A B` would fail.
-    parser.usage = "btq compare [-h] [STORE] A B [--by {label,robot}] [--label LABEL] [--format FORMAT] [-o FILE]"
+    parser.usage = (
+        "btq compare [-h] [STORE] A B [--by {label,robot}] [--label LABEL] [--at-least PERCENT]\n"
+        "                   [--format FORMAT] [-o FILE]"
+    )
     parser.add("store", metavar="STORE", help=_STORE)
-    parser.add("before", metavar="A", help="the label that is compared with, or the robot")
-    parser.add("after", metavar="B", nargs="?", help="the label, or the robot, that may have changed")
+    parser.add("before", metavar="A", help="the label that is compared with, the robot, or a folder of logs")
+    parser.add("after", metavar="B", nargs="?", help="the label, robot or folder that may have changed")
     parser.add("--by", choices=("label", "robot"), default="label", help="what A and B are; default: label")
     parser.add("--label", metavar="LABEL", help="with --by robot: only the runs of this label")
+    parser.add(
+        "--at-least",
+        default="5 %",
+        metavar="PERCENT",
+        help="what a difference must be to be called a change; default: 5 %%",
+    )
     parser.add("--format", choices=COMPARISON_FORMATS, help="default: as the file of -o ends, else table")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 

@@ -3,10 +3,14 @@
 One invariant: only what chance hardly explains is called a change, whatever the number of comparisons.
 
     questions.py    what is asked of the store, as SQL
+    mission_numbers.py  the answers, of a mission
+    measures.py     durations and other measures by run, and how they differ
+    failures.py     in how many runs nodes failed and clauses were violated
     chance.py       how likely a difference is without a change
     requirements.py what changed in the verdicts on requirements
-    comparison.py   what changed, as data
-    words.py        a change in words
+    causes.py       which differences have one cause
+    comparison.py   what changed; model.py has it as data
+    lines.py        what changed in words; words.py the rest of a report
     table.py, json_document.py, markdown.py   the writers
 """
 
@@ -17,7 +21,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.compare.comparison import Comparison
+    from btq_lang.evidence.compare.model import Comparison
 
 FORMATS: Final = ("table", "json", "markdown")
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 import random
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Sequence
-from itertools import chain
-from math import comb, exp, lgamma, prod
-from operator import itemgetter, mul
-from typing import Any, Final, TypeAlias
+from itertools import chain, compress, islice
+from math import comb, erfc, exp, lgamma, prod, sqrt
+from operator import mul
+from typing import Final, TypeAlias
 
 from btq_lang.util.grouping import grouped
 
@@ -25,59 +25,73 @@ class Shuffles:
     The seed is fixed.
     """
 
-    def __init__(self, first: Sequence[Hashable], second: Sequence[Hashable], number: int) -> None:
+    def __init__(self, first: Sequence[Hashable], second: Sequence[Hashable]) -> None:
         """
         Args:
             first, second: the stratum of each unit of a side.
         """
-        chance = random.Random(_SEED)
-        strata = grouped((stratum, index) for index, stratum in enumerate((*first, *second)))
-        fewer = Counter(first if len(first) <= len(second) else second)
-        parted = [(units, fewer[stratum]) for stratum, units in strata.items() if 0 < fewer[stratum] < len(units)]
         self._first: Final = len(first)
-        self._number: Final = number
-        # That of a zero, twice, for `itemgetter` gives no tuple for a single index.
-        zero = len(first) + len(second)
-        self._to_draw: Final = (
-            itemgetter(zero, zero, *(at for units, size in parted for at in chance.sample(units, size)))
-            for _ in range(number)
-        )
-        self._drawn: Final[list[itemgetter[Any]]] = []  # only as many as a difference has needed
+        units = grouped((stratum, index) for index, stratum in enumerate((*first, *second)))
+        sizes = Counter(first)
+        self._strata: Final = [(of, sizes[stratum]) for stratum, of in units.items()]
+        self._to_draw: Final = self._draws(len(first) + len(second))
+        self._drawn: Final[list[bytearray]] = []  # only as many as a difference has needed
 
-    def probability(self, scores: Sequence[int]) -> float:
-        """The p-value of the difference between the sides, in both directions.
+    def probability(self, scores: Sequence[float], most: int) -> float:
+        """The p-value of the difference between the sums of the sides, in both directions.
 
-        It ends early once it is certain to be above `LEVEL`.
+        It is the share of shuffles with such a difference, of which there are no more than it takes to know that it is
+        common.  Where not one has it, it is the tail of the normal distribution that a sum over shuffles tends to
+        (Lehmann, *Nonparametrics*, appendix 4).  That happens by chance once in as many comparisons as there are
+        shuffles, so how good the tail is changes little.
 
         Args:
             scores: of the units of the first side, then of the second; their sum in each stratum is 0.
+            most: how many shuffles are drawn.
         """
-        observed = abs(sum(scores[: self._first]))
+        observed = abs(sum(scores[: self._first])) * (1 - _ROUNDING)
         if not observed:
             return 1.0
-        padded = [*scores, 0]
-        beyond, enough = 0, LEVEL * (self._number + 1)
-        for number, side in enumerate(chain(self._drawn, self._draw()), start=1):
-            if abs(sum(side(padded))) >= observed:
+        beyond = 0
+        for number, side in enumerate(islice(chain(self._drawn, self._draw()), most), start=1):
+            if abs(sum(compress(scores, side))) >= observed:
                 beyond += 1
-                if beyond > enough:
+                if beyond == _COMMON:
                     return beyond / number
-        return (beyond + 1) / (self._number + 1)
+        least = 1 / (most + 1)
+        return (beyond + 1) * least if beyond else min(least, max(self._tail(observed, scores), self._rarest()))
 
-    def _draw(self) -> Iterator[itemgetter[Any]]:
+    def _tail(self, observed: float, scores: Sequence[float]) -> float:
+        """The p-value by the normal distribution, from the variance of a sum over shuffles."""
+        variance = 0.0
+        for units, size in self._strata:
+            number = len(units)
+            squares = sum(scores[unit] ** 2 for unit in units)
+            variance += squares * size * (number - size) / (number * max(number - 1, 1))
+        return erfc(observed / sqrt(2 * variance))
+
+    def _rarest(self) -> float:
+        """The p-value of a difference that no other way to part the units has, but for the exchange of the sides."""
+        return _extremes(sizes := [(size, len(units) - size) for units, size in self._strata]) / _ways(sizes)
+
+    def _draw(self) -> Iterator[bytearray]:
         for side in self._to_draw:
             self._drawn.append(side)
             yield side
 
+    def _draws(self, number: int) -> Iterator[bytearray]:
+        chance = random.Random(_SEED)
+        while True:
+            side = bytearray(number)
+            for units, size in self._strata:
+                for unit in chance.sample(units, size):
+                    side[unit] = 1
+            yield side
+
 
 def shuffles_for(comparisons: int) -> int:
-    """How many shuffles so many comparisons need, for the smallest p-value to be small enough for all of them."""
-    return max(_SHUFFLES, round(comparisons / LEVEL))
-
-
-def least(comparisons: int, shuffled: int) -> float:
-    """The least p-value of a shuffled measure, after Holm, that so many comparisons allow, so many of them shuffled."""
-    return min(1.0, shuffled / (shuffles_for(comparisons) + 1))
+    """How many shuffles so many comparisons need, for a p-value that is small enough for all of them to be known."""
+    return max(LEAST_SHUFFLES, round(2 * comparisons / LEVEL))
 
 
 def exact(strata: Iterable[Failures]) -> float:
@@ -97,7 +111,7 @@ def exact(strata: Iterable[Failures]) -> float:
         observed += failed
     if observed not in range(first, first + len(chances)):
         return _RARE
-    limit = chances[observed - first] * (1 + _ROUNDING)
+    limit = chances[observed - first] * (1 + _ALIKE)
     return min(1.0, sum(each for each in chances if each <= limit))
 
 
@@ -108,12 +122,12 @@ def expected(strata: Iterable[Failures]) -> float:
 
 def holm(probabilities: Sequence[float]) -> list[float]:
     """The p-values after Holm: each may be compared with `LEVEL`, and one error among all of them is that rare."""
-    found = [1.0] * len(probabilities)
+    adjusted = [1.0] * len(probabilities)
     largest = 0.0
     for place, index in enumerate(sorted(range(len(probabilities)), key=probabilities.__getitem__)):
         largest = max(largest, min(1.0, (len(probabilities) - place) * probabilities[index]))
-        found[index] = largest
-    return found
+        adjusted[index] = largest
+    return adjusted
 
 
 def is_too_few(sizes: Sequence[tuple[int, int]], comparisons: int) -> bool:
@@ -122,9 +136,17 @@ def is_too_few(sizes: Sequence[tuple[int, int]], comparisons: int) -> bool:
     Args:
         sizes: how many units each side has in each stratum.
     """
-    # Sides of the same size can be exchanged, and then differ as much.
-    extremes = 2 if all(first == second for first, second in sizes) else 1
-    return prod(comb(first + second, first) for first, second in sizes) < extremes * comparisons / LEVEL
+    return _ways(sizes) < _extremes(sizes) * comparisons / LEVEL
+
+
+def _ways(sizes: Sequence[tuple[int, int]]) -> int:
+    """In how many ways units can be parted."""
+    return prod(comb(first + second, first) for first, second in sizes)
+
+
+def _extremes(sizes: Sequence[tuple[int, int]]) -> int:
+    """How many of these ways differ most: sides of the same size can be exchanged, and then differ as much."""
+    return 2 if all(first == second for first, second in sizes) else 1
 
 
 def _likely(first: int, chances: Iterable[float]) -> tuple[int, list[float]]:
@@ -145,7 +167,9 @@ def _log_comb(n: int, k: int) -> float:
 
 
 LEVEL: Final = 0.05
-_SHUFFLES: Final = 10_000
+LEAST_SHUFFLES: Final = 10_000
+_COMMON: Final = 500  # shuffles with such a difference are enough to know how common it is, to 9 %
 _SEED: Final = 25_010
 _RARE: Final = 1e-20  # of numbers that are rarer, all together are as well
-_ROUNDING: Final = 1e-7  # tables that are as likely as the observed one differ by that much at most
+_ALIKE: Final = 1e-7  # tables that are as likely as the observed one differ by that much at most
+_ROUNDING: Final = 1e-9

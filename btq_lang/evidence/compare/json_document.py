@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import Final
+from typing import Any, Final
 
-from btq_lang.evidence.compare.comparison import Comparison
+from btq_lang.evidence.compare.model import Change, Comparison
 from btq_lang.util.fields import as_dict
 
 FORMAT: Final = "btq-comparison"
-VERSION: Final = 1
+VERSION: Final = 2
 
 
 def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
@@ -24,6 +24,7 @@ def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
             {
                 **as_dict(each),
                 **{name: [as_dict(one) for one in getattr(each, name)] for name in _LISTS},
+                "changes": [_change(one) for one in each.changes],
             }
             for each in found
         ],
@@ -31,4 +32,9 @@ def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
     return json.dumps(document, indent=1, allow_nan=False) + "\n"
 
 
-_LISTS: Final = ("newly", "no_longer", "edited", "changes")
+def _change(change: Change) -> dict[str, Any]:
+    cause = change.cause._asdict() if change.cause is not None else None
+    return {**as_dict(change), "same": [key._asdict() for key in change.same], "cause": cause}
+
+
+_LISTS: Final = ("newly", "no_longer", "edited")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from btq_lang.evidence.compare.comparison import WORSE, Comparison
-from btq_lang.evidence.compare.words import difference, heading, remarks, subject, turn
+from btq_lang.evidence.compare.lines import Line, by_chance, certain
+from btq_lang.evidence.compare.model import Comparison
+from btq_lang.evidence.compare.words import BY_CHANCE, heading, remarks
 from btq_lang.render.gfm import code, escaped, table
 
 
@@ -17,13 +18,21 @@ def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
 def _lines(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
     yield f"### {escaped(heading(comparison, sides))}"
     yield ""
-    rows = [("**newly violated**", code(each.id), escaped(turn(each))) for each in comparison.newly]
-    for change in sorted(comparison.changes, key=lambda each: each.finding not in WORSE):
-        if change.finding:
-            word = f"**{change.finding}**" if change.finding in WORSE else change.finding
-            rows.append((word, code(subject(change)), escaped(difference(change))))
-    rows += [("no longer violated", code(each.id), escaped(turn(each))) for each in comparison.no_longer]
-    if rows:
-        yield from table(("Finding", "Of", "Change"), rows)
+    if changes := certain(comparison):
+        yield from _table(changes)
         yield ""
+    if quiet := by_chance(comparison):
+        yield from (f"<details><summary>{BY_CHANCE.capitalize()}</summary>", "", *_table(quiet), "", "</details>", "")
     yield from (f"* {escaped(line)}" for line in remarks(comparison, sides))
+
+
+def _table(lines: Sequence[Line]) -> Iterator[str]:
+    rows = [
+        (
+            f"**{each.finding}**" if each.is_worse else each.finding,
+            code(each.name),
+            "<br>".join(escaped(text) for text in (each.text, each.more) if text),
+        )
+        for each in lines
+    ]
+    yield from table(("Finding", "Of", "Change"), rows)

@@ -24,7 +24,9 @@ class Newly(Record):
     Attributes:
         before, after: the verdict of each side.
         violated, counted: how many judgements of each side are violations, and how many count.
-        may_be_chance: whether chance may explain it: of the runs of both sides, no more are violated than by chance.
+        p: how likely it is by chance that so many more runs of a side are violations, after Holm; None where only one
+            side has judgements to compare.
+        may_be_chance: whether chance may explain it.
     """
 
     id: str
@@ -33,6 +35,7 @@ class Newly(Record):
     after: str
     violated: tuple[int, int]
     counted: tuple[int, int]
+    p: float | None
     may_be_chance: bool
 
 
@@ -95,7 +98,7 @@ def turned(before: Verdicts, after: Verdicts, edits: Sequence[Edited]) -> list[N
                 [sum(getattr(each, what) for each in of or ()) for of in pair] for what in ("violated", "counted")
             )
             numbers = (violated[0], violated[1]), (counts[0], counts[1])
-            found.append(Newly(name, title, first, second, *numbers, False))
+            found.append(Newly(name, title, first, second, *numbers, None, False))
     return found
 
 

@@ -1,11 +1,13 @@
-"""What changed, for people at a terminal: what is newly violated, then what got worse, then the rest."""
+"""What changed, for people at a terminal, then what may be chance."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Final
 
-from btq_lang.evidence.compare.comparison import WORSE, Comparison
-from btq_lang.evidence.compare.words import difference, heading, remarks, subject, turn
+from btq_lang.evidence.compare.lines import Line, by_chance, certain
+from btq_lang.evidence.compare.model import Comparison
+from btq_lang.evidence.compare.words import BY_CHANCE, heading, remarks
 from btq_lang.render.cells import cells_of, printable
 
 
@@ -16,15 +18,24 @@ def render(found: Sequence[Comparison], by: str, sides: tuple[str, str]) -> str:
 
 def _lines(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
     yield heading(comparison, sides)
-    rows = [("newly violated", f"{each.id}  {each.title}".rstrip(), turn(each)) for each in comparison.newly]
-    changes = sorted((each for each in comparison.changes if each.finding), key=lambda each: each.finding not in WORSE)
-    rows += [(each.finding, subject(each), difference(each)) for each in changes]
-    rows += [("no longer violated", f"{each.id}  {each.title}".rstrip(), turn(each)) for each in comparison.no_longer]
-    if rows:
-        yield ""
-    left, middle = (max(cells_of(row[column]) for row in rows) if rows else 0 for column in (0, 1))
-    for word, about, change in rows:
-        blanks = " " * (middle - cells_of(about))
-        yield f"  {word:{left}}  {about}{blanks}  {change}"
+    if changes := certain(comparison):
+        yield from ("", *_columns(changes))
+    if quiet := by_chance(comparison):
+        yield from ("", f"{BY_CHANCE}:", *_columns(quiet))
     if notes := [*remarks(comparison, sides)]:
         yield from ("", *notes)
+
+
+def _columns(lines: Sequence[Line]) -> Iterator[str]:
+    """The lines, with what belongs to each below it."""
+    left = max(cells_of(each.finding) for each in lines)
+    middle = max((width for each in lines if (width := cells_of(each.name)) <= _WIDEST), default=0)
+    for each in lines:
+        finding = f"{each.finding:{left}}  " if left else ""
+        start = f"  {finding}{each.name}{' ' * (middle - cells_of(each.name))}  "
+        yield f"{start}{each.text}"
+        if each.more:
+            yield " " * cells_of(start) + each.more
+
+
+_WIDEST: Final = 60  # cells of a name that others are aligned with

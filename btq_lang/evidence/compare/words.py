@@ -1,53 +1,30 @@
-"""A change in words, for people."""
+"""What is compared, in words, and what a comparison does not say."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Final
 
-from btq_lang.catalog.units import parse_unit
-from btq_lang.evidence.compare.comparison import Change, Comparison, is_time
-from btq_lang.evidence.compare.requirements import Newly
-from btq_lang.evidence.verdicts import VIOLATED
-from btq_lang.evidence.wording import duration, quantity
+from btq_lang.evidence.compare.chance import LEVEL
+from btq_lang.evidence.compare.lines import percent
+from btq_lang.evidence.compare.model import Comparison
+from btq_lang.evidence.wording import first_of, period, share
 from btq_lang.util.text import counted
 
 
 def heading(comparison: Comparison, sides: tuple[str, str]) -> str:
-    """What is compared."""
+    """What is compared, and when it was."""
     if not all(comparison.runs):
         ran, other = sides if comparison.runs[0] else sides[::-1]
         return f"{comparison.mission}: {counted(max(comparison.runs), 'run')} of {ran}, none of {other}, not compared"
-    (first, second), (one, other) = comparison.runs, sides
     over = f"groups of {comparison.group:,} {comparison.over}" if comparison.group > 1 else comparison.over
     if comparison.over == "robots":
         over += f" ({comparison.robots[0]} and {comparison.robots[1]})"
-    runs = f"{counted(first, 'run')} of {one}, {counted(second, 'run')} of {other}"
+    runs = ", ".join(
+        f"{counted(number, 'run')} of {side}" + (f" ({period(*times)})" if times is not None else "")
+        for number, side, times in zip(comparison.runs, sides, comparison.times, strict=True)
+    )
     return f"{comparison.mission}: {runs}, durations compared by {over}"
-
-
-def subject(change: Change) -> str:
-    """The node, or the clause with its node."""
-    if not change.requirement:
-        return change.node
-    return f"{change.requirement}: {change.clause}" + (f" at {change.node}" if change.node else "")
-
-
-def difference(change: Change) -> str:
-    """Both numbers, and how likely they are by chance."""
-    if change.failed is not None:
-        verb = "violated" if change.requirement else "failed"
-        before, after = (f"{k} of {n}" for k, n in zip(change.failed, change.counts, strict=True))
-        return f"{verb} in {before} runs → {after}, {_chance(change.p)}"
-    return f"{change.what} {_shown(change.before, change)} → {_shown(change.after, change)}, {_chance(change.p)}"
-
-
-def turn(newly: Newly) -> str:
-    """How a requirement came to be violated, or no longer."""
-    first, second = (f"{k:,} of {n:,}" for k, n in zip(newly.violated, newly.counted, strict=True))
-    chance = ", which chance may explain" if newly.may_be_chance else ""
-    verdict = f"was {newly.before}" if newly.after == VIOLATED else f"is {newly.after}"
-    return f"{verdict}, {first} → {second}{chance}"
 
 
 def remarks(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
@@ -61,16 +38,17 @@ def remarks(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
         )
         yield f"several labels are compared at once: {'; '.join(ran)}; --label LABEL takes the runs of one"
     changes = comparison.changes
-    same = sum(not each.finding for each in changes)
-    least = f" (p of medians and p95 is at least {comparison.least_p:.2g})"
-    is_shuffled = any(each.failed is None for each in changes)
-    of_all = f"{same} of {counted(len(changes), 'comparison')} without a change that chance does not explain"
-    yield of_all + (least if is_shuffled else "")
-    for each in comparison.edited:
-        whose = f"{each.requirement} at {each.node}" if each.node else each.requirement
+    more = sum(each.p <= LEVEL for each in changes)
+    yield f"{more} of {counted(len(changes), 'comparison')} differ by more than chance explains"
+    small = [each for each in changes if each.p <= LEVEL and not each.finding]
+    if small:
+        named = first_of([f"{each.name} ({percent(each)})" for each in small])
+        yield f"less than {share(comparison.at_least)}, so no change (--at-least): {named}"
+    for edit in comparison.edited:
+        whose = f"{edit.requirement} at {edit.node}" if edit.node else edit.requirement
         old, new = (
             f"{text} ({k:,} of {n:,} violated)"
-            for text, k, n in zip((each.before, each.after), each.violated, each.counted, strict=True)
+            for text, k, n in zip((edit.before, edit.after), edit.violated, edit.counted, strict=True)
         )
         yield f"the bound of {whose} was changed from {old} to {new}, so this says nothing about the robots"
     alone = zip(comparison.one_sided, sides, strict=True)
@@ -81,9 +59,9 @@ def remarks(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
             what = "requirements" if len(names) > 1 else "requirement"
             yield f"not compared: {what} only in {side}: {', '.join(names)}"
     if found := untestable(comparison):
-        yield f"medians and p95: {found}"
-    certain = {subject(each) for each in changes if each.finding}
-    few = [each for each in dict.fromkeys(subject(each) for each in changes if each.too_few) if each not in certain]
+        yield f"means: {found}"
+    certain = {each.name for each in changes if each.finding}
+    few = [each for each in dict.fromkeys(each.name for each in changes if each.too_few) if each not in certain]
     if few:
         yield f"too few to show any change: {', '.join(few)}"
 
@@ -98,12 +76,5 @@ def untestable(comparison: Comparison) -> str:
     return f"not testable with {f'{first} and ' if first != second else ''}{counted(second, what)}"
 
 
-def _chance(p: float) -> str:
-    return f"p = {p:.2g}" if p >= 0.0001 else "p < 0.0001"
-
-
-def _shown(si: float, change: Change) -> str:
-    return duration(si) if is_time(change.unit) else quantity(si, parse_unit(change.unit))
-
-
+BY_CHANCE: Final = "what differs most where chance may explain it"
 _NO_LABEL: Final = "no label"

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from btq_lang.evidence.compare.comparison import Comparison, Unknown, compare
+from btq_lang.evidence.compare.comparison import Unknown, compare
+from btq_lang.evidence.compare.model import Comparison
 from btq_lang.evidence.report.measures import MeasureTrend, measures
 from btq_lang.evidence.report.trends import Steps, Trends, steps_of, trends
 from btq_lang.evidence.store.queries import OVERVIEW, Ask, Row, only

@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.evidence.compare.comparison import WORSE, Change, Comparison
-from btq_lang.evidence.compare.requirements import Newly
-from btq_lang.evidence.compare.words import difference, heading, remarks, subject, turn, untestable
+from btq_lang.evidence.compare.lines import Line, by_chance, certain
+from btq_lang.evidence.compare.model import WORSE, Comparison
+from btq_lang.evidence.compare.words import BY_CHANCE, heading, remarks, untestable
 from btq_lang.evidence.report.charts import bars, measure_charts
 from btq_lang.evidence.report.parts import DOTTED, NO_NAME, REPORT_STYLE
 from btq_lang.evidence.sentences import explained, result, worst_violation
@@ -81,9 +81,8 @@ def _tiles(overview: Overview) -> str:
     """The numbers of what got worse, where something is compared, and of what is violated."""
     tiles: list[tuple[str, int | str, str]] = []
     if found := overview.comparisons:
-        tiles = [("newly violated", sum(len(each.newly) for each in found), "")]
-        changes = {(each.mission, subject(change), change.finding) for each in found for change in each.changes}
-        tiles += [(word, sum(finding == word for *_, finding in changes), "") for word in reversed(WORSE)]
+        words = [line.finding for each in found for line in certain(each)]
+        tiles = [(word, words.count(word), "") for word in ("newly violated", *reversed(WORSE))]
         if all(whys := [untestable(each) for each in found if all(each.runs)]):
             tiles[-1] = (f"slower: {whys[0]}", _NOT_TESTED, "")
     last = [mission.parts[-1] for mission in overview.missions]
@@ -97,45 +96,37 @@ def _tiles(overview: Overview) -> str:
 
 
 def _comparison(comparison: Comparison, sides: tuple[str, str], keys: dict[str, str]) -> Iterator[str]:
-    found = sorted((each for each in comparison.changes if each.finding), key=_importance)
-    worse = [_turned("newly violated", each, keys) for each in comparison.newly]
-    worse += [_change(each, keys) for each in found if each.finding in WORSE]
-    others = [_turned("no longer violated", each, keys) for each in comparison.no_longer]
-    others += [_change(each, keys) for each in found if each.finding not in WORSE]
     yield f"<p>{escape(heading(comparison, sides))}</p>"
     if not all(comparison.runs):
         return
+    worse, others = ([each for each in certain(comparison) if each.is_worse is is_worse] for is_worse in (True, False))
+    heads = ("Finding", "Of", "Change")
     if worse:
-        yield from _folded("changes", f"What got worse in {comparison.mission}", ("Finding", "Of", "Change"), worse)
+        rows = [_difference(each, keys) for each in worse]
+        yield from _folded("changes", f"What got worse in {comparison.mission}", heads, rows)
     else:
         yield f"<p>Nothing that chance does not explain got worse in {escape(comparison.mission)}.</p>"
-    if others:
-        yield f"<details><summary>{counted(len(others), 'other change')}</summary>"
-        yield from _table("changes", f"Other changes in {comparison.mission}", ("Finding", "Of", "Change"), others)
-        yield "</details>"
+    for summary, caption, lines in (
+        (counted(len(others), "other change"), "Other changes", others),
+        (BY_CHANCE.capitalize(), BY_CHANCE.capitalize(), by_chance(comparison)),
+    ):
+        if lines:
+            yield f"<details><summary>{summary}</summary>"
+            rows = [_difference(each, keys) for each in lines]
+            yield from _table("changes", f"{caption} in {comparison.mission}", heads, rows)
+            yield "</details>"
     yield "<details><summary>What else was compared</summary>"
     yield from (f"<p><small>{escape(line)}</small></p>" for line in remarks(comparison, sides))
     yield "</details>"
 
 
-def _importance(change: Change) -> tuple[bool, float]:
-    """What to read first: what requirements say, then nodes; of each, what changed by the largest factor."""
-    return not change.requirement, -abs(change.after - change.before) / (change.before or _NOTHING)
-
-
-def _turned(word: str, newly: Newly, keys: dict[str, str]) -> str:
-    about = f"{_link(newly.id, keys)} {escape(newly.title)}"
-    kind = _class("worse" if newly.after == VIOLATED else "")
-    return f'<tr><th scope="row"{kind}>{word}</th><td>{about}</td><td>{escape(turn(newly))}</td></tr>'
-
-
-def _change(change: Change, keys: dict[str, str]) -> str:
-    about = escape(subject(change))
-    if change.requirement:
-        about = f"{_link(change.requirement, keys)}{about.removeprefix(escape(change.requirement))}"
-    kind = "worse" if change.finding in WORSE else ""
-    change_ = escape(difference(change))
-    return f'<tr><th scope="row"{_class(kind)}>{change.finding}</th><td>{about}</td><td>{change_}</td></tr>'
+def _difference(line: Line, keys: dict[str, str]) -> str:
+    about = escape(line.name)
+    if line.requirement:
+        about = f"{_link(line.requirement, keys)}{about.removeprefix(escape(line.requirement))}"
+    text = escape(line.text) + (f" <small>{escape(line.more)}</small>" if line.more else "")
+    head = f'<th scope="row"{_class("worse" if line.is_worse else "")}>{line.finding}</th>'
+    return f"<tr>{head}<td>{about}</td><td>{text}</td></tr>"
 
 
 # ---- a mission ----

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 from in_process import run_btq
 from json_schema import violations
-from seeds import share_of, takes_all
+from seeds import share_of
 
-from btq_lang.evidence.compare.chance import Shuffles, exact, holm, is_too_few, least, shuffles_for
+from btq_lang.evidence.compare.chance import Shuffles, exact, holm, is_too_few, shuffles_for
 from btq_lang.evidence.compare.comparison import compare
 from btq_lang.evidence.compare.words import remarks
 from btq_lang.evidence.store import engine
@@ -27,42 +27,45 @@ SCHEMA = json.loads(
 Run = tuple[float, float, bool]  # seconds of Move, seconds of Dock, whether Dock succeeded
 
 TABLE = (
-    "main: 60 runs of v1, 50 runs of v2, durations compared by runs\n"
+    "main: 60 runs of v1 (2026-11-20 08:01–09:00 UTC), 50 runs of v2 (2026-11-21 08:01–08:50 UTC),"
+    " durations compared by runs\n"
     "\n"
-    "  newly violated  quick  Be quick                         was satisfied, 0 of 60 → 10 of 50\n"
-    "  slower          Move                                    median 10.1 s → 11.6 s, p = 0.0008\n"
-    "  slower          Move                                    p95 10.8 s → 12.4 s, p = 0.032\n"
-    "  slower          quick: Move takes at most 12 s at Move  median 10.1 s → 11.6 s, p = 0.0008\n"
-    "  slower          quick: Move takes at most 12 s at Move  p95 10.8 s → 12.4 s, p = 0.032\n"
-    "  less reliable   Dock                                    failed in 5 of 60 runs → 28 of 50, p < 0.0001\n"
-    "  less reliable   quick: Move takes at most 12 s at Move  violated in 0 of 60 runs → 10 of 50, p = 0.0013\n"
+    "  newly violated  quick Be quick  was satisfied, 0 of 60 → 10 of 50, p = 0.00044\n"
+    "  less reliable   Dock            failed in 5 of 60 runs → 28 of 50, p < 0.0001\n"
+    "  slower          Move            mean 10.1 s → 11.6 s (+1.53 s, +15.3 %; 95 % interval +1.34 s to +1.73 s)"
+    " over 60 and 50 runs, p < 0.0001\n"
+    "                                  and in requirement quick\n"
     "\n"
-    "3 of 9 comparisons without a change that chance does not explain (p of medians and p95 is at least 0.0006)\n"
+    "3 of 4 comparisons differ by more than chance explains\n"
 )
 MARKDOWN = (
-    "### main: 60 runs of v1, 50 runs of v2, durations compared by runs\n"
+    "### main: 60 runs of v1 (2026-11-20 08:01–09:00 UTC), 50 runs of v2 (2026-11-21 08:01–08:50 UTC),"
+    " durations compared by runs\n"
     "\n"
     "| Finding | Of | Change |\n"
     "|---|---|---|\n"
-    "| **newly violated** | `quick` | was satisfied, 0 of 60 → 10 of 50 |\n"
-    "| **slower** | `Move` | median 10.1 s → 11.6 s, p = 0.0008 |\n"
-    "| **slower** | `Move` | p95 10.8 s → 12.4 s, p = 0.032 |\n"
-    "| **slower** | `quick: Move takes at most 12 s at Move` | median 10.1 s → 11.6 s, p = 0.0008 |\n"
-    "| **slower** | `quick: Move takes at most 12 s at Move` | p95 10.8 s → 12.4 s, p = 0.032 |\n"
+    "| **newly violated** | `quick Be quick` | was satisfied, 0 of 60 → 10 of 50, p = 0.00044 |\n"
     "| **less reliable** | `Dock` | failed in 5 of 60 runs → 28 of 50, p &lt; 0.0001 |\n"
-    "| **less reliable** | `quick: Move takes at most 12 s at Move` |"
-    " violated in 0 of 60 runs → 10 of 50, p = 0.0013 |\n"
+    "| **slower** | `Move` | mean 10.1 s → 11.6 s (+1.53 s, +15.3 %; 95 % interval +1.34 s to +1.73 s)"
+    " over 60 and 50 runs, p &lt; 0.0001<br>and in requirement quick |\n"
     "\n"
-    "* 3 of 9 comparisons without a change that chance does not explain (p of medians and p95 is at least 0.0006)\n"
+    "* 3 of 4 comparisons differ by more than chance explains\n"
 )
 CHOICE = "choose one of table, json, markdown with --format, or another file name"
 FEW = (
-    "main: 2 runs of a, 2 runs of b, durations compared by runs\n"
+    "main: 2 runs of a (2026-11-20 08:01–08:02 UTC), 2 runs of b (2026-11-20 08:01–08:02 UTC),"
+    " durations compared by runs\n"
     "\n"
-    "9 of 9 comparisons without a change that chance does not explain (p of medians and p95 is at least 0.0006)\n"
-    "medians and p95: not testable with 2 runs\n"
-    "too few to show any change: Dock, Move, quick: Move takes at most 12 s at Move\n"
+    "what differs most where chance may explain it:\n"
+    "  Dock  failed in 0 of 2 runs → 2 of 2, p = 1, alone 0.33\n"
+    "  Move  mean 10 s → 11 s (+1 s, +10 %) over 2 and 2 runs, p = 1, alone 0.34\n"
+    "\n"
+    "0 of 3 comparisons differ by more than chance explains\n"
+    "means: not testable with 2 runs\n"
+    "too few to show any change: Dock, Move\n"
 )
+START = 1_795_161_600_000_000  # 2026-11-20 08:00, in µs
+DAY = 86_400_000_000  # µs
 
 
 def keep(
@@ -73,8 +76,9 @@ def keep(
     bound: float = 12,
     mission: str = "main",
     requirement: str = "quick",
+    start: int = START,
 ) -> None:
-    """Keep runs of a mission of two nodes as one log, judged by a requirement with a bound in seconds."""
+    """Keep runs of a mission of two nodes, a run a minute, as one log, judged by a requirement with a bound in s."""
     folder = store / f"{len([*store.glob('*')]):064x}"
     folder.mkdir(parents=True)
     tables: dict[str, list[tuple[object, ...]]] = {name: [] for name in ROWS}
@@ -82,7 +86,7 @@ def keep(
     clause = (requirement, "Be quick", f"Move takes at most {bound:g} s", "Move", "", "activations", "s")
     tables["clauses"].append((*of, 0, *clause, *[None] * 7, True, 0, "", None, None, None))
     for number, (move, dock, succeeded) in enumerate(runs, start=1):
-        begin = number * 60_000_000
+        begin = start + number * 60_000_000
         middle, end = begin + round(move * 1e6), begin + round((move + dock) * 1e6)
         outcome = "succeeded" if succeeded else "failed"
         tables["runs"].append((*of, number, begin, end, outcome, 2, 0, 0, None, "", 3, 3))
@@ -109,7 +113,7 @@ def changed(tmp_path: Path) -> Path:
     """A folder with a store of two labels: the later one is slower, and docks less often."""
     chance = random.Random(1)
     keep(tmp_path / "kept", "v1", drawn(chance, 60))
-    keep(tmp_path / "kept", "v2", drawn(chance, 50, 11.5, 0.5))
+    keep(tmp_path / "kept", "v2", drawn(chance, 50, 11.5, 0.5), start=START + DAY)
     return tmp_path
 
 
@@ -131,25 +135,24 @@ def test_without_a_store(changed: Path) -> None:
 def test_back_to_the_version_that_was_better(changed: Path) -> None:
     code, output, errors = run_btq("compare", "kept", "v2", "v1", cwd=changed)
     assert (code, errors) == (0, "")
-    assert "  no longer violated  quick  Be quick                         is satisfied, 10 of 50 → 0 of 60\n" in output
-    assert [line.split("  ")[1] for line in output.splitlines() if line.startswith("  ")] == [
-        "faster",
-        "faster",
-        "faster",
-        "faster",
+    assert [line.split("  ")[1] for line in output.splitlines() if line.startswith("  ") and line[2] != " "] == [
         "more reliable",
-        "more reliable",
+        "faster",
         "no longer violated",
     ]
+    assert "  no longer violated  quick Be quick  is satisfied, 10 of 50 → 0 of 60, p = 0.00044\n" in output
 
 
 def test_a_single_violation_may_be_chance(tmp_path: Path) -> None:
     keep(tmp_path / "kept", "a", [(10, 5, True)] * 50)
     keep(tmp_path / "kept", "b", [(10, 5, True)] * 49 + [(13, 5, True)])
     code, output, errors = run_btq("compare", "kept", "a", "b", cwd=tmp_path)
-    assert (code, errors) == (1, "")
-    line = "  newly violated  quick  Be quick  was satisfied, 0 of 50 → 1 of 50, which chance may explain"
-    assert line in output.splitlines()
+    assert (code, errors) == (0, "")
+    assert output.splitlines()[1:4] == [
+        "",
+        "what differs most where chance may explain it:",
+        "  newly violated  quick Be quick  was satisfied, 0 of 50 → 1 of 50, p = 1",
+    ]
 
 
 def test_an_edited_bound_is_no_change_of_the_robot(tmp_path: Path) -> None:
@@ -159,9 +162,10 @@ def test_an_edited_bound_is_no_change_of_the_robot(tmp_path: Path) -> None:
     code, output, errors = run_btq("compare", "kept", "a", "b", cwd=tmp_path)
     assert (code, errors) == (0, "")
     assert output == (
-        "main: 60 runs of a, 60 runs of b, durations compared by runs\n"
+        "main: 60 runs of a (2026-11-20 08:01–09:00 UTC), 60 runs of b (2026-11-20 08:01–09:00 UTC),"
+        " durations compared by runs\n"
         "\n"
-        "8 of 8 comparisons without a change that chance does not explain (p of medians and p95 is at least 0.0006)\n"
+        "0 of 2 comparisons differ by more than chance explains\n"
         "the bound of quick at Move was changed from Move takes at most 12 s (0 of 60 violated) to"
         " Move takes at most 10.5 s (30 of 60 violated), so this says nothing about the robots\n"
     )
@@ -173,8 +177,8 @@ def test_an_edited_bound_is_no_change_of_the_robot(tmp_path: Path) -> None:
     of = {"requirement": "quick", "node": "Move"}
     assert found["edited"] == [{**of, **texts, "violated": [30, 0], "counted": [60, 60]}]
     assert (found["newly"], found["no_longer"]) == ([], [])
-    compared = [(each["clause"], each["what"]) for each in found["changes"] if each["requirement"]]
-    assert compared == [("Move takes at most 12 s", "median"), ("Move takes at most 12 s", "p95")]
+    (move,) = (each for each in found["changes"] if each["node"] == "Move")
+    assert (move["what"], [each["clause"] for each in move["same"]]) == ("mean", ["Move takes at most 12 s"])
 
 
 def test_a_microsecond_is_no_change(tmp_path: Path) -> None:
@@ -182,9 +186,29 @@ def test_a_microsecond_is_no_change(tmp_path: Path) -> None:
     found = []
     for label, moves in (("a", 10.0), ("b", 10.000001), ("c", 10.000003)):
         keep(tmp_path / "kept", label, [(moves, 5, True)] * 30)
-        compared = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", label)) if label != "a" else ()
+        compared = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", label), 0) if label != "a" else ()
         found += [{each.finding for each in mission.changes if each.node == "Move"} for mission in compared]
-    assert found == [{""}, {"slower", ""}]
+    assert found == [{""}, {"slower"}]
+
+
+@pytest.mark.parametrize(
+    ("least", "code", "word"),
+    [("5 %", 1, "slower"), ("4.9%", 1, "slower"), ("5.1", 0, "less than 5.1 %"), (" 0 ", 1, "slower")],
+)
+def test_what_is_smaller_than_asked_for_is_no_change(least: str, code: int, word: str, tmp_path: Path) -> None:
+    keep(tmp_path / "kept", "a", [(10.0, 5, True)] * 30)
+    keep(tmp_path / "kept", "b", [(10.5, 5, True)] * 30)
+    found, output, errors = run_btq("compare", "kept", "a", "b", "--at-least", least, cwd=tmp_path)
+    assert (found, errors, word in output) == (code, "", True)
+    if not code:
+        assert "less than 5.1 %, so no change (--at-least): Move (+5 %)" in output.splitlines()
+        assert run_btq("compare", "kept", "a", "b", cwd=tmp_path)[0] == 1
+
+
+@pytest.mark.parametrize("least", ["x", "", "-3", "nan", "5 % %", "5 s", "1e3"])
+def test_what_is_no_percentage(least: str, changed: Path) -> None:
+    message = f"btq compare: --at-least {least}: expected a percentage, such as 5 %\n"
+    assert run_btq("compare", "kept", "v1", "v2", f"--at-least={least}", cwd=changed) == (2, "", message)
 
 
 def test_what_only_one_side_ran(tmp_path: Path) -> None:
@@ -196,12 +220,13 @@ def test_what_only_one_side_ran(tmp_path: Path) -> None:
     code, output, errors = run_btq("compare", "kept", "a", "b", cwd=tmp_path)
     assert (code, errors) == (0, "")
     assert output == (
-        "main: 2 runs of a, 4 runs of b, durations compared by runs\n"
+        "main: 2 runs of a (2026-11-20 08:01–08:02 UTC), 4 runs of b (2026-11-20 08:01–08:02 UTC),"
+        " durations compared by runs\n"
         "\n"
-        "6 of 6 comparisons without a change that chance does not explain (p of medians and p95 is at least 0.0004)\n"
+        "0 of 2 comparisons differ by more than chance explains\n"
         "not compared: requirement only in a: first\n"
         "not compared: requirements only in b: quick, third\n"
-        "medians and p95: not testable with 2 and 4 runs\n"
+        "means: not testable with 2 and 4 runs\n"
         "too few to show any change: Dock, Move\n"
         "\n"
         "other: 2 runs of a, none of b, not compared\n"
@@ -225,19 +250,20 @@ def test_json_is_as_its_schema_says(changed: Path) -> None:
     (mission,) = found["missions"]
     assert (found["sides"], mission["runs"], mission["over"], mission["group"]) == (["v1", "v2"], [60, 50], "runs", 1)
     turned = {"before": "satisfied", "after": "violated", "violated": [0, 10], "counted": [60, 50]}
-    assert mission["newly"] == [{"id": "quick", "title": "Be quick", **turned, "may_be_chance": False}]
+    (newly,) = mission["newly"]
+    assert newly == {"id": "quick", "title": "Be quick", **turned, "p": newly["p"], "may_be_chance": False}
+    assert newly["p"] == pytest.approx(0.00044, rel=0.01)
     assert mission["no_longer"] == []
-    assert [(each["node"], each["what"], each["finding"]) for each in mission["changes"]] == [
-        ("Dock", "median", ""),
-        ("Dock", "p95", ""),
-        ("Move", "median", "slower"),
-        ("Move", "p95", "slower"),
-        ("Move", "median", "slower"),
-        ("Move", "p95", "slower"),
-        ("Dock", "failures", "less reliable"),
-        ("Move", "failures", ""),
-        ("Move", "failures", "less reliable"),
+    clause = {"requirement": "quick", "clause": "Move takes at most 12 s", "node": "Move"}
+    assert [(each["node"], each["what"], each["finding"], each["same"]) for each in mission["changes"]] == [
+        ("Dock", "mean", "", []),
+        ("Move", "mean", "slower", [clause]),
+        ("Dock", "failures", "less reliable", []),
+        ("Move", "failures", "less reliable", []),
     ]
+    move = mission["changes"][1]
+    assert (move["units"], move["counts"], move["failed"]) == ([60, 50], [60, 50], None)
+    assert move["interval"] == pytest.approx([1.34, 1.73], abs=0.005)
 
 
 def test_markdown(changed: Path) -> None:
@@ -259,7 +285,7 @@ def test_robots_are_shuffled_where_a_label_has_several(tmp_path: Path) -> None:
     (found,) = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", "b"))
     assert (found.over, found.robots, found.runs) == ("robots", (2, 2), (100, 100))
     assert [each.finding for each in found.changes if each.finding] == []
-    assert "medians and p95: not testable with 2 robots" in remarks(found, ("a", "b"))
+    assert "means: not testable with 2 robots" in remarks(found, ("a", "b"))
     (alone,) = compare(engine.asked(str(tmp_path / "kept")), "robot", ("r1", "r4"))
     assert {each.node for each in alone.changes if each.finding == "slower"} == {"Move"}
     assert alone.over == "runs"
@@ -277,8 +303,7 @@ def test_runs_of_each_robot_are_shuffled_where_the_same_robots_ran_both(tmp_path
     keep_robots(tmp_path / "kept", "b", chance, 0.5)
     (found,) = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", "b"))
     assert (found.over, found.robots, found.runs) == ("runs of each robot", (3, 3), (75, 75))
-    slower = {(each.node, each.what) for each in found.changes if each.finding}
-    assert slower == {("Move", "median"), ("Move", "p95")}
+    assert {(each.node, each.finding) for each in found.changes if each.finding} == {("Move", "slower")}
     keep(tmp_path / "kept", "b", drawn(chance, 25, 12.0, 0.5), "r3")
     (found,) = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", "b"))
     assert (found.over, found.robots) == ("runs of each robot", (3, 4))
@@ -319,7 +344,7 @@ def test_robots_that_ran_several_versions(tmp_path: Path) -> None:
     assert (code, errors, line in output.splitlines()) == (0, "", True)
     code, output, errors = run_btq("compare", "kept", "--by", "robot", "r1", "r2", "--label", "v1", cwd=tmp_path)
     assert (code, errors, "several labels" in output) == (0, "", False)
-    assert output.startswith("main: 2 runs of r1, 2 runs of r2, ")
+    assert output.startswith("main: 2 runs of r1 (2026-11-20 08:01–08:02 UTC), 2 runs of r2 (")
     _, output, _ = run_btq("compare", "kept", "--by", "robot", "r1", "r2", "--format", "json", cwd=tmp_path)
     document = json.loads(output)
     assert list(violations(document, SCHEMA)) == []
@@ -332,25 +357,9 @@ def test_many_runs_are_shuffled_in_groups(tmp_path: Path) -> None:
     chance = random.Random(3)
     keep(tmp_path / "kept", "a", drawn(chance, 600, 10.0))
     keep(tmp_path / "kept", "b", drawn(chance, 900, 10.1))
-    (found,) = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", "b"))
-    assert found.group == 3
-    assert {(each.node, each.what) for each in found.changes if each.finding == "slower"} == {("Move", "median")}
-
-
-def test_a_version_compared_with_itself(tmp_path: Path) -> None:
-    """Of random splits of the runs of one version, at most the promised share finds something: 70 of 1 000."""
-    seeds = range(1000) if takes_all() else share_of(range(12), 4)
-    found = [seed for seed in seeds if finds_something(tmp_path / str(seed), seed)]
-    assert len(found) <= len(seeds) * 70 // 1000
-
-
-def finds_something(store: Path, seed: int) -> bool:
-    """Whether something is found in a split of 60 runs in two halves."""
-    runs = drawn(random.Random(seed), 60, fails=0.2)
-    keep(store, "a", runs[:30])
-    keep(store, "b", runs[30:])
-    (found,) = compare(engine.asked(str(store)), "label", ("a", "b"))
-    return any(each.finding for each in found.changes)
+    (found,) = compare(engine.asked(str(tmp_path / "kept")), "label", ("a", "b"), 0.005)
+    assert (found.group, found.changes[1].units) == (3, (200, 300))
+    assert {(each.node, each.what) for each in found.changes if each.finding == "slower"} == {("Move", "mean")}
 
 
 @pytest.mark.parametrize(
@@ -406,10 +415,10 @@ def test_robots_of_different_reliability_in_unequal_shares_explain_nothing() -> 
 
 
 def test_shuffles_agree_with_fisher_where_each_run_fails_or_not() -> None:
-    scores = [80 * failed - 24 for failed in [True] * 7 + [False] * 33 + [True] * 17 + [False] * 23]
-    assert sum(scores) == 0
+    scores = [failed - 0.3 for failed in [True] * 7 + [False] * 33 + [True] * 17 + [False] * 23]
+    assert sum(scores) == pytest.approx(0)
     side = [""] * 40
-    assert Shuffles(side, side, 10_000).probability(scores) == pytest.approx(exact([((7, 40), (17, 40))]), rel=0.15)
+    assert Shuffles(side, side).probability(scores, 10_000) == pytest.approx(exact([((7, 40), (17, 40))]), rel=0.15)
 
 
 def test_holm() -> None:
@@ -418,9 +427,10 @@ def test_holm() -> None:
 
 
 def test_as_many_shuffles_as_comparisons_need() -> None:
-    assert (shuffles_for(12), shuffles_for(1000)) == (10_000, 20_000)
-    assert [least(number, number - 2) for number in (12, 502, 1002)] == pytest.approx([0.001, 0.0498, 0.0499], rel=1e-3)
-    assert all(least(number, number) < 0.05 for number in range(1, 3000))
+    assert [shuffles_for(number) for number in (12, 250, 1000)] == [10_000, 10_000, 40_000]
+
+
+def test_how_few_units_show_nothing() -> None:
     assert [is_too_few([(size, size)], 1) for size in (3, 4)] == [True, False]  # 2 of 20 ways, 2 of 70
     assert [is_too_few([(size, size)], 12) for size in (5, 6)] == [True, False]  # of 252, of 924
     assert [is_too_few(sizes, 1) for sizes in ([(3, 3)] * 2, [(1, 18)], [(1, 19)], [(4, 0)])] == [

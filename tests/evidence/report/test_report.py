@@ -311,22 +311,50 @@ def test_one_label_has_nothing_to_compare_with(kept: Path) -> None:
 
 
 def test_what_is_newly_violated_is_on_top(kept: Path) -> None:
-    keep(kept, 1, SLOW, "--label", "v<2>", "--robot", "red")
+    for number in range(1, 6):
+        keep(kept, number, QUICK, "--label", "v<1>", "--robot", "red")
+        keep(kept, number + 5, SLOW, "--label", "v<2>", "--robot", "red")
     code, page = reported(kept, "--by", "label")
     assert code == 1
     assert page.tables["What got worse in main"] == [
         ["Finding", "Of", "Change"],
-        ["newly violated", "quick Be <quick>", "was satisfied, 0 of 1 → 1 of 1, which chance may explain"],
+        ["newly violated", "quick Be <quick>", "was satisfied, 0 of 6 → 5 of 5, p = 0.0087"],
+        [
+            "slower",
+            "Move",
+            "mean 12 ms → 20 ms (+8 ms, +66.7 %; 95 % interval +8 ms to +8 ms) over 6 and 5 runs, p = 0.0087 | and"
+            " in requirement quick",
+        ],
     ]
     assert page.texts[2:8] == [
         "What got worse from v<1> to v<2>",
         "1 newly violated",
         "0 less reliable",
-        "– slower: not testable with 1 run",
+        "1 slower",
         "1 violated now of 1 requirement",
-        "main: 1 run of v<1>, 1 run of v<2>, durations compared by runs",
+        "main: 6 runs of v<1> (2026-11-20 21:22–2026-11-25 21:22 UTC),"
+        " 5 runs of v<2> (2026-11-26 21:22–2026-11-30 21:22 UTC), durations compared by runs",
     ]
     assert "Robots with v<2>" not in page.texts
+
+
+def test_what_chance_may_explain_is_no_loss(kept: Path) -> None:
+    keep(kept, 1, SLOW, "--label", "v<2>", "--robot", "red")
+    code, page = reported(kept, "--by", "label")
+    assert code == 0
+    assert "What got worse in main" not in page.tables
+    assert page.tables["What differs most where chance may explain it in main"] == [
+        ["Finding", "Of", "Change"],
+        ["newly violated", "quick Be <quick>", "was satisfied, 0 of 1 → 1 of 1, p = 1"],
+    ]
+    assert page.texts[2:8] == [
+        "What got worse from v<1> to v<2>",
+        "0 newly violated",
+        "0 less reliable",
+        "– slower: not testable with 1 run",
+        "1 violated now of 1 requirement",
+        "main: 1 run of v<1> (2026-11-20 21:22 UTC), 1 run of v<2> (2026-11-21 21:22 UTC), durations compared by runs",
+    ]
 
 
 def test_all_runs_by_robot(kept: Path) -> None:

@@ -55,12 +55,13 @@ def transitions(actions: tuple[str, ...]) -> list[tuple[int, int, int]]:
 
 
 def measures(found: dict[str, Any]) -> dict[tuple[str, str], tuple[float, float]]:
-    """The medians of both sides, by requirement and node."""
+    """The means of both sides, by requirement and node."""
     changes = found["missions"][0]["changes"]
     return {
-        (each["requirement"], each["node"]): (round(each["before"]), round(each["after"]))
+        (key["requirement"], key["node"]): (round(each["before"]), round(each["after"]))
         for each in changes
-        if each["what"] == "median"
+        if each["what"] == "mean"
+        for key in (each, *each["same"])
     }
 
 

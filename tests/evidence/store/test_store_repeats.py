@@ -98,7 +98,7 @@ def test_two_labels_are_compared_without_what_is_there_twice(folder: Path) -> No
     keep(folder, "a.db3", RUNS[:19])
     keep(folder, "b.btlog", RUNS, "--label", "v2", start=START + 10**9)
     _, output, _ = run_btq("compare", "kept", "v1", "v2", cwd=folder)
-    assert output.startswith("main: 3 runs of v1, 3 runs of v2, ")
+    assert output.startswith("main: 3 runs of v1 (2026-11-20 21:22 UTC), 3 runs of v2 (")
 
 
 def test_two_loggers_of_a_robot(tmp_path: Path, shared: Path) -> None:

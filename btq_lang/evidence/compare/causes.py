@@ -1,0 +1,154 @@
+"""One cause, one comparison: what a node and those above it have in common.
+
+One invariant: nothing here looks at which side a run is of to decide what is compared; only what is found is explained
+by the sides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.evidence.compare import failures
+from btq_lang.evidence.compare.chance import LEVEL, exact
+from btq_lang.evidence.compare.measures import difference, probability, rest
+from btq_lang.evidence.compare.model import Change, Key, is_time
+from btq_lang.util.grouping import grouped
+from btq_lang.util.record import replace
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.compare.measures import Measure, Values
+    from btq_lang.evidence.compare.mission_numbers import Numbers
+
+
+def chains(durations: Mapping[Key, Measure], leaves: Collection[Key]) -> list[list[Key]]:
+    """Nodes and clauses that the same completions close and that last as long, the innermost node first.
+
+    A node joins what is inside of it: in nearly all units it begins no later, ends no earlier, has as many values, and
+    lasts at most 10 ms or 2 % longer.  Of several, it joins the one that ends last, as a Sequence does its last child.
+
+    Args:
+        leaves: nodes without others inside.
+    """
+    lengths = {key: sum(of.mean for of in durations[key].values()) for key in durations}
+    numbers = {key: frozenset((unit, of.number) for unit, of in durations[key].items()) for key in durations}
+    found: list[list[Key]] = []
+    for keys in grouped((numbers[key], key) for key in durations).values():
+        joined: list[list[Key]] = []
+        for key in sorted(keys, key=lambda key: (bool(key.requirement), lengths[key])):
+            of = durations[key]
+            inner = [
+                chain
+                for chain in joined
+                if key not in leaves
+                and (
+                    _closes(of, durations[chain[0]])
+                    or (key.requirement and _closes(durations[chain[0]], of))  # a clause may begin with a row in a node
+                )
+            ]
+            if inner:
+                max(inner, key=lambda chain: sum(of.end for of in durations[chain[0]].values())).append(key)
+            else:
+                joined.append([key])
+        found += joined
+    return found
+
+
+def with_causes(changes: Sequence[Change], numbers: Numbers, at_least: float) -> list[Change]:
+    """The changes, each with what explains it: a change in the same direction inside of it.
+
+    Without that, what is left of the difference is less than counts, or chance may explain it.
+
+    Args:
+        at_least: as in `compare`.
+    """
+    alike = grouped((each.direction, each) for each in changes if each.is_at_least(at_least) and _reaches_above(each))
+    groups = [group for group in alike.values() if len(group) > 1 and any(each.finding for each in group)]
+    if not groups:
+        return list(changes)
+    inside = numbers.inside(list(dict.fromkeys(each.key for group in groups for each in group)))
+    failed = [each.key for group in groups for each in group if each.what == "failures"]
+    time_left, failures_left = _time_left(numbers, at_least), _failures_left(failed, numbers)
+    causes = {
+        id(change): cause.key
+        for group in groups
+        for change, cause in _explained(group, inside, failures_left if group[0].what == "failures" else time_left)
+    }
+    return [replace(each, cause=causes.get(id(each))) for each in changes]
+
+
+def _reaches_above(change: Change) -> bool:
+    """Whether what happens in a node happens in those above it, too."""
+    return change.what == "failures" or is_time(change.unit)
+
+
+def _explained(
+    changes: Sequence[Change],
+    inside: Mapping[Key, Collection[Key]],
+    is_rest_chance: Callable[[Key, Sequence[Key]], bool],
+) -> Iterator[tuple[Change, Change]]:
+    """Changes in one direction that others explain, each with the largest of these."""
+    causes: list[Change] = []
+    for change in sorted(changes, key=lambda each: (not each.finding, len(inside[each.key]), bool(each.requirement))):
+        within = [each for each in causes if each.key in inside[change.key]]
+        # What is inside of another one is part of it.
+        parts = [
+            each
+            for place, each in enumerate(within)
+            if not any(each.key in inside[other.key] for other in within[place + 1 :])
+        ]
+        if parts and is_rest_chance(change.key, [each.key for each in parts]):
+            yield change, max(parts, key=lambda each: abs(each.difference))
+        elif change.finding:
+            causes.append(change)
+
+
+def _time_left(numbers: Numbers, at_least: float) -> Callable[[Key, Sequence[Key]], bool]:
+    """Whether some parts explain most of the difference of a node, and the rest is too small or may be chance."""
+
+    def is_chance(key: Key, parts: Sequence[Key]) -> bool:
+        whole = difference(rest(numbers.measures[key], ()), numbers.sides)
+        left = rest(numbers.measures[key], [numbers.measures[part] for part in parts])
+        of_rest = difference(left, numbers.sides)
+        size = abs(of_rest.after - of_rest.before)
+        if size > abs(whole.after - whole.before) / 2:  # chance may explain it, but the parts do not
+            return False
+        if size < at_least * abs(whole.before):
+            return True
+        return probability(left, numbers.units, numbers.shuffles, of_rest.after > of_rest.before) > LEVEL
+
+    return is_chance
+
+
+def _failures_left(keys: Sequence[Key], numbers: Numbers) -> Callable[[Key, Sequence[Key]], bool]:
+    """Whether some parts explain most of the difference in how often a node fails, and the rest may be chance."""
+    places = {key: place for place, key in enumerate(keys)}
+    rows = numbers.failed_together(keys) if keys else ()
+
+    def is_chance(key: Key, parts: Sequence[Key]) -> bool:
+        whole, left = (
+            failures.rest(rows, places[key], {places[part] for part in of}, numbers.sides) for of in ((), parts)
+        )
+        return abs(failures.difference(left)) <= abs(failures.difference(whole)) / 2 and exact(left) > LEVEL
+
+    return is_chance
+
+
+def _closes(outer: Measure, inner: Measure) -> bool:
+    """Whether one is around the other, and no longer, in nearly all units of each side."""
+    sides = grouped((unit.side, _is_around(outer[unit], inner[unit])) for unit in outer)
+    return all(of.count(False) <= _PAUSED * len(of) for of in sides.values())
+
+
+def _is_around(outer: Values, inner: Values) -> bool:
+    return (
+        abs(outer.mean - inner.mean) <= max(_SECONDS, _SHARE * outer.mean)
+        and outer.end >= inner.end - _ROUNDING
+        and outer.end - outer.mean * 1e6 <= inner.end - inner.mean * 1e6 + _ROUNDING
+    )
+
+
+_SECONDS: Final = 0.01
+_SHARE: Final = 0.02
+_PAUSED: Final = 0.05  # of units, in which the machine may have paused between the rows of one tick
+_ROUNDING: Final = 2.0  # µs

@@ -1,0 +1,153 @@
+"""The lines of a report: what changed, and what differs but may be chance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+from typing import Final
+
+from btq_lang.catalog.units import parse_unit
+from btq_lang.evidence.compare.chance import LEVEL
+from btq_lang.evidence.compare.model import WORSE, Change, Comparison, is_time
+from btq_lang.evidence.compare.requirements import Newly
+from btq_lang.evidence.verdicts import VIOLATED
+from btq_lang.evidence.wording import duration, first_of, quantity, share
+from btq_lang.util.grouping import grouped
+from btq_lang.util.record import Record, replace
+from btq_lang.util.text import counted
+
+
+class Line(Record):
+    """A difference in words.
+
+    Attributes:
+        finding: such as `newly violated` or `slower`; empty for a number that differs by chance.
+        is_worse: whether it certainly got worse.
+        requirement: that it is about; empty where it is about a node alone.
+        name: the requirement with its title or clause, or the node.
+        text: both sides, and how likely that is by chance.
+        more: what is the same change, or comes of it; may be empty.
+    """
+
+    finding: str
+    is_worse: bool
+    requirement: str
+    name: str
+    text: str
+    more: str
+
+
+def certain(comparison: Comparison) -> list[Line]:
+    """What is certain and large enough: what is newly violated, what got worse by the largest share, then the rest.
+
+    What another change explains has no line of its own; that of a requirement also says what is measured for it.
+    """
+    turned = [each for each in (*comparison.newly, *comparison.no_longer) if not each.may_be_chance]
+    own = {each.id for each in turned}
+    changes = [each for each in comparison.changes if each.finding and each.cause is None]
+    changes.sort(key=lambda each: -abs(each.difference / each.before) if each.before else -inf)
+    measured = grouped(
+        (each.requirement, f"and {each.finding}: {_numbers(each, comparison)}, {_chance(each.p)}")
+        for each in changes
+        if each.failed is None
+    )
+    of_requirements = [replace(_turned(each), more="; ".join(measured.get(each.id, ()))) for each in turned]
+    lines = [
+        Line(
+            finding=each.finding,
+            is_worse=each.finding in WORSE,
+            requirement=each.requirement,
+            name=each.name,
+            text=f"{_numbers(each, comparison)}, {_chance(each.p)}",
+            more=_folded(each, comparison.changes),
+        )
+        for each in changes
+        if each.requirement not in own
+    ]
+    newly, no_longer = ([each for each in of_requirements if each.is_worse is is_worse] for is_worse in (True, False))
+    return [*newly, *sorted(lines, key=lambda each: not each.is_worse), *no_longer]
+
+
+def by_chance(comparison: Comparison) -> list[Line]:
+    """What differs most of what chance may explain: requirements, then the least likely differences."""
+    turned = [
+        replace(_turned(each), is_worse=False)
+        for each in (*comparison.newly, *comparison.no_longer)
+        if each.may_be_chance
+    ]
+    own = {each.requirement for each in turned}
+    quiet = [
+        each
+        for each in comparison.changes
+        if each.p > LEVEL and each.p_alone <= _LIKELY and each.cause is None and each.is_at_least(comparison.at_least)
+        if not (each.failed is not None and each.requirement in own)
+    ]
+    quiet.sort(key=lambda each: each.p_alone)
+    for each in quiet[:_MOST]:
+        text = f"{_numbers(each, comparison)}, {_chance(each.p)}, alone {each.p_alone:.2g}"
+        turned.append(Line("", False, each.requirement, each.name, text, ""))
+    return turned
+
+
+def percent(change: Change) -> str:
+    """The difference as a share of the first number; empty if that is 0."""
+    return f"{_sign(change.difference)}{share(abs(change.difference / change.before))}" if change.before else ""
+
+
+def _turned(newly: Newly) -> Line:
+    """How a requirement came to be violated, or no longer."""
+    first, second = (f"{k:,} of {n:,}" for k, n in zip(newly.violated, newly.counted, strict=True))
+    is_worse = newly.after == VIOLATED
+    verdict = f"was {newly.before}" if is_worse else f"is {newly.after}"
+    chance = f", {_chance(newly.p)}" if newly.p is not None else ""
+    name = f"{newly.id} {newly.title}".rstrip()
+    finding = "newly violated" if is_worse else "no longer violated"
+    return Line(finding, is_worse, newly.id, name, f"{verdict}, {first} → {second}{chance}", "")
+
+
+def _folded(change: Change, changes: Sequence[Change]) -> str:
+    """What is the same change, or comes of it."""
+    of = [each for each in changes if each.cause == change.key and each.direction == change.direction]
+    of.sort(key=lambda each: each.before)  # what is inside takes less time
+    keys = [*change.same, *(key for each in of for key in (each.key, *each.same))]
+    nodes = [key.node for key in keys if not key.requirement]
+    requirements = sorted({key.requirement for key in keys if key.requirement})
+    parts = [f"{counted(len(nodes), 'node')} above it: {first_of(nodes)}"] if nodes else []
+    if requirements:
+        parts.append(f"in {'requirement' if len(requirements) == 1 else 'requirements'} {first_of(requirements)}")
+    return f"and {', and '.join(parts)}" if parts else ""
+
+
+def _numbers(change: Change, comparison: Comparison) -> str:
+    """Both numbers, how they differ, and of how many runs, or what is shuffled in their place."""
+    if change.failed is not None:
+        verb = "violated" if change.requirement else "failed"
+        before, after = (f"{k:,} of {n:,}" for k, n in zip(change.failed, change.counts, strict=True))
+        return f"{verb} in {before} runs → {after}"
+    differs = ", ".join(filter(None, (_signed(change.difference, change), percent(change))))
+    if change.interval is not None:
+        low, high = (_signed(each, change) for each in change.interval)
+        differs += f"; 95 % interval {low} to {high}"
+    what = "robots" if comparison.over == "robots" else "groups" if comparison.group > 1 else "runs"
+    over = f"over {change.units[0]:,} and {change.units[1]:,} {what}"
+    return f"mean {_shown(change.before, change)} → {_shown(change.after, change)} ({differs}) {over}"
+
+
+def _signed(si: float, change: Change) -> str:
+    return f"{_sign(si)}{_shown(abs(si), change)}"
+
+
+def _sign(number: float) -> str:
+    return "−" if number < 0 else "+"
+
+
+def _chance(p: float) -> str:
+    return f"p = {p:.2g}" if p >= 0.0001 else "p < 0.0001"
+
+
+def _shown(si: float, change: Change) -> str:
+    return duration(si) if is_time(change.unit) else quantity(si, parse_unit(change.unit))
+
+
+_MOST: Final = 5  # differences that chance may explain
+_LIKELY: Final = 0.5  # p-values of differences that are none

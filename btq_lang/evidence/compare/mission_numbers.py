@@ -1,0 +1,115 @@
+"""The numbers of a mission on both sides, as a store has them.
+
+One invariant: what is loaded are means and counts of each run, group of runs or robot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import Final
+
+from btq_lang.evidence.compare import questions
+from btq_lang.evidence.compare.chance import Shuffles
+from btq_lang.evidence.compare.failures import FailedRuns, failed_runs
+from btq_lang.evidence.compare.measures import Measure, Unit, Values
+from btq_lang.evidence.compare.model import Key, Over, is_time
+from btq_lang.evidence.compare.requirements import Edited
+from btq_lang.evidence.store.queries import Ask, Row
+from btq_lang.evidence.store.tables import quoted
+from btq_lang.util.grouping import grouped
+
+
+class Numbers:
+    """What is compared of a mission.
+
+    Attributes:
+        over, group: as in `Comparison`.
+        measures: what both sides have, in a stratum that both have.
+        leaves: the nodes among them that have none inside.
+        failures: what failed in some of the runs.
+        units: of both sides, in their order.
+        shuffles: of these.
+    """
+
+    def __init__(
+        self, ask: Ask, by: str, sides: tuple[str, str], mission: str, runs: tuple[Row, Row], edited: Sequence[Edited]
+    ) -> None:
+        """
+        Args:
+            runs: of each side, the answer to `questions.RUNS`.
+        """
+        self.sides: Final = sides
+        first, second = (set(of["robots"]) for of in runs)
+        self.over: Final[Over] = _over(first, second)
+        self.group: Final = 1 if self.over == "robots" else -(-min(of["runs"] for of in runs) // _MOST_UNITS)
+        stratum = "robot" if self.over == "runs of each robot" else "''"
+        by_run = questions.BY_RUN.format(by=by, stratum=stratum, size=self.group)
+        self._ask: Final = ask
+        self._words: Final = {
+            "by": by,
+            "sides": ", ".join(map(quoted, sides)),
+            "mission": quoted(mission),
+            "stratum": stratum,
+            "unit": "robot" if self.over == "robots" else by_run,
+            "robots": "robot" if first & second else "''",
+            "clause": questions.clause_of(edited),
+        }
+        self._symbols: Final = {_key(row): row["unit"] or "1" for row in self._asked(questions.UNITS)}
+        rows = grouped((_key(row), row) for row in self._asked(questions.MEASURES))
+        self.measures: Final = {key: of for key, each in rows.items() if self._is_in_both(of := _measure(each))}
+        self.leaves: Final = {key for key in self.measures if any(row["leaf"] for row in rows[key])}
+        found = {unit for of in self.measures.values() for unit in of}
+        self.units: Final = sorted(found, key=lambda unit: (unit.side != sides[0], unit.stratum, unit.number))
+        first_units, second_units = ([unit.stratum for unit in self.units if unit.side == side] for side in sides)
+        self.shuffles: Final = Shuffles(first_units, second_units)
+        self.failures: Final[Sequence[FailedRuns]] = failed_runs(self._asked(questions.FAILURES), sides)
+
+    def symbol(self, key: Key) -> str:
+        """The unit that a measure is shown in."""
+        return self._symbols.get(key, "s") if key.requirement else "s"
+
+    def is_duration(self, key: Key) -> bool:
+        return is_time(self.symbol(key))
+
+    def one_sided(self) -> tuple[int, int]:
+        """How many nodes were active on each side and not on the other."""
+        numbers = {row["side"]: row["number"] for row in self._asked(questions.ONE_SIDED)}
+        return numbers.get(self.sides[0], 0), numbers.get(self.sides[1], 0)
+
+    def inside(self, keys: Sequence[Key]) -> dict[Key, Collection[Key]]:
+        """Which of some nodes and clauses were active only while which others were."""
+        rows = self._asked(questions.INSIDE, keys=questions.numbered(keys), sample=questions.SAMPLE)
+        around = grouped((keys[row["around"]], keys[row["within"]]) for row in rows)
+        return {key: {*around.get(key, ())} for key in keys}
+
+    def failed_together(self, keys: Sequence[Key]) -> Sequence[Row]:
+        """In how many runs the same of some nodes and clauses failed, by their places."""
+        return self._asked(questions.FAILED_TOGETHER, keys=questions.numbered(keys))
+
+    def _is_in_both(self, measure: Measure) -> bool:
+        sides = grouped((unit.stratum, unit.side) for unit in measure)
+        return any(len({*of}) > 1 for of in sides.values())
+
+    def _asked(self, question: str, **words: object) -> Sequence[Row]:
+        return self._ask(question.format(**self._words, **words))
+
+
+def _over(first: set[str], second: set[str]) -> Over:
+    """What is shuffled, for the robots of the two sides."""
+    if max(len(first), len(second)) == 1:
+        return "runs"
+    return "runs of each robot" if first <= second or second <= first else "robots"
+
+
+def _measure(rows: Sequence[Row]) -> Measure:
+    return {
+        Unit(row["side"], row["stratum"], row["unit"]): Values(row["number"], row["mean"], row["rank"], row["end_us"])
+        for row in rows
+    }
+
+
+def _key(row: Row) -> Key:
+    return Key(row["requirement"], row["clause"], row["node"])
+
+
+_MOST_UNITS: Final = 256  # of the smaller side: more show hardly more, and each shuffle takes as much longer
