@@ -358,7 +358,8 @@ def _add_compare(parser: Parser) -> None:
     "exit codes: 0 nothing got worse between the last two labels, as btq compare says; 1 something did;\n"
     "2 usage, I/O, or nothing to show\n\n"
     "examples:\n  btq report evidence -o report.html                by version and robot\n"
-    "  btq report evidence --by label -o report.html     without the robots\n",
+    "  btq report evidence --by label -o report.html     without the robots\n"
+    "  btq report evidence --sides v1.3 v1.5 -o report.html\n",
 )
 def _add_report(parser: Parser) -> None:
     parser.add("store", nargs="?", metavar="STORE", help=_STORE)
@@ -369,6 +370,7 @@ def _add_report(parser: Parser) -> None:
         choices=("label", "robot"),
         help="what has columns or rows of its own; may be repeated; default: both",
     )
+    parser.add("--sides", nargs=2, metavar=("A", "B"), help="the labels to compare; default: the two that began last")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 

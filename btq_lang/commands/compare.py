@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -44,6 +45,8 @@ def _compared(options: Namespace, store: str, sides: tuple[str, str], at_least: 
 @contextmanager
 def _judged(folders: tuple[str, str]) -> Iterator[str]:
     """A store for the time being, of the logs in two folders, which are the labels."""
+    from contextlib import redirect_stderr
+    from io import StringIO
     from tempfile import TemporaryDirectory
 
     from btq_lang.commands.arguments import build_parser
@@ -51,9 +54,13 @@ def _judged(folders: tuple[str, str]) -> Iterator[str]:
 
     with TemporaryDirectory(prefix="btq-") as temporary:
         store, verdicts = (os.path.join(temporary, name) for name in ("store", "verdicts.json"))
+        notes = StringIO()
         for folder in folders:
             kept = ("--store", store, "--label", folder, "--exit-zero", "-o", verdicts)
-            verify(build_parser().parse_args(["verify", folder, *kept]))
+            with redirect_stderr(notes):
+                verify(build_parser().parse_args(["verify", folder, *kept]))
+        for note in dict.fromkeys(notes.getvalue().splitlines()):  # those of both folders once
+            print(note.replace("btq verify:", "btq compare:", 1), file=sys.stderr)
         yield store
 
 

@@ -119,7 +119,9 @@ def _given(options: Namespace, names: Sequence[str]) -> list[str]:
     return [each for each in names if getattr(options, each.strip("-").replace("-", "_"))]
 
 
-NO_STORE: Final = "no store given; name one, or set `store` in [evidence] of btq.toml"
+NO_STORE: Final = (
+    "no store given; name one, which btq verify LOG … --store DIR makes, or set `store` in [evidence] of btq.toml"
+)
 _OF_LOGS: Final = ("--mission", "--signals", "--events")
 _OF_SUMMARY: Final = ("--by", "--engine")
 _OF_KEEPING: Final = ("--label", "--label-by", "--robot", "--robot-by")

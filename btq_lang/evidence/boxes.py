@@ -79,10 +79,10 @@ def _measured(demand: Demand, clause: ClauseVerdict, is_named: bool) -> Measured
 
 
 def _standing(clause: ClauseVerdict) -> str:
-    """The verdict, with how many violations it counts."""
-    if not clause.counted:
-        return clause.verdict
-    return f"{clause.verdict}: {clause.violated:,} of {clause.counted:,} broke it"
+    """The verdict, with how many judgements are violations, and how many are unknown."""
+    unknown = [f"{clause.unknown:,} unknown"] if clause.unknown else []
+    counts = [f"{clause.violated:,} of {clause.counted:,} broke it"] if clause.counted else []
+    return ": ".join(filter(None, (clause.verdict, ", ".join(counts + unknown))))
 
 
 def _bounds(demand: Demand) -> tuple[Value, ...]:

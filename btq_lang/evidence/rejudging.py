@@ -11,6 +11,7 @@ from btq_lang.evidence.edges import Edge, edge_of, key_of
 from btq_lang.evidence.identity import without_number
 from btq_lang.evidence.margins import Counts
 from btq_lang.evidence.outline import Demand, demands
+from btq_lang.evidence.scopes import within
 from btq_lang.evidence.tally import Tally
 from btq_lang.evidence.verdicts import (
     SATISFIED,
@@ -61,7 +62,7 @@ def shown_now(found: Requirements, judged: Iterable[RequirementVerdict]) -> Iter
     by_text = grouped(((name, clause.text), clause) for name, clause in verdicts if clause.measures is None)
     for demand in demands(found):
         name, subject = demand.requirement.name, demand.applied.subject if demand.applied is not None else None
-        edge = edge_of(demand.claim, subject, demand.requirement)
+        edge = edge_of(within(demand.claim, demand.requirement.scopes), subject, demand.requirement)  # as it was judged
         # Several of a requirement with arguments may be at one node: they are in one order.
         if clauses := by_place.get((name, key_of(demand.requirement, demand.claim, edge), demand.place)):
             yield _again(demand, clauses.pop(0), edge)
@@ -119,7 +120,8 @@ def _with_counts(demand: Demand, clause: ClauseVerdict, measures: Measures, coun
     """The clause as its requirement demands it now, with other counts."""
     requirement = demand.requirement
     tally = Tally(requirement.odds, requirement.confidence, clause.limits)
-    tally.worst, tally.why, tally.by_run = clause.worst, clause.why, clause.by_run
+    tally.worst, tally.why = clause.worst, clause.why
+    tally.by_run.extend(clause.by_run)
     if counts is None:
         tally.violations.extend(clause.violations)
         counts = Counts(clause.counted - clause.violated, clause.violated, clause.unknown, clause.cut_off)

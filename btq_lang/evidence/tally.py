@@ -47,7 +47,8 @@ class Tally:
     """The counts so far.
 
     Attributes:
-        counted, violated, unknown, cut_off, why, violations, worst, bounded, by_run: as in `ClauseVerdict`.
+        counted, violated, unknown, cut_off, why, violations, worst, bounded: as in `ClauseVerdict`.
+        by_run: what the last runs show, more of them than count.
         distribution: of the measures.
         limits: which limits of the probability decide.
     """
@@ -64,7 +65,7 @@ class Tally:
         self.violations: Final[list[Violation]] = []
         self.worst: Worst | None = None
         self.bounded: Bounded | None = None
-        self.by_run: tuple[RunValue, ...] = ()
+        self.by_run: list[RunValue] = []
         self.distribution: Final = Distribution()
         self.counts_runs: Final = odds is not None and odds.experiments == "runs"
         self.limits: Final = limits
@@ -137,13 +138,13 @@ class Tally:
         if worst is not None and worst.excess > self._worst_excess:
             self._worst_excess = worst.excess
             self.worst = Worst(worst.si, measured(worst.si, worst.unit, worst.bound.si), run.number)
-        self._add_by_run(RunValue(run.number, run.begin, verdict, worst.si if worst is not None else None))
+        self.by_run.append(RunValue(run.number, run.begin, verdict, worst.si if worst is not None else None))
+        if len(self.by_run) > _CROWDED:
+            self.by_run[:] = self._last_runs()
 
-    def _add_by_run(self, *values: RunValue) -> None:
-        """Keep what runs show, whatever the order in which logs are read."""
-        by_run = (*self.by_run, *values)
-        is_in_order = len(values) == 1 and (not self.by_run or self.by_run[-1].start <= values[0].start)
-        self.by_run = (by_run if is_in_order else tuple(sorted(by_run, key=attrgetter("start"))))[-MOST_RUNS:]
+    def _last_runs(self) -> tuple[RunValue, ...]:
+        """What the last runs show, whatever the order in which logs were read."""
+        return tuple(sorted(self.by_run, key=attrgetter("start"))[-MOST_RUNS:])
 
     def is_worst_in(self, run: Run) -> bool:
         """Whether the worst violation, the one furthest beyond the bound or else the first, is in a run already
@@ -166,7 +167,8 @@ class Tally:
             self._worst_excess = other._worst_excess
             self.worst = replace(other.worst, run=(other.worst.run or 0) + runs)
         self.distribution.add_all(other.distribution)
-        self._add_by_run(*(replace(value, run=value.run + runs) for value in other.by_run))
+        self.by_run.extend(replace(value, run=value.run + runs) for value in other._last_runs())
+        self.by_run[:] = self._last_runs()
         if other.bounded is not None:
             number = other.bounded.number + (self.bounded.number if self.bounded is not None else 0)
             largest = max(other.bounded, self.bounded or other.bounded, key=lambda bounded: bounded.si)
@@ -193,7 +195,7 @@ class Tally:
         """
         found = copy(self)
         still = [(judgement, path, ()) for judgement, path in broken]
-        vars(found).update(violations=[*self.violations], _broken=[*self._broken, *still])
+        vars(found).update(violations=[*self.violations], by_run=[*self.by_run], _broken=[*self._broken, *still])
         for judgement, _, _ in still:
             found._note_worst(judgement)
         if self.counts_runs and not found._broken:
@@ -203,9 +205,10 @@ class Tally:
 
     def fields(self) -> dict[str, Any]:
         """What `ClauseVerdict` has of it, by name."""
-        same = ("counted", "violated", "unknown", "cut_off", "worst", "limits", "bounded", "by_run")
+        same = ("counted", "violated", "unknown", "cut_off", "worst", "limits", "bounded")
         found = {name: getattr(self, name) for name in same}
-        return {**found, "interval": self.interval(), "more": self.more(), "violations": tuple(self.violations)}
+        lists = {"violations": tuple(self.violations), "by_run": self._last_runs()}
+        return {**found, "interval": self.interval(), "more": self.more(), **lists}
 
     def verdict(self) -> Verdict:
         """Without odds one violation decides; with odds the unknown ones are taken as false and as true, and a verdict
@@ -259,5 +262,6 @@ def _violation(judgement: Judgement, path: str, chain: tuple[Link, ...], run: Ru
 
 
 MOST_RUNS: Final = 60  # whose values are kept: as many as a small drawing can show
+_CROWDED: Final = 4 * MOST_RUNS
 USUAL_CONFIDENCE: Final = 0.95  # of the limits shown, if the requirement names none
 _MOST_VIOLATIONS: Final = 1000

@@ -168,9 +168,9 @@ def _notes(found: Requirements, measured_by: MeasuredBy) -> dict[int, tuple[Note
         for name, _ in concerns(node):
             notes.setdefault(id(node), []).append(Note("quality", name, name, text=f"satisfices {name}"))
     for applied in found.applied:
-        if applied.node is not None:
-            note = requirement_note(applied.requirement.name, applied, measured_by(applied))
-            notes.setdefault(id(applied.node), []).append(note)
+        note = requirement_note(applied.requirement.name, applied, measured_by(applied))
+        for node in applied.nodes:
+            notes.setdefault(id(node), []).append(note)
     for trace in found.traces:
         notes.setdefault(id(trace.node), []).append(Note("requirement", trace.requirement, trace.requirement))
     return {key: tuple(dict.fromkeys(each)) for key, each in notes.items()}

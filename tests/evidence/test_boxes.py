@@ -166,3 +166,13 @@ def test_clauses_at_one_node_are_told_apart_and_both_bounds_are_drawn(folder: Pa
     found = requirements(workspace, "main.btq")
     ((first, second),) = (measured_by(found, verdicts)(applied) for applied in found.applied)
     assert (first.bounds, second.bounds) == ((0.021, 0.03), ())
+
+
+def test_a_scope_keeps_its_verdict_and_a_span_is_drawn_at_its_nodes(folder: Path) -> None:
+    signal = "signal speed : m/s from {speed}\n"
+    slow = "QualityReq slow : safety\n    Move keeps speed <= 1 m/s\n    while speed > 2 m/s\n"
+    both = "QualityReq both : reliability\n    from Move starts to Pick succeeds takes at most 1 s\n"
+    text = signal + slow + both + MAIN
+    verdicts = verify_logs(Workspace.of({"main.btq": text}), "main.btq", "run.btlog").report.missions[0].requirements
+    lines = ("last run: 50 ms, satisfied", "violated: 1 of 3 broke it")
+    assert shown(text, verdicts) == [(("unknown: 3 unknown",), [False] * 3), *[(lines, [True, False, False])] * 2]

@@ -14,7 +14,7 @@ from btq_lang.evidence.compare.mission_numbers import Numbers
 from btq_lang.evidence.compare.model import AT_LEAST, Change, Comparison, is_time
 from btq_lang.evidence.compare.requirements import edited, turned, verdicts
 from btq_lang.evidence.store.tables import quoted
-from btq_lang.evidence.verdicts import VIOLATED
+from btq_lang.evidence.verdicts import UNKNOWN, VIOLATED
 from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def _alone(mission: str, rows: Sequence[Row | None]) -> Comparison:
     first, second = ((row["runs"], len(row["robots"])) if row is not None else (0, 0) for row in rows)
     runs, robots = zip(first, second, strict=True)
     before, after = ((row["first_us"], row["last_us"]) if row is not None else None for row in rows)
-    return Comparison(mission, runs, robots, (before, after), (), "runs", 1, 0.0, (0, 0), (), (), ((), ()), (), ())
+    return Comparison(mission, runs, robots, (before, after), (), "runs", 1, 0.0, (0, 0), (), (), ((), ()), (), (), ())
 
 
 class _Mission:
@@ -104,6 +104,11 @@ class _Mission:
         self._edited: Final = edited(*judged)
         self._turned: Final = turned(*judged, self._edited)
         self._only: Final = tuple(sorted(judged[0].keys() - judged[1])), tuple(sorted(judged[1].keys() - judged[0]))
+        self._unknown: Final = tuple(
+            name
+            for name, requirement in judged[1].items()
+            if name in judged[0] and {requirement.verdict, judged[0][name].verdict} == {UNKNOWN}
+        )
         self._numbers: Final = Numbers(ask, by, sides, name, runs, self._edited)
         durations = {key: of for key, of in self._numbers.measures.items() if self._numbers.is_duration(key)}
         others = [[key] for key in self._numbers.measures if key not in durations]
@@ -162,6 +167,7 @@ class _Mission:
             newly=tuple(each for each in found if each.after == VIOLATED),
             no_longer=tuple(each for each in found if each.after != VIOLATED),
             only=self._only,
+            unknown=self._unknown,
             edited=self._edited,
             changes=tuple(with_causes(changes, numbers, at_least)),
         )

@@ -75,6 +75,11 @@ def by_chance(comparison: Comparison) -> list[Line]:
         for each in (*comparison.newly, *comparison.no_longer)
         if each.may_be_chance
     ]
+    causes = _causes_in_requirements(comparison.changes)
+    turned = [
+        replace(each, more=_AT_WORK.format(causes[each.requirement])) if each.requirement in causes else each
+        for each in turned
+    ]
     own = {each.requirement for each in turned}
     quiet = [
         each
@@ -102,7 +107,15 @@ def _turned(newly: Newly) -> Line:
     chance = f", {_chance(newly.p)}" if newly.p is not None else ""
     name = f"{newly.id} {newly.title}".rstrip()
     finding = "newly violated" if is_worse else "no longer violated"
-    return Line(finding, is_worse, newly.id, name, f"{verdict}, {first} → {second}{chance}", "")
+    return Line(finding, is_worse, newly.id, name, f"{verdict}; violated in {first} → {second}{chance}", "")
+
+
+def _causes_in_requirements(changes: Sequence[Change]) -> dict[str, str]:
+    """The names of the certain changes that requirements measure too, by requirement."""
+    causes = {each.key: each.name for each in changes if each.finding and each.cause is None}
+    same = {key.requirement: causes[each.key] for each in changes if each.key in causes for key in each.same}
+    explained = {each.requirement: causes[each.cause] for each in changes if each.cause in causes}
+    return {**explained, **same}
 
 
 def _folded(change: Change, changes: Sequence[Change]) -> str:
@@ -149,5 +162,6 @@ def _shown(si: float, change: Change) -> str:
     return duration(si) if is_time(change.unit) else quantity(si, parse_unit(change.unit))
 
 
+_AT_WORK: Final = "includes what changed at {}, so more runs may show it"
 _MOST: Final = 5  # differences that chance may explain
 _LIKELY: Final = 0.5  # p-values of differences that are none

@@ -113,6 +113,7 @@ class Comparison(Record):
         one_sided: how many nodes were active on each side and not on the other, so that nothing compares them.
         newly, no_longer: the requirements that only the second side violates, and only the first.
         only: the requirements that only the first side has, and only the second.
+        unknown: the requirements of both sides that the logs of neither could judge.
         edited: the clauses whose bounds differ, so that their verdicts are no changes.
         changes: all that was compared.
     """
@@ -129,6 +130,7 @@ class Comparison(Record):
     newly: tuple[Newly, ...]
     no_longer: tuple[Newly, ...]
     only: tuple[tuple[str, ...], tuple[str, ...]]
+    unknown: tuple[str, ...]
     edited: tuple[Edited, ...]
     changes: tuple[Change, ...]
 

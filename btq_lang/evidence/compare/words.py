@@ -58,6 +58,8 @@ def remarks(comparison: Comparison, sides: tuple[str, str]) -> Iterator[str]:
         if names:
             what = "requirements" if len(names) > 1 else "requirement"
             yield f"not compared: {what} only in {side}: {', '.join(names)}"
+    if comparison.unknown:
+        yield f"unknown on both sides, as btq verify explains: {', '.join(comparison.unknown)}"
     if found := untestable(comparison):
         yield f"means: {found}"
     certain = {each.name for each in changes if each.finding}

@@ -95,21 +95,29 @@ class Overview(Record):
         return any(each.is_worse for each in self.comparisons)
 
 
-def overview(ask: Ask, store: str, by: Sequence[str]) -> Overview:
+def overview(ask: Ask, store: str, by: Sequence[str], sides: Sequence[str] = ()) -> Overview:
     """The overview of a store.
 
     Args:
         ask: gives an engine a question.
         store: its name, as people read it.
         by: `label`, `robot` or both.
+        sides: two labels to compare, which count as the last ones; none: the two that began last.
+
+    Raises:
+        Unknown: one of `sides` has no runs, or no mission in common with the other.
     """
     rows = ask(OVERVIEW["labels"])
     names = [row["label"] for row in rows]
-    sides = (names[-2], names[-1]) if len(names) > 1 else None
+    if sides:
+        names = [*(name for name in names if name not in sides), *sides]
+    last = (names[-2], names[-1]) if len(names) > 1 else None
     try:
-        comparisons = compare(ask, "label", sides) if sides is not None else ()
-    except Unknown:  # each mission was run with one of them
-        comparisons = ()
+        comparisons = compare(ask, "label", last) if last is not None else ()
+    except Unknown:
+        if sides:
+            raise
+        comparisons = ()  # each mission was run with one of them
     steps = steps_of(min(row["first_us"] for row in rows), max(row["last_us"] for row in rows))
     labels_at = tuple((row["label"], row["first_us"]) for row in rows)
     of_time, measured = trends(ask, steps), measures(ask, steps, labels_at)
@@ -129,7 +137,7 @@ def overview(ask: Ask, store: str, by: Sequence[str]) -> Overview:
                 measures=tuple(measured.get(name, ())),
             )
         )
-    return Overview(store, tuple(by), labels_at, steps, tuple(missions), sides, comparisons)
+    return Overview(store, tuple(by), labels_at, steps, tuple(missions), last, comparisons)
 
 
 def _parts(ask: Ask, store: str, labels: Sequence[str] | None) -> dict[str, list[Part]]:

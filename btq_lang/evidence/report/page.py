@@ -70,6 +70,9 @@ def _changes(overview: Overview) -> Iterator[str]:
     names = (sides[0] or NO_NAME, sides[1] or NO_NAME)
     first, second = map(escape, names)
     yield f'<section id="changes"><h2>What got worse from {first} to {second}</h2>{_tiles(overview)}'
+    began = dict(overview.labels)
+    if began[sides[0]] == began[sides[1]]:
+        yield "<p>Both labels began at the same time; <code>--sides A B</code> sets their order.</p>"
     if not overview.comparisons:
         yield f"<p>No mission was run with both {first} and {second}.</p>"
     for each in overview.comparisons:

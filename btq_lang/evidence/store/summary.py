@@ -144,7 +144,7 @@ def _verdict(
     assert unit is not None, "a unit of the table, as it was written"
     is_windowed = row["last_number"] is not None or row["last_seconds"] is not None
     tally = _recent(row, recent, unit) if is_windowed else _counted(row, counts, broken, unit)
-    tally.by_run = tuple(
+    tally.by_run.extend(
         RunValue(each["run"], each["run_start_us"], _RANKS[each["worst_rank"]], each["si"]) for each in runs
     )
     verdict, why = verdict_of(tally, row["missing"] or "", bool(row["exercised"]))

@@ -72,7 +72,7 @@ def test_a_slower_node_is_one_line_with_what_waits_for_it(campaign: Path) -> Non
     code, output, errors = run_btq("compare", "kept", "base", "slow", cwd=campaign)
     assert (code, errors) == (1, "")
     assert output.splitlines()[2:6] == [
-        "  newly violated  quick Follow a path in time  was satisfied, 0 of 366 → 79 of 393, p < 0.0001",
+        "  newly violated  quick Follow a path in time  was satisfied; violated in 0 of 366 → 79 of 393, p < 0.0001",
         "                                               and slower: mean 6.07 s → 6.7 s (+634 ms, +10.5 %;"
         " 95 % interval +481 ms to +788 ms) over 120 and 120 runs, p < 0.0001",
         "  slower          Drive (1 of 2)/Follow        mean 5.97 s → 6.75 s (+775 ms, +13 %;"

@@ -30,7 +30,7 @@ TABLE = (
     "main: 60 runs of v1 (2026-11-20 08:01–09:00 UTC), 50 runs of v2 (2026-11-21 08:01–08:50 UTC),"
     " durations compared by runs\n"
     "\n"
-    "  newly violated  quick Be quick  was satisfied, 0 of 60 → 10 of 50, p = 0.00044\n"
+    "  newly violated  quick Be quick  was satisfied; violated in 0 of 60 → 10 of 50, p = 0.00044\n"
     "  less reliable   Dock            failed in 5 of 60 runs → 28 of 50, p < 0.0001\n"
     "  slower          Move            mean 10.1 s → 11.6 s (+1.53 s, +15.3 %; 95 % interval +1.34 s to +1.73 s)"
     " over 60 and 50 runs, p < 0.0001\n"
@@ -44,7 +44,7 @@ MARKDOWN = (
     "\n"
     "| Finding | Of | Change |\n"
     "|---|---|---|\n"
-    "| **newly violated** | `quick Be quick` | was satisfied, 0 of 60 → 10 of 50, p = 0.00044 |\n"
+    "| **newly violated** | `quick Be quick` | was satisfied; violated in 0 of 60 → 10 of 50, p = 0.00044 |\n"
     "| **less reliable** | `Dock` | failed in 5 of 60 runs → 28 of 50, p &lt; 0.0001 |\n"
     "| **slower** | `Move` | mean 10.1 s → 11.6 s (+1.53 s, +15.3 %; 95 % interval +1.34 s to +1.73 s)"
     " over 60 and 50 runs, p &lt; 0.0001<br>and in requirement quick |\n"
@@ -128,7 +128,8 @@ def test_the_store_of_the_project(line: tuple[str, ...], changed: Path) -> None:
 
 
 def test_without_a_store(changed: Path) -> None:
-    message = "btq compare: no store given; name one, or set `store` in [evidence] of btq.toml\n"
+    what = "no store given; name one, which btq verify LOG … --store DIR makes,"
+    message = f"btq compare: {what} or set `store` in [evidence] of btq.toml\n"
     assert run_btq("compare", "v1", "v2", cwd=changed) == (2, "", message)
 
 
@@ -140,7 +141,7 @@ def test_back_to_the_version_that_was_better(changed: Path) -> None:
         "faster",
         "no longer violated",
     ]
-    assert "  no longer violated  quick Be quick  is satisfied, 10 of 50 → 0 of 60, p = 0.00044\n" in output
+    assert "  no longer violated  quick Be quick  is satisfied; violated in 10 of 50 → 0 of 60, p = 0.00044\n" in output
 
 
 def test_a_single_violation_may_be_chance(tmp_path: Path) -> None:
@@ -151,7 +152,7 @@ def test_a_single_violation_may_be_chance(tmp_path: Path) -> None:
     assert output.splitlines()[1:4] == [
         "",
         "what differs most where chance may explain it:",
-        "  newly violated  quick Be quick  was satisfied, 0 of 50 → 1 of 50, p = 1",
+        "  newly violated  quick Be quick  was satisfied; violated in 0 of 50 → 1 of 50, p = 1",
     ]
 
 

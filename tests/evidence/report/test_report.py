@@ -318,7 +318,7 @@ def test_what_is_newly_violated_is_on_top(kept: Path) -> None:
     assert code == 1
     assert page.tables["What got worse in main"] == [
         ["Finding", "Of", "Change"],
-        ["newly violated", "quick Be <quick>", "was satisfied, 0 of 6 → 5 of 5, p = 0.0087"],
+        ["newly violated", "quick Be <quick>", "was satisfied; violated in 0 of 6 → 5 of 5, p = 0.0087"],
         [
             "slower",
             "Move",
@@ -345,7 +345,7 @@ def test_what_chance_may_explain_is_no_loss(kept: Path) -> None:
     assert "What got worse in main" not in page.tables
     assert page.tables["What differs most where chance may explain it in main"] == [
         ["Finding", "Of", "Change"],
-        ["newly violated", "quick Be <quick>", "was satisfied, 0 of 1 → 1 of 1, p = 1"],
+        ["newly violated", "quick Be <quick>", "was satisfied; violated in 0 of 1 → 1 of 1, p = 1"],
     ]
     assert page.texts[2:8] == [
         "What got worse from v<1> to v<2>",
@@ -409,7 +409,11 @@ def test_the_store_of_the_project(kept: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((), "no store given; name one, or set `store` in [evidence] of btq.toml"),
+        (
+            (),
+            "no store given; name one, which btq verify LOG … --store DIR makes,"
+            " or set `store` in [evidence] of btq.toml",
+        ),
         (("gone",), "gone: no verdicts are kept there; keep some with btq verify LOG --store gone"),
         (("kept", "-o", "x.md"), "x.md is not the name of a page; choose one that ends in .html"),
     ],
@@ -444,3 +448,16 @@ def test_a_second_engine_says_the_same(robots: Path, polars: str) -> None:
     for name, question in OVERVIEW.items():
         one, other = (ask(question.format(**words)) for ask in (engine.asked(store), asked_by(polars, store)))
         assert sorted(map(repr, one)) == sorted(map(repr, other)), name
+
+
+def test_the_sides_are_named_where_labels_began_at_once(kept: Path) -> None:
+    """By their first runs, neither is the earlier one."""
+    keep(kept, 1, SLOW, "--label", "after")
+    keep(kept, 1, QUICK, "--label", "before")
+    _, page = reported(kept)
+    assert "Both labels began at the same time; --sides A B sets their order." in page.texts
+    for sides in (("before", "after"), ("after", "before")):
+        _, output, _ = run_btq("report", "kept", "--sides", *sides, cwd=kept)
+        assert f"What got worse from {sides[0]} to {sides[1]}" in Page(output).texts
+    gone = "btq report: no run has the label gone; there are after, before, v<1>\n"
+    assert run_btq("report", "kept", "--sides", "gone", "after", cwd=kept) == (2, "", gone)
