@@ -33,10 +33,8 @@ PARTS: dict[str, tuple[Callable[[Path], object], list[str], str]] = {
         "",
     ),
     "foreign": (
-        write("<project/>"),
-        [
-            "main.btq:1:9: error[include-with-errors] `part.xml` has 1 error: the document element is <project>, not <root>"
-        ],
+        write("<a/>"),
+        ["main.btq:1:9: error[include-with-errors] `part.xml` has 1 error: the document element is <a>, not <root>"],
         "",
     ),
     "empty": (write(""), ["main.btq:1:9: error[include-with-errors] `part.xml` has 1 error: this file is empty"], ""),
