@@ -121,7 +121,7 @@ def _finish(name: str, run: Callable[[Any], int], options: object) -> int:
 
 
 def _internal_error(error: Exception) -> int:
-    from btq_lang.lsp.failures import internal_error
+    from btq_lang.commands.failures import internal_error
 
     if os.environ.get("BTQ_TRACEBACK"):
         from traceback import print_exception

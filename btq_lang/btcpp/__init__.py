@@ -1,7 +1,8 @@
 """BehaviorTree.CPP's XML: the document, reading and writing it, a mission as XML, XML as a mission.
 
 document    the elements, comments and texts of one file, and how to write it
-reader      XML text to document, as the engine reads it; `strict` reports what other tools refuse
+reader      XML text to document, as the engine reads it; `strict` asks whether other tools read it, `malformed` and
+            `prefixes` find why they refuse it
 importing   a document as a mission; `wording` spells its words, `version3` translates files of version 3, `generated`
             removes what a build has added
 export      a mission as a document; `source` is what its parts share, `trees`, `models`, `attributes`, `descriptions`

@@ -18,7 +18,7 @@ def file_of(path: str, text: str) -> File:
     """The file for a path and its text; XML is imported without changing it, whatever its version."""
     if not is_xml(path, text):
         return File(path, text)
-    from btq_lang.btcpp.importing import import_xml  # needs lxml, which most missions do without
+    from btq_lang.btcpp.importing import import_xml  # large, and most missions do without XML
 
     done = import_xml(text, keep_v3=True, for_people=False)
     return File(path, done.text, Origin(text, done.places, done.diagnostics, done.is_complete, done.defines))

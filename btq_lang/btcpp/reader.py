@@ -3,8 +3,8 @@
 One invariant: what the engine's reader (tinyxml2) loads is read, with the elements and values that it sees; what it
 refuses is refused.  That is more lenient than the standard in some points (`--` in comments, `<` and `&` in values,
 text around the document element) and stricter in others (no processing instruction inside the document element), so
-lxml reads the text as well: what only the engine accepts is a warning.  Every step moves forward, nothing is expanded,
-fetched or nested by recursion.  It does not know what the elements mean.
+`strict` judges the text as well: what only the engine accepts is a warning.  Every step moves forward, nothing is
+expanded, fetched or nested by recursion.  It does not know what the elements mean.
 
 Source: tinyxml2 11, `XMLNode::ParseDeep`, `XMLDocument::Identify`, `XMLElement::ParseAttributes`.
 """
@@ -14,7 +14,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from itertools import chain
-from typing import Final, NoReturn, TypeAlias
+from typing import TYPE_CHECKING, Final, NoReturn, TypeAlias
 
 from btq_lang.btcpp.document import (
     ATTRIBUTE,
@@ -30,11 +30,14 @@ from btq_lang.btcpp.document import (
     attribute_matches,
     unescape,
 )
-from btq_lang.btcpp.strict import not_well_formed
+from btq_lang.btcpp.strict import is_well_formed
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Span
+
+if TYPE_CHECKING:
+    from btq_lang.btcpp.malformed import Mistake
 
 # Its name, its attributes (None: an end tag), whether it is an empty element, its length, whether text may follow it.
 Tag: TypeAlias = tuple[str, tuple[Attribute, ...] | None, bool, int, bool]
@@ -54,21 +57,19 @@ class Read(Record):
     problems: tuple[Diagnostic, ...] = ()
 
 
-def read(text: str) -> Read:
-    """Read an XML file, any string at all."""
+def read(text: str, with_prefixes: bool = True) -> Read:
+    """Read an XML file, any string at all; `with_prefixes`: report prefixes of names that other tools refuse, too."""
     nul = text.find("\0")
     if 0 <= nul < text.rfind(">"):
         message = "unexpected NUL character: the engine stops reading here"
         return Read(None, (Diagnostic(RULE, Span(nul, nul + 1), message, notes=("remove it",)),))
-    refused = not_well_formed(text)
-    reader = _Reader(text, refused is None)
+    is_strict = is_well_formed(text)
+    reader = _Reader(text, is_strict)
     try:
         with NotCollecting():
             contents = reader.contents()
     except _Broken as broken:
         return Read(None, (broken.diagnostic,))
-    if reader.has_prefixes and refused is None:
-        refused = not_well_formed(text, with_prefixes=True)
     roots = [content for content in contents if isinstance(content, Element)]
     if not roots:
         end = len(text.rstrip())
@@ -76,7 +77,24 @@ def read(text: str) -> Read:
         note = 'a mission begins with <root BTCPP_format="4">'
         return Read(None, (Diagnostic(RULE, Span(0, min(end, 1)), message, notes=(note,)),))
     read_by_all = (content for content in contents if isinstance(content, Comment) or content is roots[0])
-    return Read(Document(read_by_all), refused or ())
+    has_prefixes = with_prefixes and reader.has_prefixes
+    return Read(Document(read_by_all), tuple(_refused(text, roots[0], is_strict, has_prefixes)))
+
+
+def _refused(text: str, root: Element, is_strict: bool, has_prefixes: bool) -> Iterator[Diagnostic]:
+    """The first thing that other XML tools refuse of a text that the engine reads."""
+    mistakes: list[Mistake | None] = []
+    if not is_strict:
+        from btq_lang.btcpp.malformed import first_mistake  # few files need it, and its patterns take long to compile
+
+        mistakes.append(first_mistake(text))
+    if has_prefixes:
+        from btq_lang.btcpp.prefixes import wrong_prefix  # as above
+
+        mistakes.append(wrong_prefix(root))
+    for mistake in sorted(filter(None, mistakes), key=lambda mistake: mistake.span)[:1]:
+        message = f"the engine reads this, but no other XML tool does: {mistake.message}"
+        yield Diagnostic("xml-not-well-formed", mistake.span, message, notes=(mistake.advice,))
 
 
 RULE: Final = "xml-syntax"
@@ -163,7 +181,7 @@ class _Reader:
         attributes = self.attributes.get(pairs)
         if attributes is None:
             attributes = self.attributes[pairs] = tuple([Attribute(key, raw) for key, _, raw in _ATTRIBUTES(pairs)])
-            if ":" in pairs and any(":" in each.name for each in attributes):
+            if _MAY_HAVE_PREFIX(pairs) and any(":" in each.name or each.name == "xmlns" for each in attributes):
                 self.has_prefixes = True
         if ":" in name:
             self.has_prefixes = True
@@ -312,6 +330,7 @@ _PAIRS: Final = rf"((?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*)"
 _TAG: Final = re.compile(
     rf"<(?:{SPACE}({WORD})(?!{IN_WORD}){_PAIRS}{SPACE}(/?)>|/({WORD})(?!{IN_WORD})(?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*{SPACE}>)"
 ).match
+_MAY_HAVE_PREFIX: Final = re.compile(":|xmlns").search
 _ATTRIBUTES: Final = ATTRIBUTE.findall
 _NAME: Final = re.compile(WORD).match
 _SPACE: Final = re.compile(SPACE).match

@@ -44,15 +44,17 @@ def _prolog(xml: str) -> int:
 
 def listed_trees(xml: str) -> tuple[tuple[str, ...], str | None] | None:
     """The trees of a file as Nav2 lists them before it registers the file: the IDs, in order, and the one that it names
-    as the main tree; None if it cannot be parsed."""
-    from lxml import etree  # as the rest of this room, only where there is XML
+    as the main tree; None if it cannot be parsed.
 
-    try:
-        root = etree.fromstring(xml.encode(), etree.XMLParser(resolve_entities=False, encoding="utf-8"))
-    except etree.XMLSyntaxError:
+    Source: nav2_behavior_tree/src/behavior_tree_engine.cpp, `parseTreeInfo`, which reads with tinyxml2.
+    """
+    from btq_lang.btcpp.reader import read  # few files are listed
+
+    document = read(xml).document
+    if document is None:
         return None
-    found = (each.get("ID") for each in root.findall("BehaviorTree"))
-    return tuple(each for each in found if each is not None), root.get("main_tree_to_execute")
+    listed = (each.get("ID") for each in document.root.elements if each.tag == "BehaviorTree")
+    return tuple(each for each in listed if each is not None), document.root.get("main_tree_to_execute")
 
 
 _PROLOG: Final = re.compile(r"(?:[^<]+|<\?.*?\?>|<!--.*?-->|<!(?!--)[^>]*>)*", re.DOTALL)

@@ -133,15 +133,10 @@ def fragment_problem(text: str) -> str | None:
     """What is wrong with a text that should be one element; None if it is one.  Prefixes need no declaration."""
     if text[:1] != "<" or not is_xml_name(text[1:2]):
         return "`xml` takes one element; its text must begin with `<`"
-    from lxml import etree  # here, for few files have such elements, and it takes long to import
+    from btq_lang.btcpp.reader import read  # few files have such elements
 
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True)
-    try:
-        etree.fromstring(text.encode("utf-8", "replace"), parser)
-    except etree.XMLSyntaxError:
-        wrong = [each for each in parser.error_log if each.domain != etree.ErrorDomains.NAMESPACE]
-        return f"not a well-formed element: {wrong[0].message.rstrip()}" if wrong else None
-    return None
+    problems = read(text, with_prefixes=False).problems
+    return f"not a well-formed element: {problems[0].message}" if problems else None
 
 
 _BLANKS: Final = (" ", "\t")

@@ -1,40 +1,47 @@
-"""What other XML tools refuse, though the engine reads it: lxml's message, and what to write instead.
+"""Whether other XML tools read a text: lxml's judgement, or where it is not installed that of Python's own expat.
 
-One invariant: lxml gets bytes and may use no network, no files, no entities and no huge documents.  It is imported only
-if there is XML to check.
+One invariant: the judge builds no tree, opens neither files nor connections, and limits how much the entities of a
+DOCTYPE grow.  Why it refuses a text is not asked: `malformed` finds that, the same for both judges.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from functools import cache
 from typing import Final
 
-from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.util.text import LineIndex, Position, Span
+
+def is_well_formed(text: str) -> bool:
+    """Whether a text is well-formed, prefixes of names aside; False too if it reaches limits that XML does not have."""
+    return judge()(text)
 
 
-def not_well_formed(text: str, with_prefixes: bool = False) -> tuple[Diagnostic, ...] | None:
-    """A warning at the place where lxml refuses a text, with prefixes of names, which takes three times as long, or
-    without; None if it reads it, empty if it only reached limits of its own, which XML does not have."""
-    from lxml import etree
-
-    parser = etree.XMLParser(
-        target=None if with_prefixes else _Nobody(),
-        encoding="utf-8",
-        resolve_entities=False,
-        no_network=True,
-        load_dtd=False,
-        huge_tree=False,
-        remove_pis=True,
-    )
+@cache
+def judge() -> Callable[[str], bool]:
+    """The judge that is installed; imported only if there is XML to check."""
     try:
-        etree.fromstring(text.encode("utf-8", "replace"), parser)
-    except etree.XMLSyntaxError as error:
-        if error.code in _LIMITS:
-            return ()
-        line, column = error.position
-        return (_refused(text, error.msg or "it is not well-formed", line, column),)
-    return None
+        from lxml import etree
+    except ImportError:
+        return _by_expat
+
+    def by_lxml(text: str) -> bool:
+        parser = etree.XMLParser(
+            target=_Nobody(),
+            encoding="utf-8",
+            resolve_entities=False,
+            no_network=True,
+            load_dtd=False,
+            huge_tree=False,
+            remove_pis=True,
+        )
+        try:
+            etree.fromstring(text.encode("utf-8", "replace"), parser)
+        except etree.XMLSyntaxError:
+            return False
+        return True
+
+    return by_lxml
 
 
 class _Nobody:
@@ -44,32 +51,27 @@ class _Nobody:
         """The end of the document."""
 
 
-def _refused(text: str, message: str, line: int, column: int) -> Diagnostic:
-    said = _POSITION.sub("", message).rstrip()
-    lines = LineIndex(text)
-    at = min(lines.offset(Position(max(line, 1) - 1, max(column, 1) - 1)), max(len(text) - 1, 0))
-    notes = tuple(note for pattern, note in _MENDING if pattern in said)
-    shown = f"the engine reads this, but no other XML tool does: {said}"
-    return Diagnostic("xml-not-well-formed", Span(at, min(at + 1, len(text))), shown, notes=notes)
+def _by_expat(text: str) -> bool:
+    from xml.parsers import expat
+
+    parser = expat.ParserCreate("utf-8")
+    versions: list[str] = []
+    parser.XmlDeclHandler = lambda version, encoding, standalone: versions.append(version)
+    try:
+        parser.Parse(_as_in_fourth_edition(text).encode("utf-8", "replace"), True)
+    except expat.ExpatError:
+        return False
+    return all(re.fullmatch(VERSION, version) for version in versions)
 
 
-_POSITION: Final = re.compile(r", line \d+, column \d+.*\Z", re.DOTALL)
-_LIMITS: Final = (1, 114)  # XML_ERR_INTERNAL_ERROR, which older versions of libxml2 report for XML_ERR_RESOURCE_LIMIT
+def _as_in_fourth_edition(text: str) -> str:
+    """The text with names that expat knows, for it refuses some that are new in XML's fifth edition."""
+    text = text.removeprefix("\ufeff")
+    if text.isascii():
+        return text
+    from btq_lang.catalog.names import BEGINNING, FOLLOWING  # as above
 
-# Messages of libxml2, and what to do about each.
-_MENDING: Final = (
-    ("Unescaped '<'", "write `<` in a value as `&lt;`"),
-    ("EntityRef", "write `&` as `&amp;`"),
-    ("Entity '", "only &lt; &gt; &amp; &quot; &apos; and numbers are known: write `&` as `&amp;`"),
-    ("xmlParseCharRef", "XML does not allow a character like this: remove it"),
-    ("PCDATA invalid Char", "XML does not allow a control character: remove it"),
-    ("invalid character", "XML does not allow a control character: remove it"),
-    ("Double hyphen", "write `- -` in comments"),
-    ("Unsupported version", 'write version="1.0"'),
-    ("attributes construct error", "put a space between attributes"),
-    ("XML or text declaration", "put the declaration first in the file, without a space before it"),
-    ("XML declaration allowed", "put the declaration first in the file, without a space before it"),
-    ("Start tag expected", "remove the text before the document element"),
-    ("Extra content", "one element contains the whole file: remove the text after it"),
-    ("StartTag: invalid element name", "put no space between `<` and the name"),
-)
+    return re.sub(f"[{FOLLOWING}]", "\u00b7", re.sub(f"[{BEGINNING}]", "\u00e9", text))
+
+
+VERSION: Final = r"1\.[0-9]*"  # of XML, as lxml accepts it

@@ -101,9 +101,13 @@ _CONTROLS: Final = "".join(map(chr, range(32))) + "\x7f"
 _REFUSED: Final = frozenset(_FORBIDDEN + _CONTROLS)
 _UNPRINTABLE: Final = frozenset(_CONTROLS) - frozenset("\t\n\r")
 _LETTERS: Final = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz")
-_NAME_START: Final = (
-    "A-Z_a-z\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c-\u200d\u2070-\u218f"
+# Ranges of characters of names in XML beyond ASCII: with which one may begin, and which only follow others.
+BEGINNING: Final = (
+    "\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c-\u200d\u2070-\u218f"
     "\u2c00-\u2fef\u3001-\ud7ff\uf900-\ufdcf\ufdf0-\ufffd\U00010000-\U000effff"
 )
-# A string, for `re` takes 5 ms to compile it and few missions have a name that needs it.
-_XML_NAME: Final = f"[{_NAME_START}][-.0-9\u00b7\u0300-\u036f\u203f-\u2040{_NAME_START}]*"
+FOLLOWING: Final = "\u00b7\u0300-\u036f\u203f-\u2040"
+# Strings, for `re` takes 5 ms to compile them and few missions have a name that needs it.
+NAME_START: Final = f"A-Z_a-z{BEGINNING}"
+NAME_CHARACTERS: Final = f"-.0-9{FOLLOWING}{NAME_START}"
+_XML_NAME: Final = f"[{NAME_START}][{NAME_CHARACTERS}]*"

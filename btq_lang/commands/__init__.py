@@ -9,6 +9,7 @@ other packages do that.
     output.py, options.py, reporting.py   output, options of a check, its report
     fixing.py, ignoring.py   what a check changes
     baseline.py, since.py   which findings are known, and which files have changed
+    failures.py      messages for exceptions that nothing expected, of commands and of the server
     check.py, format.py, build.py …   the commands
     shell/           completion scripts
 """

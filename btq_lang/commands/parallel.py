@@ -9,7 +9,7 @@ import multiprocessing
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 
-from btq_lang.checks import findings
+from btq_lang.checks import check_each, findings
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
@@ -23,7 +23,12 @@ def check_all(workspace: Workspace, paths: tuple[str, ...], workers: int) -> Ite
     """The diagnostics of each path, in order."""
     # A forked process has the files already; otherwise each process gets their texts once.
     context = multiprocessing.get_context("fork" if "fork" in multiprocessing.get_all_start_methods() else None)
-    with ProcessPoolExecutor(workers, context, _begin, (workspace,)) as pool:
+    try:
+        pool = ProcessPoolExecutor(workers, context, _begin, (workspace,))
+    except NotImplementedError:  # there are no processes in a browser
+        yield from check_each(workspace, paths)
+        return
+    with pool:
         yield from pool.map(_check, paths, chunksize=_CHUNK)
 
 

@@ -20,7 +20,12 @@ def judge_all(logs: Sequence[str], means: Means, jobs: int) -> Iterator[JudgedLo
     """What was found in each log, in order; if a process is ended from outside, a problem instead of the rest."""
     # DuckDB, which may have threads here already, does not work in a forked process.
     context = multiprocessing.get_context(START if means.keeping is None else "spawn")
-    with ProcessPoolExecutor(min(jobs, len(logs)), context, _begin, (means,)) as pool:
+    try:
+        pool = ProcessPoolExecutor(min(jobs, len(logs)), context, _begin, (means,))
+    except NotImplementedError:  # there are no processes in a browser
+        yield from (judge(log, means) for log in logs)
+        return
+    with pool:
         try:
             yield from pool.map(_judge, logs)
         except BrokenProcessPool:

@@ -8,7 +8,6 @@ offsets and paths, call `ide`, and convert the result back.  Features are implem
     session.py the open files, and whose diagnostics an edit may have changed
     editor.py one client: its session, its capabilities, and what is published when
     logs.py            the process that judges a project's logs, and its summary
-    failures.py exceptions in handlers
     lifecycle.py, documents.py, commands.py, progress.py … the handlers, most of a few lines
 """
 

@@ -27,7 +27,7 @@ from pygls.io_ import StdoutWriter, run_async
 from pygls.lsp.server import LanguageServer
 
 from btq_lang import ide as features
-from btq_lang.lsp import failures
+from btq_lang.commands import failures
 from btq_lang.lsp.convert import Converter
 from btq_lang.lsp.protocol import Json, Messages, Protocol
 from btq_lang.util.version import __version__

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -10,12 +11,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 from xml_elements import elements
+from xml_judges import judged_by
 
 from btq_lang.btcpp.document import Attribute, Comment, Document, Element, Text, escape, write
 from btq_lang.btcpp.reader import MAX_DEPTH, Read, read
 from btq_lang.util.text import LineIndex, Span
 
 STRICT = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, encoding="utf-8")
+
+
+@pytest.fixture(autouse=True, scope="module", params=["lxml", "expat"])
+def judge(request: pytest.FixtureRequest) -> Iterator[None]:
+    with judged_by(request.param):
+        yield
 
 
 def strict_elements(data: bytes) -> list[object]:
@@ -133,47 +141,157 @@ def test_an_attribute_again_leads_to_the_first_of_its_name() -> None:
     assert [(each.place.span, each.message) for each in problem.related] == [(Span(3, 4), "its first value is here")]
 
 
-@pytest.mark.parametrize(
-    ("text", "found", "note"),
-    [
-        ('<a b="<"/>', [("a", [("b", "<")])], "write `<` in a value as `&lt;`"),
-        ('<a b="& &c;"/>', [("a", [("b", "& &c;")])], "write `&` as `&amp;`"),
-        ("<a><!-- -- --></a>", [("a", []), " -- "], "write `- -` in comments"),
-        ('<a b="1"c="2"/>', [("a", [("b", "1"), ("c", "2")])], "put a space between attributes"),
-        ("text<a/>", [("a", [])], "remove the text before the document element"),
-        ("<a/><b/>", [("a", [])], "one element contains the whole file: remove the text after it"),
-        ("< a/>", [("a", [])], "put no space between `<` and the name"),
-        ('<?xml version="2.0"?><a/>', [("a", [])], 'write version="1.0"'),
-    ],
-)
-def test_what_only_the_engine_reads(text: str, found: list[object], note: str) -> None:
+REFUSED = [
+    ('<a b="<"/>', "1:7 `<` in a value", "write `<` in a value as `&lt;`"),
+    ('<a\n  b="1" c="x && y"/>', "2:14 `&` does not begin a reference", "write `&` as `&amp;`"),
+    ("<a>&amp</a>", "1:4 `&` does not begin a reference", "write `&` as `&amp;`"),
+    ("<a>&#X41;</a>", "1:4 `&` does not begin a reference", "write `&` as `&amp;`"),
+    (
+        '<a b="&c;"/>',
+        "1:7 the entity `c` is not defined",
+        "only &lt; &gt; &amp; &quot; &apos; and numbers are known: write `&` as `&amp;`",
+    ),
+    ("<a>&#0;</a>", "1:4 `&#0;` is not a character of XML", "XML does not allow a character like this: remove it"),
+    (
+        "<a>&#xD800;</a>",
+        "1:4 `&#xD800;` is not a character of XML",
+        "XML does not allow a character like this: remove it",
+    ),
+    (
+        f"<a>&#{'9' * 5_000};</a>",
+        f"1:4 `&#{'9' * 5_000};` is not a character of XML",
+        "XML does not allow a character like this: remove it",
+    ),
+    ("<a>\x01</a>", "1:4 the character U+0001", "XML does not allow a character like this: remove it"),
+    ("<a><!-- \uffff --></a>", "1:9 the character U+FFFF", "XML does not allow a character like this: remove it"),
+    ("<a><![CDATA[\x02]]></a>", "1:13 the character U+0002", "XML does not allow a character like this: remove it"),
+    ('<a\vb="1"/>', "1:3 the character U+000B", "XML does not allow a character like this: remove it"),
+    ('<a b\f="1"/>', "1:5 the character U+000C", "XML does not allow a character like this: remove it"),
+    ("<a>]]></a>", "1:4 `]]>` in a text", "write `]]>` in a text as `]]&gt;`"),
+    ("<a><!-- -- --></a>", "1:9 `--` in a comment", "write `- -` in comments"),
+    ("<a><!-- x ---></a>", "1:11 `--` in a comment", "write `- -` in comments"),
+    ('<a b="1"c="2"/>', "1:9 no space between attributes", "put a space between attributes"),
+    ('<a></a b="1">', "1:8 an attribute in an end tag", "remove it"),
+    ("< a/>", "1:2 a space before the name of a tag", "put no space between `<` and the name"),
+    ("<a×b/>", "1:3 `×` in a name", "write letters, digits, `_`, `-` and `.`"),
+    ("<·a/>", "1:2 `·` in a name", "write letters, digits, `_`, `-` and `.`"),
+    ("<a\u2028/>", "1:3 U+2028 in a name", "write letters, digits, `_`, `-` and `.`"),
+    ("text<a/>", "1:1 text before the document element", "remove the text before the document element"),
+    (
+        "<![CDATA[x]]><a/>",
+        "1:1 a CDATA section before the document element",
+        "remove the text before the document element",
+    ),
+    (
+        "<a/>\n<b/>",
+        "2:1 a tag after the document element",
+        "one element contains the whole file: remove the text after it",
+    ),
+    (
+        "<a/></b>",
+        "1:5 a tag after the document element",
+        "one element contains the whole file: remove the text after it",
+    ),
+    ('<?xml version="2.0"?><a/>', "1:16 unsupported version `2.0`", 'write version="1.0"'),
+    ("<?xml?><a/>", "1:1 malformed XML declaration", 'write <?xml version="1.0" encoding="UTF-8"?>'),
+    (
+        '<?xml version="1.0" encoding="utf 8"?><a/>',
+        "1:1 malformed XML declaration",
+        'write <?xml version="1.0" encoding="UTF-8"?>',
+    ),
+    (
+        '\n<?xml version="1.0"?><a/>',
+        "2:3 an XML declaration after other content",
+        "put the declaration first in the file, without a space before it",
+    ),
+    ("<??><a/>", "1:1 a processing instruction without a name", "remove it"),
+    ("<?b+c?><a/>", "1:4 `+` in a name", "write letters, digits, `_`, `-` and `.`"),
+    ("<!doctype a><a/>", "1:1 unexpected declaration", "the engine does not read it: remove it"),
+    ("<a><!b></a>", "1:4 unexpected declaration", "the engine does not read it: remove it"),
+    (
+        '<!DOCTYPE a [<!ENTITY x "<b>">]><a>&x;</a>',
+        "1:1 malformed declarations in a DOCTYPE",
+        "the engine does not read them: remove them",
+    ),
+    (
+        '<!DOCTYPE a [<!-- ]" --><!ENTITY x "1">]>\n<a b="&x;<"/>',
+        "2:10 `<` in a value",
+        "write `<` in a value as `&lt;`",
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "said", "note"), REFUSED, ids=range(len(REFUSED)))
+def test_what_only_the_engine_reads(text: str, said: str, note: str) -> None:
+    place, _, message = said.partition(" ")
     done = read(text)
     assert done.document is not None
-    assert elements(done.document) == found
-    assert [(each.rule, each.notes) for each in done.problems] == [("xml-not-well-formed", (note,))]
+    assert problems(done, text) == [
+        f"{place} warning xml-not-well-formed: the engine reads this, but no other XML tool does: {message}"
+    ]
+    assert done.problems[0].notes == (note,)
+
+
+def test_values_that_only_the_engine_reads() -> None:
+    done = read('<a b="<" c="& &d;"><!-- -- --></a>')
+    assert done.document is not None
+    assert elements(done.document) == [("a", [("b", "<"), ("c", "& &d;")]), " -- "]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '<?xml version="1.1"?><a/>',
+        '<?xml version="1.0" encoding="latin1" standalone="yes"?><a>ü</a>',
+        "<?xml-stylesheet a?><!-- b --><a/>\n<!-- c -->",
+        '<!DOCTYPE a PUBLIC "-//a//b" "c.dtd"><a>&d;</a>',
+        '<!DOCTYPE a [<!ENTITY x "1">]><a b="&x;"/>',
+        "<a>&#10;&lt;]]&gt;\x7f</a>",
+        "<größe/>",
+        '<a\u0370\u2070 \U00010400="1"/>',  # letters of XML's fifth edition, which expat does not know
+        "<a>" * 300 + "</a>" * 300,  # deeper than lxml goes
+    ],
+)
+def test_what_other_tools_read_too(text: str) -> None:
+    assert read(text).problems == ()
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("<root><a:b/></root>", "Namespace prefix a on b is not defined"),
-        ('<root><a x:y="1"/></root>', "Namespace prefix x for y on a is not defined"),
-        ('<root xml:id="1 2"/>', "xml:id : attribute value 1 2 is not an NCName"),
-        ("<?a:b c?><root/>", "colons are forbidden from PI names 'a:b'"),
+        ("<root><a:b/></root>", "1:8 the prefix of `a:b` is not declared"),
+        ('<root><a x:y="1"/></root>', "1:10 the prefix of `x:y` is not declared"),
+        ('<root><a xmlns:x="u"/><x:b/></root>', "1:24 the prefix of `x:b` is not declared"),
+        ('<root xml:id="1 2"/>', "1:15 the value of `xml:id` is not a name"),
+        ("<?a:b c?><root/>", "1:3 misplaced `:` in `a:b`"),
+        ("<root><a:/></root>", "1:8 misplaced `:` in `a:`"),
+        ('<root xmlns:a="u" a:b:c="1"/>', "1:19 misplaced `:` in `a:b:c`"),
+        ('<root xmlns:a=""/>', "1:16 `xmlns:a` declares no namespace"),
+        ('<root xmlns:a="b c"/>', "1:16 the value of `xmlns:a` is not a URI"),
+        ('<root xmlns:xml="a"/>', "1:7 `xml` and `xmlns` are declared by XML itself"),
+        (
+            '<root xmlns:a="u" xmlns:b="u" a:c="1" b:c="2"/>',
+            "1:39 duplicate attribute `c` in <root>: two prefixes mean the same",
+        ),
+        ('<root><a:b c="<"/></root>', "1:8 the prefix of `a:b` is not declared"),
+        ('<root><b c="<"/><a:b/></root>', "1:13 `<` in a value"),
+        ("<root><a:b/></root><c/>", "1:8 the prefix of `a:b` is not declared"),
         ('<root xmlns:a="u"><a:b a:c="d: e"/><!-- a:b --></root>', None),
-        ('<root a="b:c"/>', None),
+        ('<root xmlns="u" xml:lang="x" a="b:c"/>', None),
     ],
 )
 def test_prefixes_that_other_tools_refuse(text: str, said: str | None) -> None:
-    told = [] if said is None else [f"the engine reads this, but no other XML tool does: {said}"]
-    assert [each.message for each in read(text).problems] == told
+    place, _, message = (said or "").partition(" ")
+    told = f"{place} warning xml-not-well-formed: the engine reads this, but no other XML tool does: {message}"
+    assert problems(read(text), text) == ([told] if said is not None else [])
 
 
-def test_the_place_of_a_prefix_that_other_tools_refuse_is_one_character() -> None:
-    """Where they stop reading: all that they say of it."""
-    text = "<a><x:b/></a>"
-    (problem,) = read(text).problems
-    assert (problem.span.start, problem.span.end) == (text.index("/"), text.index("/") + 1)
+def test_a_prefix_that_is_not_declared_is_marked() -> None:
+    (problem,) = read("<a><x:b/></a>").problems
+    assert (problem.span, problem.notes) == (
+        Span(4, 5),
+        ('write xmlns:x="…" in an element around it, or remove the prefix',),
+    )
 
 
 def test_what_is_passed_over_and_what_is_kept() -> None:
@@ -191,10 +309,21 @@ def test_a_section_of_characters_may_be_empty_or_have_one() -> None:
 
 
 def test_entities_of_a_doctype_are_not_expanded() -> None:
-    lol = '<!DOCTYPE a [<!ENTITY x "ha"><!ENTITY y "&x;&x;">]><a b="&y;">&y;</a>'
-    done = read(lol)
+    done = read('<!DOCTYPE a [<!ENTITY x "ha"><!ENTITY y "&x;&x;">]><a b="&y;">&y;</a>')
     assert done.document is not None
-    assert done.document.root.get("b") == "&y;"
+    assert (done.document.root.get("b"), done.problems) == ("&y;", ())
+
+
+@pytest.mark.parametrize("where", ["<a>&x9;</a>", '<a b="&x9;"/>'])
+def test_entities_that_grow_without_end_are_refused(where: str) -> None:
+    """A billion laughs: ten gigabytes, were they expanded."""
+    grown = "".join(f'<!ENTITY x{number} "{f"&x{number - 1};" * 10}">' for number in range(1, 10))
+    text = f'<!DOCTYPE a [<!ENTITY x0 "ha ha ha ">{grown}]>{where}'
+    begin = time.process_time()
+    assert [each.message for each in read(text).problems] == [
+        "the engine reads this, but no other XML tool does: malformed declarations in a DOCTYPE"
+    ]
+    assert time.process_time() - begin < 20
 
 
 def test_where_things_stand() -> None:

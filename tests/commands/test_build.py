@@ -233,12 +233,19 @@ def test_a_file_that_cannot_be_read(btq: Btq) -> None:
     assert btq.build("nowhere.btq") == (2, "", "btq: nowhere.btq: cannot be read: No such file or directory\n")
 
 
-def test_what_cannot_be_written_as_xml(btq: Btq) -> None:
-    btq.write(a='BehaviorTree A\n    xml "<Broken>"\n')
-    code, report, messages = btq.build()
-    assert (code, report, btq.files) == (1, "", ["a.btq"])
-    assert messages.startswith("a.btq:2:5: error: not a well-formed element: ")
-    assert messages.endswith("\nnothing was written\n")
+@pytest.mark.parametrize(
+    ("element", "problem"),
+    [
+        ("<Broken>", "<Broken> is never closed"),
+        ("<Pick/><Pick/>", "the engine reads this, but no other XML tool does: a tag after the document element"),
+        ("<Pick a='<'/>", "the engine reads this, but no other XML tool does: `<` in a value"),
+    ],
+)
+def test_what_cannot_be_written_as_xml(btq: Btq, element: str, problem: str) -> None:
+    btq.write(a=f'BehaviorTree A\n    xml "{element}"\n')
+    message = f"a.btq:2:5: error: not a well-formed element: {problem}\nnothing was written\n"
+    assert btq.build() == (1, "", message)
+    assert btq.files == ["a.btq"]
 
 
 def test_repairs_are_told(btq: Btq) -> None:

@@ -752,6 +752,18 @@ def test_where_no_file_was_at_hand_the_command_is_said(tmp_path: Path) -> None:
     assert done.returncode == 2
 
 
+def test_a_bug_is_reported_without_any_package(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(WRONG, encoding="utf-8")
+    program = f"import sys; sys.path.insert(0, {str(ROOT)!r})\n{BROKEN.format(error='ValueError')}"
+    done = subprocess.run(
+        [sys.executable, "-I", "-S", "-c", program, "check", "main.btq"], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert done.stderr == (
+        "btq: internal error: ValueError while reading main.btq; report it in btq's issue tracker; "
+        "BTQ_TRACEBACK=1 shows the traceback\n"
+    )
+
+
 def run_broken(
     folder: Path, error: str, arguments: list[str], program: str = BROKEN, **environment: str
 ) -> subprocess.CompletedProcess[str]:

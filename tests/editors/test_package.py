@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from installed import ROOT, STORE, there
+from lsp_editor import Editor
 
 from btq_lang.btcpp import recognition
 
@@ -47,8 +48,12 @@ def unpacked(vsix: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def run(unpacked: Path, *arguments: str, **options: object) -> subprocess.CompletedProcess[bytes]:
     """The bundled btq, by a Python that finds no package but those in the bundle."""
-    command = [sys.executable, "-I", "-S", str(unpacked / "python/run_btq.py"), *arguments]
+    command = bundled(unpacked, *arguments)
     return subprocess.run(command, capture_output=True, **options)  # type: ignore[call-overload,no-any-return]  # options
+
+
+def bundled(unpacked: Path, *arguments: str) -> tuple[str, ...]:
+    return (sys.executable, "-I", "-S", str(unpacked / "python/run_btq.py"), *arguments)
 
 
 def test_the_package_is_small(vsix: Path) -> None:
@@ -114,6 +119,77 @@ def test_the_bundled_commands_run(unpacked: Path, tmp_path: Path) -> None:
     assert run(unpacked, "init", "robot", cwd=tmp_path).returncode == 0
     checked = run(unpacked, "check", "robot", cwd=tmp_path)
     assert (checked.returncode, checked.stderr) == (0, b"")
+
+
+XML = """\
+<root BTCPP_format="4">
+  <BehaviorTree ID="Pick">
+    <SequenceStar><Grip force="&"/></SequenceStar>
+  </BehaviorTree>
+</root>
+"""
+MISSION = """\
+include "pick.xml"
+
+BehaviorTree Main
+    Rety (num_attempts = 3)
+        SubTree Pick
+"""
+IMPORTED = """\
+Root (BTCPP_format = 4)
+
+BehaviorTree Pick
+    M->
+        Grip (force = "&")
+"""
+
+
+def test_the_bundled_commands_read_xml(unpacked: Path, tmp_path: Path) -> None:
+    """Without lxml, which is not in the bundle; what is wrong with one file hides nothing of the others."""
+    (tmp_path / "pick.xml").write_text(XML, encoding="utf-8")
+    (tmp_path / "torn.xml").write_text(XML.replace("</root>", ""), encoding="utf-8")
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    checked = run(unpacked, "check", "--output-format", "concise", cwd=tmp_path)
+    assert (checked.returncode, checked.stderr.decode()) == (1, "")
+    assert checked.stdout.decode().splitlines() == [
+        "main.btq:4:5: warning[unknown-node] unknown node `Rety`; did you mean `Retry`?",
+        "pick.xml:3:6: warning[not-an-engine-node] `SequenceStar` is not built into BehaviorTree.CPP 4.6–4.10",
+        "pick.xml:3:32: warning[xml-not-well-formed] "
+        "the engine reads this, but no other XML tool does: `&` does not begin a reference",
+        "torn.xml:1:1: error[xml-syntax] <root> is never closed",
+        "Found 1 error, 3 warnings (1 fixable with --fix)",
+    ]
+    assert run(unpacked, "check", "--fix", "pick.xml", cwd=tmp_path).returncode == 1
+    assert (tmp_path / "pick.xml").read_text("utf-8") == XML.replace("SequenceStar", "SequenceWithMemory")
+    assert run(unpacked, "import", "pick.xml", cwd=tmp_path).returncode == 0
+    assert (tmp_path / "pick.btq").read_text("utf-8") == IMPORTED
+    assert run(unpacked, "build", "-o", "made", "pick.btq", cwd=tmp_path).returncode == 0
+    assert '<Grip force="&amp;"/>' in (tmp_path / "made/pick.xml").read_text("utf-8")
+
+
+def test_the_bundled_server_reads_xml(unpacked: Path, tmp_path: Path) -> None:
+    """It checks an XML mission, offers a fix and converts it; a mission beside it has its own diagnostics."""
+    (tmp_path / "pick.xml").write_text(XML, encoding="utf-8")
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    editor = Editor(tmp_path, command=bundled(unpacked, "lsp", "--stdio"))
+    editor.open("pick.xml", XML)
+    assert editor.diagnostics("pick.xml") == [("not-an-engine-node", 2, 5, 17), ("xml-not-well-formed", 2, 31, 32)]
+    editor.open("main.btq", MISSION)
+    assert editor.diagnostics("main.btq") == [("unknown-node", 3, 4, 8)]
+    at = {"line": 2, "character": 8}
+    asked = {**editor.document("pick.xml"), "range": {"start": at, "end": at}, "context": {"diagnostics": []}}
+    action = editor.request("textDocument/codeAction", **asked)[0]
+    edits = action["edit"]["changes"][editor.uri("pick.xml")]
+    assert action["title"] == "Replace it with `SequenceWithMemory`"
+    assert [(each["range"]["start"]["character"], each["newText"]) for each in edits] == [
+        (5, "SequenceWithMemory"),
+        (37, "SequenceWithMemory"),
+    ]
+    document = editor.document("pick.xml")["textDocument"]
+    converted = editor.request("workspace/executeCommand", command="btq.server.import", arguments=[document])
+    assert converted["files"] == [editor.uri("pick.btq")]
+    assert (tmp_path / "pick.btq").read_text("utf-8") == IMPORTED.replace("M->", "SequenceStar")
+    assert editor.close() == ""
 
 
 @pytest.mark.scheduled

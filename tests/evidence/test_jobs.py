@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pickle
 import shutil
+from concurrent.futures import process
 from pathlib import Path
 
 import pytest
@@ -84,6 +85,14 @@ def test_processes_that_share_no_memory(logs: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(parallel, "START", "spawn")
     one = run_btq("verify", "0.btlog", "1.btlog", "--mission", "lab.btq", cwd=logs)
     assert one[0] == 1
+    assert run_btq("verify", "0.btlog", "1.btlog", "--mission", "lab.btq", "--jobs", "2", cwd=logs) == one
+
+
+def test_where_there_are_no_processes_one_does_it_all(logs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a browser, where Python finds that it has no semaphores."""
+    one = run_btq("verify", "0.btlog", "1.btlog", "--mission", "lab.btq", cwd=logs)
+    monkeypatch.setattr(process, "_system_limits_checked", True)
+    monkeypatch.setattr(process, "_system_limited", "no semaphores")
     assert run_btq("verify", "0.btlog", "1.btlog", "--mission", "lab.btq", "--jobs", "2", cwd=logs) == one
 
 
