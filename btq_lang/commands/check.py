@@ -11,8 +11,8 @@ from btq_lang.checks import check, check_each
 from btq_lang.checks.includes import is_reported_beside
 from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
 from btq_lang.commands.options import Refused, refuse
-from btq_lang.commands.output import is_coloured, tell
-from btq_lang.commands.reporting import FOR_PEOPLE, form_of, report_problem, write_report
+from btq_lang.commands.output import FOR_PEOPLE, is_coloured, tell
+from btq_lang.commands.reporting import form_of, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.render import Finding, Report
 from btq_lang.util.record import replace
