@@ -11,6 +11,7 @@ One invariant: nothing here concerns behavior trees or imports another room.
     reach.py        what is reached from something, step by step
     grouping.py     what belongs together, by what it has in common
     globs.py        patterns of paths
+    processes.py    processes that share the work of a command
     toml_places.py  positions of keys in a TOML text
     garbage.py      pauses of the garbage collector
     version.py      the version of btq

@@ -19,6 +19,7 @@ from btq_lang import __version__
 from btq_lang.catalog.language import SIGNS
 from btq_lang.catalog.verdicts import VERDICTS
 from btq_lang.evidence.verdicts import WORST_FIRST
+from btq_lang.util import processes
 from btq_lang.workspace.config import parse_project
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -488,7 +489,11 @@ def test_a_broken_project_file_is_trouble(btq: Run, tmp_path: Path) -> None:
     assert done.stderr.startswith("btq: btq.toml:1:1: ")
 
 
-def test_many_files_on_several_processors_give_the_same_report(btq: Run, tmp_path: Path) -> None:
+@pytest.mark.parametrize("start", ["fork", "spawn"])
+def test_many_files_on_several_processors_give_the_same_report(
+    start: str, btq: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(processes, "START", start)
     for number in range(30):
         (tmp_path / f"m{number}.btq").write_text(WRONG.replace("Main", f"Main{number}"))
     one, two = btq("check", "--jobs", "1"), btq("check", "--jobs", "2")
