@@ -103,6 +103,29 @@ def test_no_command_and_unknown_words_are_usage_errors(btq: Run) -> None:
     assert "unknown-node" in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("mixed", "ordered"),
+    [
+        ("check a.btq --output-format json b.btq", "check --output-format json a.btq b.btq"),
+        ("format a.btq --check b.btq", "format --check a.btq b.btq"),
+        ("build a.btq --no-enforce b.btq", "build --no-enforce a.btq b.btq"),
+        ("trace a.btq --format csv b.btq", "trace --format csv a.btq b.btq"),
+        ("diff a.btq --format json b.btq", "diff --format json a.btq b.btq"),
+        ("explain takes --color never at most", "explain --color never takes at most"),
+        ("graph --format dot a.btq --qualities", "graph --format dot --qualities a.btq"),
+        ("schema xsd --target 4.6 a.btq", "schema --target 4.6 xsd a.btq"),
+    ],
+)
+def test_options_and_paths_may_come_in_any_order(btq: Run, tmp_path: Path, mixed: str, ordered: str) -> None:
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.btq").write_text(
+            WRONG.replace("Main", name) if name == "b" else "BehaviorTree a\n    Dock\n"
+        )
+    done, expected = btq(*mixed.split()), btq(*ordered.split())
+    assert (done.stdout, done.stderr, done.returncode) == (expected.stdout, expected.stderr, expected.returncode)
+    assert "unrecognized" not in done.stderr
+
+
 @pytest.mark.parametrize("command", ["build", "import"])
 @pytest.mark.parametrize(
     ("output", "message"),
