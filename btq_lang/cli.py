@@ -6,10 +6,12 @@ their results.  A command imports what it needs when it runs, because most runs 
 
 from __future__ import annotations
 
+import codecs
 import gc
 import os
 import sys
 from collections.abc import Callable, Sequence
+from io import BytesIO, TextIOWrapper
 from typing import Any
 
 CLEAN, FINDINGS, TROUBLE = 0, 1, 2
@@ -41,10 +43,12 @@ def program() -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns its exit code.  `arguments` exclude the program's name; None: those of the process."""
     if sys.stdout is None or sys.stderr is None:  # closed before the start: `btq check >&-`
-        from io import BytesIO, TextIOWrapper
-
         nobody = TextIOWrapper(BytesIO(), encoding="utf-8")
         sys.stdout, sys.stderr = sys.stdout or nobody, sys.stderr or nobody
+    codecs.register_error("readable", _readable)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):  # a program that calls this may have put something else there
+            stream.reconfigure(errors="readable")
     given = list(sys.argv[1:] if arguments is None else arguments)
     if given in (["--version"], ["-V"]):
         from btq_lang.util.version import __version__
@@ -69,6 +73,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if unknown:
         command.error(f"unrecognized arguments: {' '.join(unknown)}")
     return _finish(name, _command(name), options)
+
+
+def _readable(error: UnicodeError) -> tuple[str, int]:
+    """Replace characters that an output lacks; imported only then."""
+    from btq_lang.util.readable import replaced
+
+    return replaced(error)
 
 
 def _plain_check(paths: Sequence[str]) -> int:

@@ -7,7 +7,7 @@ import re
 from argparse import ArgumentParser, ArgumentTypeError, RawDescriptionHelpFormatter
 from collections.abc import Callable
 from functools import cache
-from typing import Final, NoReturn, TypeAlias
+from typing import Any, Final, NoReturn, TypeAlias
 
 from btq_lang.commands.options import CheckOptions, add_server_options
 from btq_lang.commands.verdict_formats import FORMATS as VERDICT_FORMATS
@@ -53,6 +53,17 @@ class Parser(ArgumentParser):
     """A parser that suggests what an invalid choice was probably meant to be, as argparse does since Python 3.14."""
 
     add = ArgumentParser.add_argument
+    _is_mixing = False
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As in argparse, but a command's options and paths may come in any order, except with `--`."""
+        if self._subparsers is not None or self._is_mixing or "--" in args:
+            return super().parse_known_args(args, namespace)
+        self._is_mixing = True  # it parses twice: without paths, and what is left
+        try:
+            return self.parse_known_intermixed_args(args, namespace)
+        finally:
+            self._is_mixing = False
 
     def flag(self, name: str, help: str) -> None:
         """Add an option without a value."""

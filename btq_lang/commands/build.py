@@ -17,7 +17,7 @@ from btq_lang.btcpp.side_file import is_side_file, side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.commands.building import errors, for_target
-from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
+from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem, write_stdout
 from btq_lang.commands.options import refuse
 from btq_lang.commands.output import is_coloured, tell
 from btq_lang.diagnostics.model import Place
@@ -123,7 +123,7 @@ def build(options: Namespace, files: Files) -> Outcome:
     if STDIN in options.paths:
         for output in made:
             if output.path == files.stdin:
-                sys.stdout.write(output.text)
+                write_stdout(output.text)
         return Outcome(0, watched)
     targets = [target for output in made for target in _targets(output)]
     gone = () if options.output else stale_outputs(os.path.dirname(path) for path in built)

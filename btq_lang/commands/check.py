@@ -11,8 +11,8 @@ from btq_lang.checks import check, check_each
 from btq_lang.checks.includes import is_reported_beside
 from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
 from btq_lang.commands.options import Refused, refuse
-from btq_lang.commands.output import is_coloured, tell
-from btq_lang.commands.reporting import FOR_PEOPLE, form_of, report_problem, write_report
+from btq_lang.commands.output import FOR_PEOPLE, is_coloured, tell
+from btq_lang.commands.reporting import form_of, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.render import Finding, Report
 from btq_lang.util.record import replace
@@ -71,10 +71,18 @@ def _writing_problem(options: CheckOptions) -> str | None:
 
 def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     """Check once; returns the exit code and the files that another run depends on."""
-    trees = [path for path in options.paths if not path.endswith(YAML_SUFFIXES)]
-    named = (*options.nav2_params, *(path for path in options.paths if path not in trees))
+    others = tuple(path for path in options.paths if _is_other(path))
+    refused: tuple[LoadProblem, ...] = ()
+    if others:
+        from btq_lang.commands.other_files import sorted_out
+
+        files.project_files, refused = sorted_out(others)
+    no_trees = {*files.project_files, *(each.path for each in refused)}
+    trees = [path for path in options.paths if not path.endswith(YAML_SUFFIXES) and absolute(path) not in no_trees]
+    named = (*options.nav2_params, *(path for path in options.paths if path.endswith(YAML_SUFFIXES)))
     files.nav2_params = tuple(dict.fromkeys(map(absolute, named)))
     groups, problems = files.groups(trees, options.stdin_filename, with_xml=True, for_checks=True)
+    problems += refused
     groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
     empty = no_mission_below(trees, groups, "no .btq file and no BehaviorTree.CPP XML")
     try:
@@ -100,7 +108,13 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     except Refused as reason:
         print(f"btq check: {reason}", file=sys.stderr)
         code = 2
-    return code, (*_watched(groups), *(each.path for each in files.parameter_files))
+    return code, (*_watched(groups), *files.project_files, *(each.path for each in files.parameter_files))
+
+
+def _is_other(path: str) -> bool:
+    """Whether a path names a file that is no mission; without a suffix it is one, such as a stream of a shell."""
+    kinds = (*SUFFIXES, *XML_SUFFIXES, *YAML_SUFFIXES)
+    return bool(os.path.splitext(path)[1]) and not path.endswith(kinds) and not os.path.isdir(path)
 
 
 def _report(
@@ -146,14 +160,16 @@ def _report(
 
         findings = together(findings)
     why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)
+    checked += files.project_files
     report = Report(tuple(findings), texts, checked, problems, why_empty, known)
     write_report(report, options, mended)
     if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
         print(f"btq check: {empty}", file=sys.stderr)
-    if problems or empty:
+    mistakes = [each for each in problems if each.path in files.project_files]
+    if len(mistakes) < len(problems) or empty:
         return 2
-    fails = any(finding.diagnostic.effective_severity in _FAILS for finding in findings)
-    return int(fails and not options.exit_zero)
+    fails = mistakes or any(finding.diagnostic.effective_severity in _FAILS for finding in findings)
+    return int(bool(fails) and not options.exit_zero)
 
 
 def _parameter_files(files: Files, options: CheckOptions) -> tuple[ParameterFile, ...]:

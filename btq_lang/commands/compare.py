@@ -38,7 +38,8 @@ def _compared(options: Namespace, store: str, sides: tuple[str, str], at_least: 
     except (NoEngine, Unknown) as error:
         of = f" with the label {options.label}" if options.label is not None and isinstance(error, Unknown) else ""
         raise Refused(f"{error}{of}") from error
-    write_output(options.output, write(found, options.by, sides, form_of(options, FORMATS)))
+    form = form_of(options, FORMATS)
+    write_output(options.output, write(found, options.by, sides, form), form)
     return int(any(each.is_worse for each in found))
 
 

@@ -16,7 +16,7 @@ from btq_lang.commands.files import STDIN, Files, Group
 from btq_lang.commands.git import Commit, revisions
 from btq_lang.commands.opening import Disk
 from btq_lang.commands.options import Refused, refuse
-from btq_lang.commands.output import is_coloured
+from btq_lang.commands.output import is_coloured, write_output
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.diff import Place, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, Comparison, ManualEdit, Side, compared, without_made_models
@@ -34,8 +34,7 @@ def run(options: Namespace) -> int:
     for comparison in comparisons:
         for side in (comparison.old, comparison.new):
             _warn(side)
-    for line in _rendered(comparisons, options):
-        print(line)
+    write_output(None, "".join(f"{line}\n" for line in _rendered(comparisons, options)), options.format)
     return int(any(comparison.changes for comparison in comparisons))
 
 

@@ -96,11 +96,13 @@ class Files:
         stdin: the path assigned to standard input, once it was read.
         folders: the bases of paths that are shown: the current folder, or an editor's folders.
         nav2_params: parameter files of Nav2 besides those that projects name.
-        parameter_files: all of them that were read for the last request.
+        project_files: those whose mistakes are requested, and not only reported with their missions.
+        parameter_files: all parameter files that were read for the last request.
     """
 
     def __init__(self) -> None:
         self.nav2_params: tuple[str, ...] = ()
+        self.project_files: tuple[str, ...] = ()
         self.parameter_files: list[ParameterFile] = []
         self.overlay: dict[str, str] = {}
         self.stdin: str | None = None
@@ -169,7 +171,7 @@ class Files:
             )
             groups += (_with_cpp(group, folders) for group in found_groups)
             problems += found_problems
-        for path in self.nav2_params:
+        for path in (*self.nav2_params, *self.project_files):
             project_of(path)
         for key, home in {home.path or "": home for home in projects.values()}.items():
             if key not in members:  # no tree of it is checked, but its parameters of Nav2 may be

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Final
 
@@ -80,7 +79,7 @@ def show_fixes(before: Iterable[Group], after: Iterable[Group], is_coloured: boo
             seen.add(path)
             texts = old.workspace.files[path].source, new.workspace.files[path].source
             for line in text_diff(shown(path), *texts, is_coloured=is_coloured):
-                sys.stdout.write(line)
+                write_stdout(line)
                 is_changed = True
     return is_changed
 

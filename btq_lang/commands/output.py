@@ -6,7 +6,7 @@ import errno
 import os
 import sys
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.commands.files import write_stdout
 from btq_lang.commands.options import Refused
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from argparse import Namespace
 
     from btq_lang.commands.options import CheckOptions
+
+FOR_PEOPLE: Final = ("full", "concise", "table", "text")
 
 
 def form_of(options: Namespace, forms: Sequence[str]) -> str:
@@ -54,16 +56,21 @@ def mission_problem(option: str, path: str | None, form: str | None) -> str | No
     return None
 
 
-def write_output(path: str | None, text: str) -> None:
+def write_output(path: str | None, text: str, form: str | None = None) -> None:
     """Write a text to a file, or (None, `-`) to standard output.
+
+    Files are UTF-8, and so is what programs read. A text for people, which `form` says, is in the encoding of standard
+    output, with what can be read instead of characters that it lacks.
 
     Raises:
         Refused: the file cannot be written.
     """
-    if path is None or path == "-":
-        write_stdout(text)
-    else:
+    if path is not None and path != "-":
         write_file(path, text)
+    elif form in FOR_PEOPLE:
+        sys.stdout.write(text)
+    else:
+        write_stdout(text)
 
 
 def write_file(path: str, content: str | bytes) -> None:

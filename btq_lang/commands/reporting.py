@@ -6,16 +6,13 @@ import os
 import sys
 from collections.abc import Iterator, Mapping
 from itertools import chain
-from typing import Final
 
 from btq_lang.commands.files import STDIN
 from btq_lang.commands.options import CheckOptions
-from btq_lang.commands.output import is_coloured, mission_problem, terminal_width, write_output
+from btq_lang.commands.output import FOR_PEOPLE, is_coloured, mission_problem, terminal_width, write_output
 from btq_lang.render import Report, render, with_paths
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import absolute, shown
-
-FOR_PEOPLE: Final = ("full", "concise")
 
 
 def form_of(options: CheckOptions, environment: Mapping[str, str]) -> str:
@@ -60,8 +57,8 @@ def write_report(report: Report, options: CheckOptions, mended: int) -> None:
     colour = options.color == "always" if options.output_file else is_coloured(options, stream.isatty())
     pieces = _pieces(_named(report, form), form, options.statistics, colour, width)
     last = f"Fixed {counted(mended, 'problem')}\n" if mended and form in FOR_PEOPLE else ""
-    if options.output_file:
-        write_output(options.output_file, "".join((*pieces, last)))
+    if options.output_file or (form not in FOR_PEOPLE and stream is sys.stdout):
+        write_output(options.output_file, "".join((*pieces, last)), form)
     else:
         stream.writelines(chain(pieces, (last,)))
 

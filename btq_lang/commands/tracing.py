@@ -30,8 +30,9 @@ def run(options: Namespace) -> int:
     table = trace_tables(parts, options.bundle, verdicts_of=verdicts_of)
     to_terminal = options.output is None and sys.stdout.isatty()
     colour = is_coloured(options, to_terminal)
-    text = table.write(form_of(options, FORMATS), colour=colour, width=terminal_width() if to_terminal else 120)
-    write_output(options.output, text)
+    form = form_of(options, FORMATS)
+    text = table.write(form, colour=colour, width=terminal_width() if to_terminal else 120)
+    write_output(options.output, text, form)
     if wrong:
         return 2
     if table.errors:

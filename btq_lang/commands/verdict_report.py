@@ -49,14 +49,15 @@ def print_report(options: Namespace, report: Report, missions: Sequence[Candidat
         write_summary(options.summary, report)
         return 0
     to_terminal = options.output is None and sys.stdout.isatty()
+    form = form_of(options, FORMATS)
     text = write(
         report,
         missions,
-        form_of(options, FORMATS),
+        form,
         colour=is_coloured(options, to_terminal),
         verbose=options.verbose,
         width=terminal_width() if to_terminal else None,
     )
-    write_output(options.output, text)
+    write_output(options.output, text, form)
     wrong = report.verdicts - {SATISFIED} if options.strict else report.verdicts & {VIOLATED}
     return int(bool(wrong) and not options.exit_zero)

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import multiprocessing
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from typing import Final
 
 from btq_lang.evidence.judging import JudgedLog, Means, judge
-
-# A forked process has the missions already; otherwise each process builds them once.
-START = "fork" if "fork" in multiprocessing.get_all_start_methods() else None
+from btq_lang.util.processes import pool
 
 _means: Means | None = None
 
@@ -19,15 +15,15 @@ _means: Means | None = None
 def judge_all(logs: Sequence[str], means: Means, jobs: int) -> Iterator[JudgedLog]:
     """What was found in each log, in order; if a process is ended from outside, a problem instead of the rest."""
     # DuckDB, which may have threads here already, does not work in a forked process.
-    context = multiprocessing.get_context(START if means.keeping is None else "spawn")
+    start = None if means.keeping is None else "spawn"
     try:
-        pool = ProcessPoolExecutor(min(jobs, len(logs)), context, _begin, (means,))
+        processes = pool(min(jobs, len(logs)), _begin, (means,), start)
     except NotImplementedError:  # there are no processes in a browser
         yield from (judge(log, means) for log in logs)
         return
-    with pool:
+    with processes:
         try:
-            yield from pool.map(_judge, logs)
+            yield from processes.map(_judge, logs)
         except BrokenProcessPool:
             yield JudgedLog(0, (), (), (_ENDED,))
 

@@ -6,6 +6,7 @@ odds have been edited since are judged again by what was measured, and those on 
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 from weakref import ReferenceType, ref
@@ -192,7 +193,7 @@ def _finding(shown: Shown, node: ResolvedNode, judged: Judged, root: str) -> Dia
     notes: tuple[str, ...] = ()
     if verdict.violations:
         worst = worst_violation(verdict)
-        log = worst.source if worst.source.startswith("/") else f"{root}/{worst.source}"
+        log = worst.source if os.path.isabs(worst.source) else f"{root}/{worst.source}"
         related.append(Related(Place(Span(0, 0), log), f"run {worst.run} is in this log"))
         notes = (explained(verdict, worst, {}),)
     rule = _RULES[verdict.verdict]

@@ -321,8 +321,11 @@ def _literal(text: str) -> str:
     return text.replace("%", "%%")
 
 
+@lru_cache(_MOST_KEPT)  # every place in a diagnostic has one
 def _uri_of(path: str) -> str:
-    return "file://" + _url_of(path) if path.startswith("/") else path
+    if path[1:3] == ":/":  # a drive of Windows
+        return f"file:///{path[:2]}{quote(path[2:])}"
+    return f"file://{quote(path)}" if path.startswith("/") else path
 
 
 def _path_of(url: str) -> str:
@@ -332,15 +335,6 @@ def _path_of(url: str) -> str:
     from urllib.request import url2pathname
 
     return url2pathname(url)
-
-
-@lru_cache(_MOST_KEPT)  # every place in a diagnostic has one
-def _url_of(path: str) -> str:
-    if os.name != "nt":
-        return quote(path)
-    from urllib.request import pathname2url  # as above
-
-    return pathname2url(path)
 
 
 def markdown(text: str) -> types.MarkupContent:

@@ -23,13 +23,13 @@ from typing import Protocol as Shape
 from lsprotocol import types
 from pygls.capabilities import get_capability
 from pygls.exceptions import JsonRpcException
-from pygls.io_ import StdoutWriter, run_async
+from pygls.io_ import run_async
 from pygls.lsp.server import LanguageServer
 
 from btq_lang import ide as features
 from btq_lang.commands import failures
 from btq_lang.lsp.convert import Converter
-from btq_lang.lsp.protocol import Json, Messages, Protocol
+from btq_lang.lsp.protocol import Json, Messages, Output, Protocol
 from btq_lang.util.version import __version__
 from btq_lang.workspace.queries import Cancelled
 
@@ -128,14 +128,12 @@ class Server(LanguageServer):
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
         """As in pygls, except for how messages are read."""
         self._stop_event = Event()
-        self.protocol.set_writer(StdoutWriter(stdout or sys.stdout.buffer))
+        self.protocol.set_writer(Output(stdout or sys.stdout.buffer, self._end))
         reader = Messages(stdin or sys.stdin.buffer, self._end_soon)
         self.has_message = lambda: reader.has_message
         report = self.report_server_error
         try:
             asyncio.run(run_async(self._stop_event, reader, self.protocol, error_handler=report))
-        except BrokenPipeError:
-            logging.getLogger(__name__).error("the editor has gone")
         except (KeyboardInterrupt, SystemExit):
             pass
         finally:
@@ -162,9 +160,13 @@ class Server(LanguageServer):
 
     def _end_soon(self) -> None:
         """Exit a while after the editor has closed the input, if a long step, such as reading folders, goes on."""
-        timer = Timer(POLL, os._exit, (self.exit_code,))
+        timer = Timer(POLL, self._end)
         timer.daemon = True
         timer.start()
+
+    def _end(self) -> None:
+        """Exit without waiting for the thread that reads messages, as `sys.exit` would."""
+        os._exit(self.exit_code)
 
     async def _end_with(self, process: int) -> None:
         while _is_running(process):
@@ -172,7 +174,7 @@ class Server(LanguageServer):
         try:
             logging.getLogger(__name__).error("the editor's process %d has ended", process)
         finally:  # the log may have no reader
-            os._exit(self.exit_code)  # `sys.exit` would wait for the thread that reads messages
+            self._end()
 
     # ---- tracing ----
 

@@ -16,6 +16,7 @@ from typing import Any, BinaryIO
 from cattrs import ClassValidationError, transform_error
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidRequest, JsonRpcServerNotInitialized
+from pygls.io_ import StdoutWriter
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
 Plain = dict[str, Any]  # what json writes directly
@@ -185,10 +186,29 @@ class Messages:
             found = _LENGTH.match(line)
             length = int(found[1]) if found else length
         if length:
-            self._head = [b"Content-Length: %d\r\n" % length, b"\r\n"]
             self._body = self._stream.read(length)
+        if length and len(self._body) == length:  # an editor that crashes may end within a message
+            self._head = [b"Content-Length: %d\r\n" % length, b"\r\n"]
             self.has_message = True
         else:
+            self._at_end()
+
+
+class Output(StdoutWriter):
+    """Outgoing messages.
+
+    Args:
+        at_end: called when nobody reads them any more.
+    """
+
+    def __init__(self, stream: BinaryIO, at_end: Callable[[], None]) -> None:
+        super().__init__(stream)
+        self._at_end = at_end
+
+    def write(self, data: bytes) -> None:
+        try:
+            super().write(data)
+        except OSError:
             self._at_end()
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.render.report import Finding, Report
 from btq_lang.util.text import counted
+from btq_lang.workspace.loader import is_project_file
 
 _WORDS = {
     Severity.ERROR: "error",
@@ -21,6 +22,8 @@ def summary(report: Report) -> str:
     if not report.findings and not report.checked:
         return f"No files were checked: {report.why_empty}" if report.why_empty else "No files were checked"
     if not report.findings and report.troubles:
+        if all(is_project_file(each.path) and each.path in report.checked for each in report.troubles):
+            return f"Found {counted(len(report.troubles), 'error')}"
         return "Found nothing, but not every file could be read or written"
     known = f", and {report.known} in the baseline" if report.known else ""
     if not report.findings:

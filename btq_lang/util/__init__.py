@@ -4,12 +4,14 @@ One invariant: nothing here concerns behavior trees or imports another room.
 
     text.py         spans, edits and the index of lines: the basis of all positions in a file
     source_map.py   maps a generated text to its source, and back
+    readable.py     characters that an output's encoding lacks
     spelling.py     names similar to a misspelt one
     record.py       immutable classes, without the start-up time of dataclasses
     fields.py       the fields of such a class, and of the compiled ones that are like it
     reach.py        what is reached from something, step by step
     grouping.py     what belongs together, by what it has in common
     globs.py        patterns of paths
+    processes.py    processes that share the work of a command
     toml_places.py  positions of keys in a TOML text
     garbage.py      pauses of the garbage collector
     version.py      the version of btq

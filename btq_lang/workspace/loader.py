@@ -12,6 +12,7 @@ import errno
 import os
 import re
 import stat
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import BinaryIO
 
@@ -26,6 +27,7 @@ _PACKAGE_NAME = re.compile(r"<name>\s*(\S+?)\s*</name>")
 _HEAD = 4096  # bytes that nearly always show what a file is
 IS_SPECIAL = "cannot be read: expected a regular file, found a pipe or a device"
 _BOM = "\ufeff"
+_PAUSES = (0.01, 0.1, 0.5) if os.name == "nt" else ()  # seconds between attempts to rename
 
 
 class LoadProblem(Record):
@@ -277,7 +279,7 @@ def write_whole(path: str, content: str | bytes) -> None:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        os.replace(file.name, path)
+        _replace(file.name, path)
     except BaseException:
         os.unlink(file.name)
         raise
@@ -403,6 +405,18 @@ def _temporary(folder: str) -> BinaryIO:
             return open(os.path.join(folder, f".btq-{os.getpid()}-{number}.tmp"), "xb")
         except FileExistsError:  # another thread's, or one that a killed process left
             number += 1
+
+
+def _replace(new: str, path: str) -> None:
+    """Rename a file; Windows refuses while another program reads the old one, such as one that looks for viruses."""
+    for pause in _PAUSES:
+        try:
+            os.replace(new, path)
+        except PermissionError:
+            time.sleep(pause)
+        else:
+            return
+    os.replace(new, path)
 
 
 def _sync(folder: str) -> None:

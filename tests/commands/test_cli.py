@@ -19,6 +19,7 @@ from btq_lang import __version__
 from btq_lang.catalog.language import SIGNS
 from btq_lang.catalog.verdicts import VERDICTS
 from btq_lang.evidence.verdicts import WORST_FIRST
+from btq_lang.util import processes
 from btq_lang.workspace.config import parse_project
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -100,6 +101,29 @@ def test_no_command_and_unknown_words_are_usage_errors(btq: Run) -> None:
     done = btq("check", "--select", "unknown-nod")
     assert (done.returncode, done.stdout) == (2, "")
     assert "unknown-node" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("mixed", "ordered"),
+    [
+        ("check a.btq --output-format json b.btq", "check --output-format json a.btq b.btq"),
+        ("format a.btq --check b.btq", "format --check a.btq b.btq"),
+        ("build a.btq --no-enforce b.btq", "build --no-enforce a.btq b.btq"),
+        ("trace a.btq --format csv b.btq", "trace --format csv a.btq b.btq"),
+        ("diff a.btq --format json b.btq", "diff --format json a.btq b.btq"),
+        ("explain takes --color never at most", "explain --color never takes at most"),
+        ("graph --format dot a.btq --qualities", "graph --format dot --qualities a.btq"),
+        ("schema xsd --target 4.6 a.btq", "schema --target 4.6 xsd a.btq"),
+    ],
+)
+def test_options_and_paths_may_come_in_any_order(btq: Run, tmp_path: Path, mixed: str, ordered: str) -> None:
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.btq").write_text(
+            WRONG.replace("Main", name) if name == "b" else "BehaviorTree a\n    Dock\n"
+        )
+    done, expected = btq(*mixed.split()), btq(*ordered.split())
+    assert (done.stdout, done.stderr, done.returncode) == (expected.stdout, expected.stderr, expected.returncode)
+    assert "unrecognized" not in done.stderr
 
 
 @pytest.mark.parametrize("command", ["build", "import"])
@@ -488,7 +512,11 @@ def test_a_broken_project_file_is_trouble(btq: Run, tmp_path: Path) -> None:
     assert done.stderr.startswith("btq: btq.toml:1:1: ")
 
 
-def test_many_files_on_several_processors_give_the_same_report(btq: Run, tmp_path: Path) -> None:
+@pytest.mark.parametrize("start", ["fork", "spawn"])
+def test_many_files_on_several_processors_give_the_same_report(
+    start: str, btq: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(processes, "START", start)
     for number in range(30):
         (tmp_path / f"m{number}.btq").write_text(WRONG.replace("Main", f"Main{number}"))
     one, two = btq("check", "--jobs", "1"), btq("check", "--jobs", "2")

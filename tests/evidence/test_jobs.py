@@ -18,6 +18,7 @@ from btq_lang.evidence.evaluate import Findings, MissionEvaluation
 from btq_lang.evidence.judging import JudgedLog, Means, judge
 from btq_lang.evidence.model import Session
 from btq_lang.evidence.verdicts import MissionVerdicts
+from btq_lang.util import processes
 from btq_lang.util.record import replace
 
 HERE = Path(__file__).parent
@@ -82,7 +83,7 @@ def test_several_processes_print_what_one_does(form: str, logs: Path) -> None:
 
 
 def test_processes_that_share_no_memory(logs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parallel, "START", "spawn")
+    monkeypatch.setattr(processes, "START", "spawn")
     one = run_btq("verify", "0.btlog", "1.btlog", "--mission", "lab.btq", cwd=logs)
     assert one[0] == 1
     assert run_btq("verify", "0.btlog", "1.btlog", "--mission", "lab.btq", "--jobs", "2", cwd=logs) == one

@@ -119,6 +119,38 @@ def test_it_ends_with_its_standard_input(is_shut_down: bool, editor: Editor) -> 
     assert editor.process.wait(timeout=20) == (0 if is_shut_down else 1)
 
 
+@pytest.mark.parametrize("is_shut_down", [False, True])
+def test_it_ends_in_silence_when_nobody_reads_its_answers(is_shut_down: bool, editor: Editor) -> None:
+    """While its standard input stays open."""
+    server = editor.process
+    assert server.stdin is not None
+    assert server.stdout is not None
+    assert server.stderr is not None
+    if is_shut_down:
+        editor.request("shutdown")
+    server.stdout.close()
+    editor.send(id=100, method="textDocument/hover", params=editor.at("main.btq", 1, 5))
+    assert (server.wait(timeout=20), server.stderr.read()) == (0 if is_shut_down else 1, b"")
+
+
+def test_it_ends_in_silence_when_nobody_reads_its_findings(editor: Editor) -> None:
+    server = editor.process
+    assert server.stdout is not None
+    assert server.stderr is not None
+    server.stdout.close()
+    editor.open("other.btq", "BehaviorTree Other\n    Pick (\n")
+    assert (server.wait(timeout=20), server.stderr.read()) == (1, b"")
+
+
+def test_it_ends_in_silence_where_its_input_ends_within_a_message(editor: Editor) -> None:
+    server = editor.process
+    assert server.stdin is not None
+    assert server.stderr is not None
+    server.stdin.write(b'Content-Length: 500\r\n\r\n{"jsonrpc"')
+    server.stdin.close()
+    assert (server.wait(timeout=20), server.stderr.read()) == (1, b"")
+
+
 def test_it_ends_with_its_standard_input_while_it_reads_folders(tmp_path: Path) -> None:
     """As with a folder so large that it takes minutes, without handling messages."""
     program = (

@@ -576,3 +576,15 @@ def test_answers_stay_while_xml_that_includes_files_cannot_be_read(tmp_path: Pat
     assert after is not None
     assert ([*after.files], after.store) == (files, store)
     assert session.diagnostics(main) == ()
+
+
+@pytest.mark.parametrize(
+    ("path", "uri"),
+    [
+        ("/home/a b/ü.btq", "file:///home/a%20b/%C3%BC.btq"),
+        ("C:/a b/ü.btq", "file:///C:/a%20b/%C3%BC.btq"),
+        ("https://btq.dev/rules", "https://btq.dev/rules"),
+    ],
+)
+def test_the_addresses_of_files(path: str, uri: str) -> None:
+    assert Converter().uri(path) == uri

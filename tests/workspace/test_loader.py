@@ -332,6 +332,24 @@ def test_a_failure_on_the_way_leaves_the_old_file_and_nothing_else(
     assert (os.listdir(), (folder / "a.btq").read_text()) == (["a.btq"], "old")
 
 
+def test_a_file_that_another_program_reads_is_replaced_a_little_later(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on Windows, where a file that is open cannot be replaced."""
+    make(folder, "a.btq: old")
+    refusals, replace = [PermissionError(), PermissionError()], os.replace
+
+    def refuse(old: str, new: str) -> None:
+        if refusals:
+            raise refusals.pop()
+        replace(old, new)
+
+    monkeypatch.setattr(loader, "_PAUSES", (0, 0))
+    monkeypatch.setattr(os, "replace", refuse)
+    write_whole("a.btq", "new")
+    assert (os.listdir(), (folder / "a.btq").read_text()) == (["a.btq"], "new")
+
+
 def test_what_cannot_be_written_is_refused_before_anything_happens(folder: Path) -> None:
     make(folder, "a.btq: old", "sub/x")
     with pytest.raises(UnicodeEncodeError):

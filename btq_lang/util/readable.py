@@ -1,0 +1,35 @@
+"""Text for people in an encoding that lacks some of its characters, such as cp1252 in a pipe on Windows."""
+
+from __future__ import annotations
+
+import unicodedata
+from typing import Final
+
+
+def replaced(error: UnicodeError) -> tuple[str, int]:
+    """What to write instead of the characters that cannot be encoded, and where to go on.
+
+    An error handler for `codecs.register_error`.  Most are replaced by one character, so that columns stay aligned.
+    """
+    assert isinstance(error, UnicodeEncodeError), "asked only for what is written"
+    character = error.object[error.start]
+    plain = unicodedata.normalize("NFKD", character).encode("ascii", "ignore").decode()
+    return _INSTEAD.get(character) or plain or "?", error.start + 1
+
+
+_INSTEAD: Final = {
+    **dict.fromkeys("–—−", "-"),
+    **dict.fromkeys("‘’", "'"),
+    **dict.fromkeys("“”„‟«»", '"'),
+    **dict.fromkeys("µμ", "u"),
+    **dict.fromkeys("×✖", "x"),
+    "°": "deg",
+    "·": "*",
+    "÷": "/",
+    "→": "->",
+    "⇉": "=>",
+    "≤": "<=",
+    "≥": ">=",
+    "≠": "!=",
+    "Ω": "ohm",
+}
