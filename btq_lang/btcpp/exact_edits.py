@@ -68,11 +68,6 @@ def respelt(file: File, edits: Iterable[Edit]) -> Iterator[Edit]:
             yield from (Edit(end, new) for end in closing_name(xml, span.start, xml[span.start : span.end]))
 
 
-def declares_version_4(xml: str) -> bool:
-    """Whether XML says that it is for version 4 of the engine."""
-    return _VERSION_4.search(xml) is not None
-
-
 def _is_tag(old: str, new: str) -> bool:
     """Whether both tags are written as they are, and neither or both are a category in front of an ID."""
     if old in CATEGORIES or new in CATEGORIES:
@@ -94,7 +89,6 @@ def closing_name(xml: str, begin: int, tag: str) -> Iterator[Span]:
             return
 
 
-_VERSION_4: Final = re.compile(r"""\bBTCPP_format\s*=\s*["']\s*4\s*["']""")
 _QUOTES: Final = ('"', "'")
 # Attributes whose place in a line says what they are, or that say how others are read.
 _PLACED: Final = frozenset(

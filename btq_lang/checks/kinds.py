@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
@@ -14,7 +13,7 @@ from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
 from btq_lang.checks import lookups
-from btq_lang.checks.engines import old_words
+from btq_lang.checks.engines import is_for_version_3, old_words
 from btq_lang.checks.lookups import Declaration
 from btq_lang.checks.view import COUNTS, SECOND, View, misspelt_clause
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
@@ -222,8 +221,7 @@ def likely_category(seen: ResolvedNode) -> str:
 
 def way_in(view: View) -> tuple[str, ...]:
     """How to turn XML for version 3 into a file for version 4."""
-    origin = view.look_up(lookups.origin)
-    if origin is None or _SAYS_VERSION_4.search(origin.text):
+    if not view.is_xml or not view.ask(is_for_version_3):
         return ()
     return ("`btq import` converts the file to .btq in the syntax of version 4",)
 
@@ -372,4 +370,3 @@ _MANY: Final = 5
 
 # Words of version 3 that an import translates.
 _TRANSLATED: Final = frozenset(("SequenceStar", "RetryUntilSuccesful", "SubTreePlus"))
-_SAYS_VERSION_4: Final = re.compile(r"""BTCPP_format\s*=\s*["']\s*4""")

@@ -15,7 +15,7 @@ from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.syntax.tree import Apply, Include, Model, Models, Port, Root, Tree, models_in
 from btq_lang.util.record import Record
-from btq_lang.workspace.file import Definition, Origin
+from btq_lang.workspace.file import Definition, Origin, Signs
 from btq_lang.workspace.inputs import of_name, of_viewpoint
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.port_types import is_text, meetings
@@ -172,13 +172,10 @@ def node_paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
 
 
 @of_viewpoint
-def declared_format(workspace: Workspace, viewpoint: str) -> str | None:
-    """The BTCPP_format of an XML file, empty if it has none; None for a file in this language."""
-    file = workspace.files[viewpoint]
-    if file.origin is None:
-        return None
-    given = [pair for root in file.of_type(Root) for pair in root.attributes if pair.key.text == "BTCPP_format"]
-    return next((pair.value.text.strip() for pair in given if pair.value is not None), "")
+def signs(workspace: Workspace, viewpoint: str) -> Signs | None:
+    """What an XML file says of its version of the engine; None for any other file."""
+    written = workspace.files[viewpoint].origin
+    return written.signs if written is not None else None
 
 
 @of_viewpoint

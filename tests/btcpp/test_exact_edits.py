@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from seeds import share_of
 
-from btq_lang.btcpp.exact_edits import declares_version_4, exact_edits
+from btq_lang.btcpp.exact_edits import exact_edits
 from btq_lang.btcpp.opening import file_of
 from btq_lang.util.text import Edit, Span, apply_edits
 
@@ -87,20 +87,6 @@ def test_xml_that_is_broken_or_built_has_no_edits() -> None:
         file = file_of("tree.xml", xml)
         at = max(file.text.find("Dock"), 0)
         assert (exact_edits(file, Edit(Span(at, at + 4), "Park")) is not None) is expected
-
-
-@pytest.mark.parametrize(
-    ("xml", "expected"),
-    [
-        (XML, True),
-        ("<root BTCPP_format = '4'>", True),
-        ('<root BTCPP_format="3">', False),
-        ("<root>", False),
-        ('<root xBTCPP_format="4">', False),
-    ],
-)
-def test_what_declares_version_4(xml: str, expected: bool) -> None:
-    assert declares_version_4(xml) is expected
 
 
 def test_words_of_published_files(shared: Path) -> None:
