@@ -4,6 +4,7 @@ invariant."""
 from __future__ import annotations
 
 import posixpath
+import re
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.syntax.tree import Apply, Include, Model, Models, Port, Root, Tree, models_in
+from btq_lang.syntax.tree import Apply, Include, Item, Model, Models, Port, Root, Tree, Verbatim, models_in
 from btq_lang.util.record import Record
 from btq_lang.workspace.file import Definition, Origin, Signs
 from btq_lang.workspace.inputs import of_name, of_viewpoint
@@ -265,6 +266,19 @@ def trees(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
 
 
 @of_viewpoint
+def first_palette(workspace: Workspace, viewpoint: str) -> Facts | None:
+    """The first TreeNodesModel of the file."""
+    return next((each for each in workspace.files[viewpoint].facts.values() if is_palette(each.item)), None)
+
+
+def is_palette(item: Item) -> bool:
+    """Whether an item is a TreeNodesModel, also one with attributes, which the language has no words for."""
+    return isinstance(item, Models) or (
+        isinstance(item, Verbatim) and item.text is not None and _PALETTE(item.text.text) is not None
+    )
+
+
+@of_viewpoint
 def is_tree_of_mission(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a file that is linked with this one by includes, in either direction, has a tree of the name."""
     return workspace.factory is None and any(
@@ -503,3 +517,5 @@ def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
 
 
 distribution = of_viewpoint(_distribution)
+
+_PALETTE = re.compile(r"\s*<\s*TreeNodesModel\b").match

@@ -154,7 +154,7 @@ def duplicate_port(view: View) -> Iterator[Diagnostic]:
     for owner in view.owners:
         first: dict[str, Word] = {}
         for port in owner.ports:
-            name = port.name
+            name = port.id
             if name is None or not name.text:
                 continue
             if first.setdefault(name.text, name) is not name:
@@ -199,9 +199,11 @@ def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
     if seen.is_placeholder or (seen.is_subtree and not PORTS_OF_SUBTREE.holds(view.target)):
         return None
     if seen.is_subtree:
-        # The engine reads `default = ""` as none, and requires outputs too.
-        declared = [(port, port.default.text if port.default else "") for port in ports_beside(view, seen)]
-        ports = [replace(as_kind(port), required=port.id is not None and not default) for port, default in declared]
+        # The engine reads `default = ""` as none, requires outputs too, and adds up the models of a tree.
+        name = seen.node.id
+        others = view.look_up(lookups.ports_of_models, Kind.MODEL, name.text) if name is not None else ()
+        declared = {port.id.text: port for port in chain(ports_beside(view, seen), *others) if port.id is not None}
+        ports = [replace(port, required=not port.default) for port in map(as_kind, declared.values())]
         return KnownPorts(tuple(ports)) if ports else None
     if seen.kind is not None:
         return _builtin_ports(seen.kind.tag, is_before_4(view.target))

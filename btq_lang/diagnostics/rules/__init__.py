@@ -80,7 +80,8 @@ _TABLE = (
     Rule("xml-syntax", _E, "XML that the engine cannot read"),
     Rule("xml-root", _E, "a document element that is not `root`"),
     Rule("xml-not-well-formed", _W, "XML that the engine reads although it is not well-formed"),
-    Rule("xml-ignored", _W, "text or trees in XML that the engine ignores"),
+    Rule("xml-ignored", _W, "text, elements or attributes in XML that the engine ignores"),
+    Rule("refused-element", _E, "models, a port of a tree or an include that the engine refuses"),
     # Nodes and their ports.
     Rule("unknown-node", _W, "a node kind that neither the engine nor any model defines"),
     Rule("no-models", _H, "many nodes with ports, and no model for any of them"),
