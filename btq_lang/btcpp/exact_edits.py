@@ -45,7 +45,8 @@ def exact_edits(file: File, edit: Edit) -> tuple[Edit, ...] | None:
                 return tuple(Edit(span, new) for span in ends) or None
             if xml[stop : stop + 1] not in _QUOTES and not _PLACED.isdisjoint((old, new)):
                 return None
-            is_quoted = file.text[start - 1 : start] == '"' and not is_string
+            # What follows a reference is in a value, and a value with one is in quotes.
+            is_quoted = (file.text[start - 1 : start] == '"' or xml[begin - 1] == ";") and not is_string
             is_same = string(new) == f'"{new}"' if is_quoted else new in (name(new), value(new))
             return (Edit(Span(begin, stop), new),) if is_same else None
     return None
@@ -94,7 +95,7 @@ _QUOTES: Final = ('"', "'")
 _PLACED: Final = frozenset(
     ("ID", "name", "type", "default", "path", "ros_pkg", "code", "BTCPP_format", "main_tree_to_execute")
 )
-_SPECIAL: Final = re.compile("[<>&\"'\\\\\r\n\t]")
+_SPECIAL: Final = re.compile("[<&\"'\\\\\r\n\t]")
 _TAG: Final = re.compile(
     r"""<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>"""
     r"""|<(?P<closing>/?)(?P<name>[^\s/>!?"']+)(?:[^>"'/]|/(?!>)|"[^"]*"|'[^']*')*(?P<empty>/?)>""",

@@ -138,6 +138,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         ports.duplicate_attribute,
         *_OF_PORTS,
         literals.old_entry,
+        literals.json_in_braces,
         literals.number_for_text,
         mixed_types.entry_with_two_types,
         outputs.literal_for_output,

@@ -57,6 +57,8 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
             fix = replace_fix(f"Replace `{name.text}` with `{category}`", name.span, category)
             message = f"btq reads `{name.text}` as a node here; did you mean `{category}`?"
             yield Diagnostic("unknown-node", name.span, message, fixes=(fix,))
+        elif seen.parent is not None and seen.parent.is_subtree and name.text in OF_SUBTREE:
+            continue  # child_count says what replaced it
         elif not (_is_refused(view, seen, name) or _is_clause(seen) or misspelt_clause(seen.node)):
             yield from _unknown(view, seen, name)
 
@@ -275,6 +277,8 @@ def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]
         others = "the other nodes of this file" if has_palette else "most nodes of this file"
         notes = (f"{others} have models; to declare this one, write {shortest}",)
     severity = None if likely or has_palette else Severity.HINT
+    if has_palette and view.factory is not None and view.factory.nodes:
+        severity = Severity.ERROR  # the program registers what `nodes` names, and refuses to load any other
     message = f"unknown node `{name.text}`{did_you_mean(likely)}"
     yield Diagnostic("unknown-node", name.span, message, notes=notes, fixes=fixes, severity=severity)
 
@@ -364,6 +368,9 @@ def _is_of_node(view: View, other: Declaration, symbol: Symbol) -> bool:
     """Whether a symbol is the model of a node that a file of nodes declares with these ports and maybe more."""
     return has_ports_of(other.symbol, symbol) and other.path in view.look_up(lookups.node_paths)
 
+
+# What version 2 wrote below a SubTree.
+OF_SUBTREE: Final = ("remap",)
 
 # A file with so many nodes with ports should declare them.
 _MANY: Final = 5

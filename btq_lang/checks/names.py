@@ -77,8 +77,14 @@ def _of_id(view: View, seen: ResolvedNode, name: Word, reason: str) -> Iterator[
         yield _tree_name(view, name, reason, ())  # else it is reported at the tree, or as a missing tree
     elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
         refused = _refused("node ID", name, reason, _explicit(seen, name))
-        older = view.pin_note(lambda version: model_name_problem(name.text, version) is None)
-        yield replace(refused, notes=_NO_NAMESPACES if _is_prefixed(name.text) else older)
+        older: tuple[str, ...] = ()
+        if _is_prefixed(name.text):
+            older = _NO_NAMESPACES
+        elif name.text.casefold() == "root":
+            older = ("<BehaviorTree> is the root: put its node directly into it, or several into a <Sequence>",)
+        elif seen.is_defined:  # else no version knows it
+            older = view.pin_note(lambda version: model_name_problem(name.text, version) is None)
+        yield replace(refused, notes=older)
 
 
 def _is_prefixed(name: str) -> bool:

@@ -7,6 +7,7 @@ another language is offered only where exactly that edit can be made there.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 
 from btq_lang.btcpp.exact_edits import exact_edits
 from btq_lang.checks.engines import is_for_version_4
@@ -59,7 +60,9 @@ def _placed(workspace: Workspace, path: str, fix: Fix) -> Fix | None:
             is_safe = is_safe and workspace.store.ask(is_for_version_4, change.place.path or path)
         else:
             return None
-    return Fix(fix.title, tuple(changes), is_safe)
+    spans = sorted(each.place.span for each in changes if each.place.path in (None, path))
+    is_torn = any(one.end > other.start for one, other in pairwise(spans))  # of a word that the language has in pieces
+    return None if is_torn else Fix(fix.title, tuple(changes), is_safe)
 
 
 # What can only be wrong with the spelling of a .btq file.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cache
 from itertools import chain
@@ -16,7 +17,7 @@ from btq_lang.catalog.versions import ID_IN_COMPACT_FORM, PORTS_OF_SUBTREE, UNDE
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import model_related, way_in
 from btq_lang.checks.view import View, ports_beside
-from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, written
 from btq_lang.util.record import replace
@@ -28,6 +29,14 @@ from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 _OWN = frozenset(("ID", "name"))
+_REFERRED = re.compile('[<&"]')
+# Attributes that people miss, in small letters, and whether `_skipIf` says the opposite.
+_WISHED = {
+    **dict.fromkeys(
+        ("_onlyif", "_runif", "_executeif", "_tickif", "_doif", "_if", "_when", "_enableif", "_enabledif"), True
+    ),
+    **dict.fromkeys(("_unless", "_notif", "_ignoreif", "_disableif", "_disabledif"), False),
+}
 
 
 def unknown_port(view: View) -> Iterator[Diagnostic]:
@@ -120,6 +129,9 @@ def unknown_attribute(view: View) -> Iterator[Diagnostic]:
                 continue
             if key in _KEPT:
                 continue
+            if key.casefold() in _WISHED and pair.value is not None:
+                yield _wished(view, pair, pair.value)
+                continue
             likely = (_OF_TODAY[key],) if key in _OF_TODAY else near(key, _KEPT)
             if not likely:
                 kept = "from 4.7 on the engine keeps it for the node's own code"
@@ -132,6 +144,24 @@ def unknown_attribute(view: View) -> Iterator[Diagnostic]:
                 fixes = tuple(replace_fix(f"Replace `{key}` with `{name}`", pair.key.span, name) for name in likely)
                 message = f"the engine silently ignores `{key}`{did_you_mean(likely)}"
                 yield Diagnostic("unknown-attribute", pair.key.span, message, fixes=fixes)
+
+
+def _wished(view: View, pair: Pair, value: Word) -> Diagnostic:
+    """An attribute that no version has, with the one that does what it says."""
+    key, is_negated = pair.key.text, _WISHED[pair.key.text.casefold()]
+    script = f"!({value.text})" if is_negated else value.text
+    changes = [Change(Place(pair.key.span), "_skipIf")]
+    inner = Span(value.start + 1, value.end - 1)
+    if is_negated and not value.quoted:
+        changes.append(Change(Place(value.span), written(script)))
+    elif is_negated and _REFERRED.search(value.text[1:-1]):  # XML spells it in pieces: change the first and the last
+        changes.append(Change(Place(Span(inner.start, inner.start + 1)), f"!({value.text[0]}"))
+        changes.append(Change(Place(Span(inner.end - 1, inner.end)), f"{value.text[-1]})"))
+    elif is_negated:
+        changes.append(Change(Place(inner), script))
+    fix = Fix(f'Write `_skipIf="{script}"`', tuple(changes))
+    message = f"no version of the engine has `{key}`, and it ignores it silently; did you mean `_skipIf`?"
+    return Diagnostic("unknown-attribute", pair.key.span, message, notes=(f'write `_skipIf="{script}"`',), fixes=(fix,))
 
 
 def duplicate_attribute(view: View) -> Iterator[Diagnostic]:

@@ -34,7 +34,7 @@ def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str
     )
     home = find_project(".")
     groups, unreadable = Files().groups(requested or [*there, home.project.root])
-    # Nobody asked for missions of a project that is broken elsewhere.
+    # A mission of a broken project elsewhere was not requested.
     elsewhere = {each.path for each in unreadable if is_project_file(each.path) and each.path != home.path}
     broken = elsewhere if not requested else set()
     problems += [str(each) for each in unreadable if each.path not in broken]

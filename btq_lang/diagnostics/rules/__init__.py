@@ -95,6 +95,7 @@ _TABLE = (
     Rule("trailing-text-in-number", _W, "text after a number that the engine drops silently"),
     Rule("version-3-file", _W, "XML for version 3 of the engine in a project that does not say so"),
     Rule("old-entry", _W, "`${key}`, which is an entry only to version 3 of the engine"),
+    Rule("json-in-braces", _W, "JSON in braces, which the engine reads as the name of an entry"),
     Rule("number-for-text", _E, "a number that a SubTree passes to a string port below it"),
     Rule("entry-with-two-types", _E, "a blackboard entry that is connected to ports of two types"),
     Rule("quantity-on-unitless-port", _E, "a quantity on a port whose unit is unknown or has another dimension"),
