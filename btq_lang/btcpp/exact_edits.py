@@ -45,7 +45,8 @@ def exact_edits(file: File, edit: Edit) -> tuple[Edit, ...] | None:
                 return tuple(Edit(span, new) for span in ends) or None
             if xml[stop : stop + 1] not in _QUOTES and not _PLACED.isdisjoint((old, new)):
                 return None
-            is_quoted = file.text[start - 1 : start] == '"' and not is_string
+            # What follows a reference is in a value, and a value with one is in quotes.
+            is_quoted = (file.text[start - 1 : start] == '"' or xml[begin - 1] == ";") and not is_string
             is_same = string(new) == f'"{new}"' if is_quoted else new in (name(new), value(new))
             return (Edit(Span(begin, stop), new),) if is_same else None
     return None
@@ -66,11 +67,6 @@ def respelt(file: File, edits: Iterable[Edit]) -> Iterator[Edit]:
         yield Edit(span, new)
         if xml[span.start - 1 : span.start] == "<":
             yield from (Edit(end, new) for end in closing_name(xml, span.start, xml[span.start : span.end]))
-
-
-def declares_version_4(xml: str) -> bool:
-    """Whether XML says that it is for version 4 of the engine."""
-    return _VERSION_4.search(xml) is not None
 
 
 def _is_tag(old: str, new: str) -> bool:
@@ -94,13 +90,12 @@ def closing_name(xml: str, begin: int, tag: str) -> Iterator[Span]:
             return
 
 
-_VERSION_4: Final = re.compile(r"""\bBTCPP_format\s*=\s*["']\s*4\s*["']""")
 _QUOTES: Final = ('"', "'")
 # Attributes whose place in a line says what they are, or that say how others are read.
 _PLACED: Final = frozenset(
     ("ID", "name", "type", "default", "path", "ros_pkg", "code", "BTCPP_format", "main_tree_to_execute")
 )
-_SPECIAL: Final = re.compile("[<>&\"'\\\\\r\n\t]")
+_SPECIAL: Final = re.compile("[<&\"'\\\\\r\n\t]")
 _TAG: Final = re.compile(
     r"""<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>"""
     r"""|<(?P<closing>/?)(?P<name>[^\s/>!?"']+)(?:[^>"'/]|/(?!>)|"[^"]*"|'[^']*')*(?P<empty>/?)>""",

@@ -15,9 +15,11 @@ from typing import Final, TypeAlias
 from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element, Text
 from btq_lang.btcpp.generated import may_be_generated, without_generated
 from btq_lang.btcpp.reader import read
-from btq_lang.btcpp.version3 import Change, is_version_3, translated
+from btq_lang.btcpp.signs import signs
+from btq_lang.btcpp.version3 import Change, translated
 from btq_lang.btcpp.wording import comment, is_kept, kind, name, pair, spelt_parts, string, string_of, type_, value
 from btq_lang.catalog.nodes import PLACEHOLDERS
+from btq_lang.catalog.versions import is_before_4
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import RULES, Severity
 from btq_lang.syntax.tokens import CATEGORIES
@@ -26,6 +28,9 @@ from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import Record
 from btq_lang.util.source_map import Places
 from btq_lang.util.text import Span
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.engine_version import written_for
+from btq_lang.workspace.file import Signs
 
 IncludedAs: TypeAlias = Callable[[str], str]
 # A word of a line and what it was made of: the value of an attribute, a span of the XML, or (None, if it is the
@@ -49,6 +54,7 @@ class Imported(Record):
         places: which part of `text` was made of which part of the XML; empty for a text for people.
         described: number of elements whose requirements or qualities a build had described; they are left out.
         defines: the IDs of the trees and models in the XML.
+        signs: what the XML says of the version of the engine that it is written for.
     """
 
     text: str
@@ -57,6 +63,7 @@ class Imported(Record):
     places: Places
     described: int = 0
     defines: frozenset[str] = frozenset()
+    signs: Signs = Signs()
 
     @property
     def is_complete(self) -> bool:
@@ -65,7 +72,11 @@ class Imported(Record):
 
 
 def import_xml(
-    text: str, keep_v3: bool = False, for_people: bool = True, included_as: IncludedAs | None = None
+    text: str,
+    keep_v3: bool = False,
+    for_people: bool = True,
+    included_as: IncludedAs | None = None,
+    engines: tuple[str, ...] | None = None,
 ) -> Imported:
     """A BehaviorTree.CPP XML file as a .btq file.
 
@@ -85,6 +96,7 @@ def import_xml(
         for_people: write `->` for Sequence and so on, and break long lines; for checks, nodes keep their names and
             lines are not broken, so that a comment silences a rule for all of an element, and places are known.
         included_as: gives the path in an `include` for that of an `<include>`; None: the same.
+        engines: the versions of the engine that the XML is written for (`written_for`); None: as it says itself.
     """
     with NotCollecting():
         done = read(text)
@@ -98,13 +110,15 @@ def import_xml(
             return Imported("", (), (*done.problems, problem), Places())
         writer = _Writer(text, for_people, included_as or (lambda path: path))
         described = without_generated(done.document, writer.changes) if may_be_generated(text) else 0
-        if not keep_v3 and is_version_3(root):
+        said = signs(root)
+        engines = written_for(Project(), None, said) if engines is None else engines
+        if not keep_v3 and engines and is_before_4(engines[-1]):
             translated(root, writer.changes)
         writer.document(done.document)
         changes = tuple(sorted(writer.changes, key=lambda change: change.span))
         problems = (*done.problems, *writer.ignored)
         places = Places() if writer.marks is None else Places(writer.marks, writer.out, located)
-        return Imported("".join(writer.out), changes, problems, places, described, frozenset(_defined(root)))
+        return Imported("".join(writer.out), changes, problems, places, described, frozenset(_defined(root)), said)
 
 
 def _defined(root: Element) -> Iterator[str]:

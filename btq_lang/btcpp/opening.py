@@ -21,4 +21,5 @@ def file_of(path: str, text: str) -> File:
     from btq_lang.btcpp.importing import import_xml  # large, and most missions do without XML
 
     done = import_xml(text, keep_v3=True, for_people=False)
-    return File(path, done.text, Origin(text, done.places, done.diagnostics, done.is_complete, done.defines))
+    origin = Origin(text, done.places, done.diagnostics, done.is_complete, done.defines, signs=done.signs)
+    return File(path, done.text, origin)

@@ -14,9 +14,8 @@ from functools import partial
 from typing import Final, TypeAlias
 
 from btq_lang.btcpp.document import Attribute, Element
-from btq_lang.catalog.attributes import OF_VERSION_4
 from btq_lang.catalog.literals import OLD_ENTRY, is_pointer
-from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS, available
+from btq_lang.catalog.nodes import KNOWN_WORDS, OLD_PORTS
 from btq_lang.catalog.versions import VERSION_3
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.util.record import Record
@@ -35,14 +34,6 @@ class Change(Record):
 
     span: Span
     message: str
-
-
-def is_version_3(root: Element) -> bool:
-    """Whether a file is meant for version 3: it does not declare version 4, and uses nothing new."""
-    format_ = root.get("BTCPP_format")
-    if format_ is not None:
-        return format_.strip() == "3"
-    return not any(_is_new(element) for element in root.walk())
 
 
 def translated(root: Element, changes: list[Change]) -> None:
@@ -153,13 +144,5 @@ def _remove_ports(model: Element, changes: list[Change]) -> None:
             model.children.remove(port)
 
 
-def _is_new(element: Element) -> bool:
-    """Whether only version 4 understands an element: its tag, or one of its attributes."""
-    if element.tag in _NEW_NODES:
-        return True
-    return any(attribute.name in OF_VERSION_4 for attribute in element.attributes)
-
-
 # The tags of elements that may have to be translated because of their tag or their ID.
 _MAY_BE_OLD: Final = frozenset((*KNOWN_WORDS, *(tag for tag, _ in OLD_PORTS), *CATEGORIES))
-_NEW_NODES: Final = frozenset(tag for tag, kind in BUILTINS.items() if not available(kind, VERSION_3))

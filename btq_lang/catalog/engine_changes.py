@@ -23,7 +23,7 @@ _NUMBER: Final = r"-?\d+(\.\d*)?([eE][-+]?\d+)?"
 
 
 def _cases(since: str, what: str, value: str, after: str = "") -> tuple[Change, ...]:
-    instead = "give the cases and the variable one form"
+    instead = "write the cases and the variable in one form"
     ports = (f"case_{number}" for number in range(1, 7))
     return tuple(Change(since, _SWITCHES, what, instead, port, value, after=after) for port in ports)
 
@@ -50,14 +50,31 @@ ENGINE_CHANGES: Final = (
         "4.0",
         ("Repeat", "RetryUntilSuccessful"),
         "returns RUNNING between two cycles; before, all cycles of a child that completes at once were one tick",
+        "write a node of your own for what must be done in one tick",
         when="completes at once",
     ),
     *(
-        Change("4.1", (node,), f"is skipped if it has no cycle; before, it {then}", port=port, value="0", until="4.7")
+        Change(
+            "4.1",
+            (node,),
+            f"is skipped if it has no cycle; before, it {then}",
+            f"write Always{'Success' if then == 'succeeded' else 'Failure'} in its place",
+            port,
+            "0",
+            until="4.7",
+        )
         for node, port, then, _ in _WITHOUT_CYCLE
     ),
     *(
-        Change("4.7", (node,), f"{now} if it has no cycle; before, it was skipped", port=port, value="0", after="4.1")
+        Change(
+            "4.7",
+            (node,),
+            f"{now} if it has no cycle; before, it was skipped",
+            "remove it, or write `_skipIf` on it",
+            port,
+            "0",
+            after="4.1",
+        )
         for node, port, _, now in _WITHOUT_CYCLE
     ),
     *_cases("4.5.1", "compares numbers as numbers, so that `5` is also `5.0`; before, only their texts", _NUMBER),
@@ -100,11 +117,18 @@ ENGINE_CHANGES: Final = (
         when="queue of a script",
     ),
     NO_DELAY,
-    Change("4.9", ("Delay",), "waits for `delay_msec`, which 4.8.3 and 4.8.4 do not read", after="4.8.3"),
+    Change(
+        "4.9",
+        ("Delay",),
+        "waits for `delay_msec`, which 4.8.3 and 4.8.4 do not read",
+        "remove it where nothing should wait",
+        after="4.8.3",
+    ),
     Change(
         "4.9",
         _WATCHES,
         "halts its child when it is halted; before, the child stayed RUNNING, and went on from there",
+        "put what should go on beside it, not below it",
         when="runs on",
     ),
 )

@@ -7,7 +7,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
 
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
-    kinds.py, names.py, ports.py, children.py, trees.py, includes.py   what the engine would refuse
+    kinds.py, names.py, ports.py, children.py, trees.py, includes.py, elements.py   what the engine would refuse
     literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
     entries.py, pointers.py, writers.py, misspelt.py, mixed_types.py   blackboard entries
     engines.py, version3.py   which versions of the engine a file is for
@@ -32,6 +32,7 @@ from btq_lang.checks import (
     clauses,
     counts,
     demands,
+    elements,
     empty,
     includes,
     kinds,
@@ -77,6 +78,8 @@ _OF_PORTS: tuple[Check, ...] = (
     literals.invalid_literal,
 )
 _OF_MODELS: tuple[Check, ...] = (
+    elements.refused_element,
+    elements.ignored_element,
     kinds.duplicate_definition,
     ports.duplicate_attribute,
     *_OF_PORTS,
@@ -102,8 +105,16 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         requirements.conflicting_requirement,
         ports.duplicate_attribute,
         moving.moving_include,
+        elements.ignored_element,
     ),
-    syntax.Root: (trees.unknown_tree, empty.empty_text, ports.duplicate_attribute, version3.version_3_file),
+    syntax.Verbatim: (elements.refused_element, elements.ignored_element),
+    syntax.Root: (
+        trees.unknown_tree,
+        empty.empty_text,
+        ports.duplicate_attribute,
+        version3.version_3_file,
+        elements.ignored_element,
+    ),
     syntax.Tree: (
         trees.unknown_tree,
         trees.duplicate_tree,
@@ -114,6 +125,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         trees.tree_root_count,
         trees.nested_too_deep,
         trees.tree_named_like_node,
+        elements.refused_element,
         kinds.unknown_node,
         kinds.no_models,
         kinds.not_an_engine_node,
@@ -126,6 +138,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         ports.duplicate_attribute,
         *_OF_PORTS,
         literals.old_entry,
+        literals.json_in_braces,
         literals.number_for_text,
         mixed_types.entry_with_two_types,
         outputs.literal_for_output,

@@ -6,17 +6,20 @@ import re
 from collections.abc import Iterator
 
 from btq_lang.catalog.kinds import CHILDREN
+from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.nodes import is_by_children
-from btq_lang.checks.kinds import declared_category, model_related
+from btq_lang.catalog.versions import is_before_4
+from btq_lang.checks.kinds import OF_SUBTREE, declared_category, model_related
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Node
+from btq_lang.syntax.tree import Node, is_name, written
 from btq_lang.util.text import Span
 from btq_lang.workspace.resolved import ResolvedNode
 
 _INTEGER = re.compile(r"-?[0-9]{1,18}")
+_QUOTED = re.compile("'([^']*)'")
 
 
 def child_count(view: View) -> Iterator[Diagnostic]:
@@ -42,6 +45,7 @@ def child_count(view: View) -> Iterator[Diagnostic]:
         notes: tuple[str, ...] = ()
         if seen.behavior is not None and seen.behavior.late_count and count:
             notes = ("the engine loads this and throws when the node is ticked",)
+        notes += tuple(_remapped(view, seen))
         related = model_related(view, seen, "declared by its model") if seen.node.category is None else ()
         if most is not None and count > most:
             extra = seen.node.children[most]
@@ -80,6 +84,26 @@ def switch_cases(view: View) -> Iterator[Diagnostic]:
             message = f"{seen.shown_kind} lacks {' and '.join(f'`{name}`' for name in missing)}"
             note = "the engine does not report this and runs the default child"
             yield Diagnostic("switch-cases", node.head.span, message, notes=(note,), severity=Severity.WARNING)
+        yield from _constants(seen)
+
+
+def _constants(seen: ResolvedNode) -> Iterator[Diagnostic]:
+    """A variable without braces, and cases in the quotes of scripts, which a Switch compares as they are."""
+    for pair in seen.node.attributes:
+        key, value = pair.key.text, pair.value
+        if value is None or is_pointer(value.text):
+            continue
+        if key == "variable" and value.text:
+            message = f"{seen.shown_kind} compares the text `{value.text}`, not the entry of that name"
+            entry = f"{{{value.text}}}"
+            fixes = (replace_fix(f"Write the entry `{entry}`", value.span, entry),) if is_name(value.text) else ()
+            notes = () if fixes else ("write the entry that chooses the child, `{key}`",)
+            yield Diagnostic("switch-cases", value.span, message, notes=notes, fixes=fixes, severity=Severity.WARNING)
+        elif is_case(seen, key) and (quoted := _QUOTED.fullmatch(value.text)):
+            plain = quoted[1]
+            message = f"{seen.shown_kind} compares the quotes of `{value.text}` too: only scripts have quoted texts"
+            fixes = (replace_fix(f"Write `{plain}`", value.span, written(plain)),) if plain else ()
+            yield Diagnostic("switch-cases", value.span, message, fixes=fixes, severity=Severity.WARNING)
 
 
 def parallel_threshold(view: View) -> Iterator[Diagnostic]:
@@ -97,6 +121,15 @@ def parallel_threshold(view: View) -> Iterator[Diagnostic]:
             notes = ("the engine throws when the node is ticked; -1 means all children",)
             fixes = (replace_fix("Write `-1` for all children", value.span, "-1"),)
             yield Diagnostic("parallel-threshold", value.span, message, notes=notes, fixes=fixes)
+
+
+def _remapped(view: View, seen: ResolvedNode) -> Iterator[str]:
+    """How a SubTree is written that has the elements of version 2."""
+    for child in seen.node.nodes if seen.is_subtree else ():
+        inside, outside = child.attribute("internal"), child.attribute("external")
+        if child.head.text in OF_SUBTREE and inside is not None and outside is not None:
+            entry = outside.text if is_before_4(view.target) else f"{{{outside.text}}}"
+            yield f'<{child.head.text}> is of version 2 of the engine: write `{inside.text}="{entry}"` at the SubTree'
 
 
 def _is_by_children(seen: ResolvedNode) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
@@ -14,7 +13,7 @@ from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
 from btq_lang.checks import lookups
-from btq_lang.checks.engines import old_words
+from btq_lang.checks.engines import is_for_version_3, old_words
 from btq_lang.checks.lookups import Declaration
 from btq_lang.checks.view import COUNTS, SECOND, View, misspelt_clause
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
@@ -58,6 +57,8 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
             fix = replace_fix(f"Replace `{name.text}` with `{category}`", name.span, category)
             message = f"btq reads `{name.text}` as a node here; did you mean `{category}`?"
             yield Diagnostic("unknown-node", name.span, message, fixes=(fix,))
+        elif seen.parent is not None and seen.parent.is_subtree and name.text in OF_SUBTREE:
+            continue  # child_count says what replaced it
         elif not (_is_refused(view, seen, name) or _is_clause(seen) or misspelt_clause(seen.node)):
             yield from _unknown(view, seen, name)
 
@@ -222,8 +223,7 @@ def likely_category(seen: ResolvedNode) -> str:
 
 def way_in(view: View) -> tuple[str, ...]:
     """How to turn XML for version 3 into a file for version 4."""
-    origin = view.look_up(lookups.origin)
-    if origin is None or _SAYS_VERSION_4.search(origin.text):
+    if not view.is_xml or not view.ask(is_for_version_3):
         return ()
     return ("`btq import` converts the file to .btq in the syntax of version 4",)
 
@@ -277,6 +277,8 @@ def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]
         others = "the other nodes of this file" if has_palette else "most nodes of this file"
         notes = (f"{others} have models; to declare this one, write {shortest}",)
     severity = None if likely or has_palette else Severity.HINT
+    if has_palette and view.factory is not None and view.factory.nodes:
+        severity = Severity.ERROR  # the program registers what `nodes` names, and refuses to load any other
     message = f"unknown node `{name.text}`{did_you_mean(likely)}"
     yield Diagnostic("unknown-node", name.span, message, notes=notes, fixes=fixes, severity=severity)
 
@@ -367,9 +369,11 @@ def _is_of_node(view: View, other: Declaration, symbol: Symbol) -> bool:
     return has_ports_of(other.symbol, symbol) and other.path in view.look_up(lookups.node_paths)
 
 
+# What version 2 wrote below a SubTree.
+OF_SUBTREE: Final = ("remap",)
+
 # A file with so many nodes with ports should declare them.
 _MANY: Final = 5
 
 # Words of version 3 that an import translates.
 _TRANSLATED: Final = frozenset(("SequenceStar", "RetryUntilSuccesful", "SubTreePlus"))
-_SAYS_VERSION_4: Final = re.compile(r"""BTCPP_format\s*=\s*["']\s*4""")

@@ -25,6 +25,7 @@ from btq_lang.workspace.port_types import is_number
 from btq_lang.workspace.resolved import ResolvedNode
 
 _NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+_JSON = re.compile(r"[\"'\[\],]|:\s|^{")  # no name of an entry has any of that
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")
 
 
@@ -60,6 +61,19 @@ def old_entry(view: View) -> Iterator[Diagnostic]:
         notes = ("version 3 of the engine read it as an entry",)
         severity = Severity.ERROR if refused else None
         yield Diagnostic("old-entry", value.span, message, notes=notes, fixes=fixes, severity=severity)
+
+
+def json_in_braces(view: View) -> Iterator[Diagnostic]:
+    """A text in braces that no entry is called by."""
+    for _, pair, value in view.seen.values():
+        if not is_pointer(value.text) or not _JSON.search(value.text[1:-1]) or not is_port_name(pair.key.text):
+            continue
+        message = f"the engine reads `{value.text}` as an entry of that name, not as a value"
+        notes = (
+            "a port whose type reads JSON takes `json:{…}`",
+            f"for a text let a script set an entry before, `{pair.key.text} := '…'`, and pass `{{{pair.key.text}}}`",
+        )
+        yield Diagnostic("json-in-braces", value.span, message, notes=notes)
 
 
 def invalid_literal(view: View) -> Iterator[Diagnostic]:

@@ -4,6 +4,7 @@ invariant."""
 from __future__ import annotations
 
 import posixpath
+import re
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -13,9 +14,9 @@ from btq_lang.catalog.nav2 import FILES, distribution_among
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.syntax.tree import Apply, Include, Model, Models, Port, Root, Tree, models_in
+from btq_lang.syntax.tree import Apply, Include, Item, Model, Models, Port, Root, Tree, Verbatim, models_in
 from btq_lang.util.record import Record
-from btq_lang.workspace.file import Definition, Origin
+from btq_lang.workspace.file import Definition, Origin, Signs
 from btq_lang.workspace.inputs import of_name, of_viewpoint
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.port_types import is_text, meetings
@@ -172,13 +173,10 @@ def node_paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
 
 
 @of_viewpoint
-def declared_format(workspace: Workspace, viewpoint: str) -> str | None:
-    """The BTCPP_format of an XML file, empty if it has none; None for a file in this language."""
-    file = workspace.files[viewpoint]
-    if file.origin is None:
-        return None
-    given = [pair for root in file.of_type(Root) for pair in root.attributes if pair.key.text == "BTCPP_format"]
-    return next((pair.value.text.strip() for pair in given if pair.value is not None), "")
+def signs(workspace: Workspace, viewpoint: str) -> Signs | None:
+    """What an XML file says of its version of the engine; None for any other file."""
+    written = workspace.files[viewpoint].origin
+    return written.signs if written is not None else None
 
 
 @of_viewpoint
@@ -265,6 +263,19 @@ def first_tree(workspace: Workspace, viewpoint: str) -> Facts | None:
 def trees(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
     """The file's trees, in order."""
     return tuple([each for each in workspace.files[viewpoint].facts.values() if isinstance(each.item, Tree)])
+
+
+@of_viewpoint
+def first_palette(workspace: Workspace, viewpoint: str) -> Facts | None:
+    """The first TreeNodesModel of the file."""
+    return next((each for each in workspace.files[viewpoint].facts.values() if is_palette(each.item)), None)
+
+
+def is_palette(item: Item) -> bool:
+    """Whether an item is a TreeNodesModel, also one with attributes, which the language has no words for."""
+    return isinstance(item, Models) or (
+        isinstance(item, Verbatim) and item.text is not None and _PALETTE(item.text.text) is not None
+    )
 
 
 @of_viewpoint
@@ -506,3 +517,5 @@ def _distribution(workspace: Workspace, viewpoint: str) -> str | None:
 
 
 distribution = of_viewpoint(_distribution)
+
+_PALETTE = re.compile(r"\s*<\s*TreeNodesModel\b").match

@@ -97,6 +97,7 @@ def _entries(seen: ResolvedNode) -> Iterator[Diagnostic]:
                 "target-differs",
                 pair.value.span,
                 f"from {since} on `{text}` is a text that the SubTree gets, no longer the name of an entry",
+                notes=(f"write `{{{text}}}` if it is one",),
                 fixes=(fix,) if is_name(text) else (),  # `0` was hardly meant as a name
             )
 
@@ -106,7 +107,7 @@ def _first_tree(view: View) -> Iterator[Diagnostic]:
     name = view.tree_name
     if name is not None and not view.defines_here(Kind.TREE, name.text):
         what = f"from {LAST_TREE_COUNTS.since} on this tree `{name.text}` counts, no longer the first one"
-        yield Diagnostic("target-differs", name.span, what)
+        yield Diagnostic("target-differs", name.span, what, notes=("write another ID for one of them",))
 
 
 def _running(view: View, seen: ResolvedNode) -> int:

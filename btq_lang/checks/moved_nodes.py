@@ -62,12 +62,14 @@ def changed(view: View, seen: ResolvedNode, name: Word, change: Change) -> Itera
     if not change.matches(value.text if value is not None else None):
         return
     fixes: tuple[Fix, ...] = ()
+    notes = [change.instead] if change.instead else []
     if change.keeps is not None:
+        said = f'{change.port}="{change.keeps}"' if view.is_xml else f"{written(change.port)} = {written(change.keeps)}"
+        notes.append(f"write `{said}` to keep its meaning")
         fixes = adding_fix(view, seen.node, "Keep its meaning", f"{written(change.port)} = {written(change.keeps)}")
     rule = "target-breaks" if change.breaks else "target-differs"
     message = f"from {change.since.title()} on `{name.text}` {change.what}"
-    notes = (change.instead,) if change.instead else ()
-    yield Diagnostic(rule, (value or name).span, message, notes=notes, fixes=fixes)
+    yield Diagnostic(rule, (value or name).span, message, notes=tuple(notes), fixes=fixes)
 
 
 def _without_node(
@@ -78,7 +80,8 @@ def _without_node(
     instead = INSTEAD.get((gone, name.text))
     message = f"Nav2 has no `{name.text}` in {gone.title()}" + _called(renamed)
     fixes = (replace_fix(f"Replace `{name.text}` with `{renamed}`", name.span, renamed),) if renamed else ()
-    notes = (*([f"write {instead}"] if instead else ()), *differing)
+    wanted = instead or ("a node of your own, or remove it" if renamed is None else "")
+    notes = (*([f"write {wanted}"] if wanted else ()), *differing)
     return Diagnostic("target-breaks", name.span, message, notes=notes, fixes=fixes)
 
 
@@ -90,7 +93,8 @@ def _without_ports(seen: ResolvedNode, node: str, gone: frozenset[str], steps: t
         renamed = _first(RENAMED_PORTS, ((step, node, port) for step in steps))
         message = f"`{node}` has no port `{port}` in {steps[-1].title()}" + _called(renamed)
         fixes = (replace_fix(f"Replace `{port}` with `{renamed}`", pair.key.span, renamed),) if renamed else ()
-        yield Diagnostic("target-breaks", pair.key.span, message, fixes=fixes)
+        notes = () if renamed else ("remove it",)
+        yield Diagnostic("target-breaks", pair.key.span, message, notes=notes, fixes=fixes)
 
 
 def _called(renamed: str | None) -> str:

@@ -47,7 +47,7 @@ def moving_include(view: View) -> Iterator[Diagnostic]:
     steps = _steps(view)
     if path is not None and steps[:1] == ("humble",) and not path.text.startswith("/"):
         what = "from Iron on the path counts from the file that includes it, not from bt_navigator's working folder"
-        yield Diagnostic("target-differs", path.span, what)
+        yield Diagnostic("target-differs", path.span, what, notes=("write the path from the folder of this file",))
 
 
 def _steps(view: View) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from btq_lang.checks.kinds import likely_category
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Include, Model, Models, Tree, Word, is_name, models_in, written
+from btq_lang.syntax.tree import Include, Model, Models, Tree, Verbatim, Word, is_name, models_in, written
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 from btq_lang.workspace.resolved import ResolvedNode
@@ -39,8 +39,8 @@ def forbidden_name(view: View) -> Iterator[Diagnostic]:
         return
     for model in models_in(item):
         for port in model.ports if model.category.raw == "SubTree" else ():
-            if port.name is not None and (reason := port_name_problem(port.name.text, version)):
-                yield _refused("port name", port.name, reason)
+            if port.id is not None and (reason := port_name_problem(port.id.text, version)):
+                yield _refused("port name", port.id, reason)
 
 
 def duplicate_instance_name(view: View) -> Iterator[Diagnostic]:
@@ -77,8 +77,14 @@ def _of_id(view: View, seen: ResolvedNode, name: Word, reason: str) -> Iterator[
         yield _tree_name(view, name, reason, ())  # else it is reported at the tree, or as a missing tree
     elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
         refused = _refused("node ID", name, reason, _explicit(seen, name))
-        older = view.pin_note(lambda version: model_name_problem(name.text, version) is None)
-        yield replace(refused, notes=_NO_NAMESPACES if _is_prefixed(name.text) else older)
+        older: tuple[str, ...] = ()
+        if _is_prefixed(name.text):
+            older = _NO_NAMESPACES
+        elif name.text.casefold() == "root":
+            older = ("<BehaviorTree> is the root: put its node directly into it, or several into a <Sequence>",)
+        elif seen.is_defined:  # else no version knows it
+            older = view.pin_note(lambda version: model_name_problem(name.text, version) is None)
+        yield replace(refused, notes=older)
 
 
 def _is_prefixed(name: str) -> bool:
@@ -101,7 +107,8 @@ def _of_instance(view: View, seen: ResolvedNode, label: Word, version: str) -> I
 
 def _nameless(view: View, tree: Tree) -> Iterator[Diagnostic]:
     """A tree without an ID: the engine accepts it only if it is alone."""
-    read = [each for each in view.look_up(lookups.items) if isinstance(each.item, Tree | Model | Models | Include)]
+    elements = (Tree, Model, Models, Include, Verbatim)
+    read = [each for each in view.look_up(lookups.items) if isinstance(each.item, elements)]
     if len(read) > 1 and not any(problem.span.start <= tree.end for problem in view.entry.diagnostics):
         span = Span(tree.start, tree.start + len("BehaviorTree"))
         note = "the engine accepts a tree without an ID only as the only tree of a file"

@@ -7,8 +7,10 @@ another language is offered only where exactly that edit can be made there.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 
-from btq_lang.btcpp.exact_edits import declares_version_4, exact_edits
+from btq_lang.btcpp.exact_edits import exact_edits
+from btq_lang.checks.engines import is_for_version_4
 from btq_lang.checks.suppressions import is_silenced_in_xml
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 from btq_lang.util.record import replace
@@ -55,10 +57,12 @@ def _placed(workspace: Workspace, path: str, fix: Fix) -> Fix | None:
             changes.append(change)
         elif edits := exact_edits(file, Edit(change.place.span, change.text)):
             changes += [Change(Place(edit.span, change.place.path), edit.text) for edit in edits]
-            is_safe = is_safe and declares_version_4(file.origin.text)
+            is_safe = is_safe and workspace.store.ask(is_for_version_4, change.place.path or path)
         else:
             return None
-    return Fix(fix.title, tuple(changes), is_safe)
+    spans = sorted(each.place.span for each in changes if each.place.path in (None, path))
+    is_torn = any(one.end > other.start for one, other in pairwise(spans))  # of a word that the language has in pieces
+    return None if is_torn else Fix(fix.title, tuple(changes), is_safe)
 
 
 # What can only be wrong with the spelling of a .btq file.

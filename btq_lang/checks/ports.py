@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cache
 from itertools import chain
@@ -16,7 +17,7 @@ from btq_lang.catalog.versions import ID_IN_COMPACT_FORM, PORTS_OF_SUBTREE, UNDE
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import model_related, way_in
 from btq_lang.checks.view import View, ports_beside
-from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, written
 from btq_lang.util.record import replace
@@ -28,6 +29,14 @@ from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
 _OWN = frozenset(("ID", "name"))
+_REFERRED = re.compile('[<&"]')
+# Attributes that people miss, in small letters, and whether `_skipIf` says the opposite.
+_WISHED = {
+    **dict.fromkeys(
+        ("_onlyif", "_runif", "_executeif", "_tickif", "_doif", "_if", "_when", "_enableif", "_enabledif"), True
+    ),
+    **dict.fromkeys(("_unless", "_notif", "_ignoreif", "_disableif", "_disabledif"), False),
+}
 
 
 def unknown_port(view: View) -> Iterator[Diagnostic]:
@@ -120,6 +129,9 @@ def unknown_attribute(view: View) -> Iterator[Diagnostic]:
                 continue
             if key in _KEPT:
                 continue
+            if key.casefold() in _WISHED and pair.value is not None:
+                yield _wished(view, pair, pair.value)
+                continue
             likely = (_OF_TODAY[key],) if key in _OF_TODAY else near(key, _KEPT)
             if not likely:
                 kept = "from 4.7 on the engine keeps it for the node's own code"
@@ -132,6 +144,24 @@ def unknown_attribute(view: View) -> Iterator[Diagnostic]:
                 fixes = tuple(replace_fix(f"Replace `{key}` with `{name}`", pair.key.span, name) for name in likely)
                 message = f"the engine silently ignores `{key}`{did_you_mean(likely)}"
                 yield Diagnostic("unknown-attribute", pair.key.span, message, fixes=fixes)
+
+
+def _wished(view: View, pair: Pair, value: Word) -> Diagnostic:
+    """An attribute that no version has, with the one that does what it says."""
+    key, is_negated = pair.key.text, _WISHED[pair.key.text.casefold()]
+    script = f"!({value.text})" if is_negated else value.text
+    changes = [Change(Place(pair.key.span), "_skipIf")]
+    inner = Span(value.start + 1, value.end - 1)
+    if is_negated and not value.quoted:
+        changes.append(Change(Place(value.span), written(script)))
+    elif is_negated and _REFERRED.search(value.text[1:-1]):  # XML spells it in pieces: change the first and the last
+        changes.append(Change(Place(Span(inner.start, inner.start + 1)), f"!({value.text[0]}"))
+        changes.append(Change(Place(Span(inner.end - 1, inner.end)), f"{value.text[-1]})"))
+    elif is_negated:
+        changes.append(Change(Place(inner), script))
+    fix = Fix(f'Write `_skipIf="{script}"`', tuple(changes))
+    message = f"no version of the engine has `{key}`, and it ignores it silently; did you mean `_skipIf`?"
+    return Diagnostic("unknown-attribute", pair.key.span, message, notes=(f'write `_skipIf="{script}"`',), fixes=(fix,))
 
 
 def duplicate_attribute(view: View) -> Iterator[Diagnostic]:
@@ -154,7 +184,7 @@ def duplicate_port(view: View) -> Iterator[Diagnostic]:
     for owner in view.owners:
         first: dict[str, Word] = {}
         for port in owner.ports:
-            name = port.name
+            name = port.id
             if name is None or not name.text:
                 continue
             if first.setdefault(name.text, name) is not name:
@@ -199,9 +229,11 @@ def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
     if seen.is_placeholder or (seen.is_subtree and not PORTS_OF_SUBTREE.holds(view.target)):
         return None
     if seen.is_subtree:
-        # The engine reads `default = ""` as none, and requires outputs too.
-        declared = [(port, port.default.text if port.default else "") for port in ports_beside(view, seen)]
-        ports = [replace(as_kind(port), required=port.id is not None and not default) for port, default in declared]
+        # The engine reads `default = ""` as none, requires outputs too, and adds up the models of a tree.
+        name = seen.node.id
+        others = view.look_up(lookups.ports_of_models, Kind.MODEL, name.text) if name is not None else ()
+        declared = {port.id.text: port for port in chain(ports_beside(view, seen), *others) if port.id is not None}
+        ports = [replace(port, required=not port.default) for port in map(as_kind, declared.values())]
         return KnownPorts(tuple(ports)) if ports else None
     if seen.kind is not None:
         return _builtin_ports(seen.kind.tag, is_before_4(view.target))

@@ -35,14 +35,20 @@ def reactive_multiple_async(view: View) -> Iterator[Diagnostic]:
         goes_on = SKIPPED | GOES_ON[seen.flow]
         first: Node | None = None
         surely = False
-        for child in seen.node.nodes:
-            results = result(view, child)
+        pausing: Node | None = None
+        for each in seen.children:
+            child, results = each.node, result(view, each.node)
+            if pausing is not None and not surely and (_pauses(view, each) or results.first == RUNNING):
+                yield _pauses_again(seen, pausing, child)
+                break
             if first is not None and results.ever & RUNNING:
                 yield _never_gets_further(view, seen, first, child, surely)
                 break
             if first is None and not results.usual & goes_on and results.ever & goes_on:
                 first = child
                 surely = not results.first & goes_on
+            if pausing is None and results.ever & goes_on and _pauses(view, each):
+                pausing = child
 
 
 def explicit_in_reactive(view: View) -> Iterator[Diagnostic]:
@@ -124,6 +130,28 @@ def _never_gets_further(view: View, seen: ResolvedNode, first: Node, child: Node
     related = (Related(Place(first.head.span), "restarts"),)
     severity = None if surely else Severity.HINT
     return Diagnostic("reactive-multiple-async", child.head.span, message, related, notes, severity=severity)
+
+
+def _pauses(view: View, seen: ResolvedNode) -> bool:
+    """Whether it returns RUNNING between its children, unless it begins with a condition, which chooses and is meant to
+    interrupt what is beside it."""
+    if seen.kind is None or not seen.kind.pauses or len(seen.node.children) < 2 or not seen.children:
+        return False
+    return seen.children[0].category != "Condition" and bool(
+        result(view, seen.children[0].node).ever & GOES_ON.get(seen.kind.flow, 0)
+    )
+
+
+def _pauses_again(seen: ResolvedNode, first: Node, child: Node) -> Diagnostic:
+    """The finding for a child that is halted whenever another one pauses between its own children."""
+    other, this, shown = first.shown, child.shown, seen.shown_kind
+    message = f"{other} returns RUNNING between its children: it restarts whenever {this} is RUNNING, and halts it"
+    notes = (
+        f"{shown} starts with its first child at every tick, and halts all others when one returns RUNNING",
+        f"write {other} without `Async`, or put both into a node that resumes",
+    )
+    related = (Related(Place(first.head.span), "restarts"),)
+    return Diagnostic("reactive-multiple-async", child.head.span, message, related, notes)
 
 
 def _is_at_the_top(seen: ResolvedNode) -> bool:

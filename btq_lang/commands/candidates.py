@@ -17,7 +17,7 @@ from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.own_trees import NO_MISSION, OwnTree, OwnTrees
 from btq_lang.evidence.readers import NotALog, trees
 from btq_lang.evidence.readers.side import SideFile, side_file_at, side_files_beside
-from btq_lang.workspace.loader import absolute, find_project, shown
+from btq_lang.workspace.loader import absolute, find_project, is_project_file, shown
 
 if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
@@ -32,10 +32,14 @@ def candidates(requested: Sequence[str], logs: Sequence[str], problems: list[str
     found = (
         [] if requested else [each for side in sides.values() if side.mission not in there for each in _restored(side)]
     )
-    groups, unreadable = Files().groups(requested or [*there, find_project(".").project.root])
-    problems += map(str, unreadable)
+    home = find_project(".")
+    groups, unreadable = Files().groups(requested or [*there, home.project.root])
+    # A mission of a broken project elsewhere was not requested.
+    elsewhere = {each.path for each in unreadable if is_project_file(each.path) and each.path != home.path}
+    broken = elsewhere if not requested else set()
+    problems += [str(each) for each in unreadable if each.path not in broken]
     for group in groups:
-        for path in group.given:
+        for path in group.given if group.project_file not in broken else ():
             side = side_of(path, sides)
             if path.endswith(".xml") and side is not None and (built := [*_restored(side)]):
                 found += built

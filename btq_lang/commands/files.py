@@ -134,16 +134,21 @@ class Files:
         projects: dict[str, Found] = {}
         self.parameter_files.clear()
         self._sources.clear()
+        governed: dict[str, Found] = {}
         members: dict[str, dict[str, str]] = {}  # each with the folder that was requested
 
         def project_of(path: str) -> Found:
             folder = path if os.path.isdir(path) else os.path.dirname(path)
             if folder not in projects:
                 projects[folder] = find_project(folder, self.overlay)
-                known = [found for found in projects.values() if found.path == projects[folder].path]
-                if projects[folder].path is None or len(known) == 1:
-                    problems.extend(projects[folder].problems)
             return projects[folder]
+
+        def governing(path: str) -> Found:
+            """The project of something that is requested, which must be right; others may be of no concern."""
+            home = project_of(path)
+            governed[home.path or ""] = home
+            problems.extend(home.problems)
+            return home
 
         for path in (self._read_stdin(stdin_filename) if path == STDIN else absolute(path) for path in paths):
             if path == self.stdin and self._of_stdin is not None:
@@ -151,15 +156,15 @@ class Files:
                 if path not in self.overlay:
                     continue
             if path in self.overlay:
-                members.setdefault(project_of(path).path or "", {})[path] = os.path.dirname(path)
+                members.setdefault(governing(path).path or "", {})[path] = os.path.dirname(path)
                 continue
             suffixes = (*SUFFIXES, *XML_SUFFIXES) if with_xml else SUFFIXES
-            found, unreachable = collect([path], project_of(path).project, suffixes)
+            found, unreachable = collect([path], governing(path).project, suffixes)
             if with_xml and found != (path,):
                 found = self._missions(path, found)
             problems += unreachable
             for file in found:
-                home = project_of(file)
+                home = governing(file)
                 if file == path or not excluder(home.project)(file):
                     members.setdefault(home.path or "", {})[file] = path if file != path else os.path.dirname(path)
         by_path = {found.path or "": found.project for found in projects.values()}
@@ -172,8 +177,8 @@ class Files:
             groups += (_with_cpp(group, folders) for group in found_groups)
             problems += found_problems
         for path in (*self.nav2_params, *self.project_files):
-            project_of(path)
-        for key, home in {home.path or "": home for home in projects.values()}.items():
+            governing(path)
+        for key, home in governed.items():
             if key not in members:  # no tree of it is checked, but its parameters of Nav2 may be
                 problems += self._factories(home)[1]
         return tuple(groups), tuple(dict.fromkeys(problems))

@@ -19,6 +19,8 @@ from btq_lang.btcpp.logged import as_written
 from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.btcpp.version3 import Change
+from btq_lang.checks.engines import declared_engines
+from btq_lang.commands.files import Files
 from btq_lang.commands.output import is_coloured, tell
 from btq_lang.evidence.readers import SUFFIXES as LOGS
 from btq_lang.evidence.readers import NotALog, trees
@@ -54,15 +56,18 @@ def run(options: Namespace) -> int:
     return import_files(options)[0]
 
 
-def import_files(options: Namespace) -> tuple[int, tuple[str, ...]]:
+def import_files(options: Namespace, overlay: Mapping[str, str] | None = None) -> tuple[int, tuple[str, ...]]:
     """Import each file; a file that is not XML does not stop the others.
+
+    Args:
+        overlay: the texts of project files that are not on the disk yet, by path.
 
     Returns:
         the exit code, and the missions that were written.
     """
     problems: list[LoadProblem] = []
     targets = {absolute(path): _target(path, options) for path in options.files if path != _STDIN}
-    made = (_job(path, targets, options, problems) for path in options.files)
+    made = (_job(path, targets, options, problems, overlay or {}) for path in options.files)
     jobs = [job for job in made if job is not None]
     first: dict[str | int, _Job] = {}
     for job in jobs:
@@ -91,13 +96,20 @@ def _target(path: str, options: Namespace) -> str:
     return absolute(os.path.join(options.output or folder, f"{os.path.splitext(name)[0]}{ending}"))
 
 
-def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: list[LoadProblem]) -> _Job | None:
+def _job(
+    path: str,
+    targets: Mapping[str, str],
+    options: Namespace,
+    problems: list[LoadProblem],
+    overlay: Mapping[str, str],
+) -> _Job | None:
     if path == _STDIN:
         xml, problem = decoded("<stdin>", sys.stdin.buffer.read())
         if xml is None or problem is not None:  # as for a file
             problems += [problem] if problem else []
             return None
-        job = _Job("<stdin>", xml, import_xml(xml, options.keep_v3), None)
+        engines = _engines(absolute("<stdin>"), xml, overlay)
+        job = _Job("<stdin>", xml, import_xml(xml, options.keep_v3, engines=engines), None)
         return _without_side_file(job, "import the file by its name, beside its .qreq.json, to keep them")
     path = absolute(path)
     if path.endswith(LOGS) or files_in(path):
@@ -122,8 +134,17 @@ def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: li
             return named
         return os.path.relpath(other, os.path.dirname(target)).replace(os.sep, "/")
 
-    job = _Job(path, text, import_xml(text, options.keep_v3, included_as=included_as), target)
+    engines = _engines(path, text, overlay)
+    job = _Job(path, text, import_xml(text, options.keep_v3, included_as=included_as, engines=engines), target)
     return _with_side_file(job, target, options.force, problems)
+
+
+def _engines(path: str, xml: str, overlay: Mapping[str, str]) -> tuple[str, ...]:
+    """The versions of the engine that a file is written for, as a check of it takes it."""
+    files = Files()
+    files.overlay |= {**overlay, path: xml}
+    groups, _ = files.groups([path])
+    return groups[0].workspace.store.ask(declared_engines, path)
 
 
 def _of_log(path: str, target: str, options: Namespace, problems: list[LoadProblem]) -> _Job | None:

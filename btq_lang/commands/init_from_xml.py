@@ -12,34 +12,35 @@ import shlex
 import sys
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
-from btq_lang.catalog.nav2 import DISTRIBUTIONS, ports_of
-from btq_lang.catalog.versions import VERSION_3, VERSIONS
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, ENGINES, ports_of
+from btq_lang.catalog.versions import VERSION_3, VERSIONS, is_before_4
 from btq_lang.checks import check_each
-from btq_lang.checks.engines import words_of_3
+from btq_lang.checks.engines import declared_engines
 from btq_lang.commands.explain_nav2 import models_of
 from btq_lang.commands.files import Files
 from btq_lang.commands.options import Refused
+from btq_lang.commands.packages import Packages, packages_of
 from btq_lang.commands.xml_below import XmlBelow
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
+from btq_lang.workspace.engine_version import written_for
 from btq_lang.workspace.file import GROOT_SUFFIX
 from btq_lang.workspace.loader import absolute, matching, shown, write_whole
 from btq_lang.workspace.workspace import Workspace
 
 _HEAD = "# What holds for all missions of this project\n"
 _ENGINES = f"engine = {json.dumps(VERSIONS)}  # the versions of BehaviorTree.CPP that must load them\n"
-_ENGINE_3 = f"engine = {json.dumps(VERSION_3)}  # the XML is written for version 3 of BehaviorTree.CPP\n"
+_SOURCES = "# nodes = {}  # C++ that registers nodes: `btq nodes` shows what is seen of them\n"
 _WIDTH = 120
 _MANY_MORE = 10
 _EXCLUDED = """\
 exclude = {}  # converted; delete the line when `btq build` writes these files
 """
-_OF_VERSION_3 = ("humble", "iron")  # their Nav2 has version 3 of the engine, and so trees without BTCPP_format
 
 
 def run(options: Namespace) -> int:
@@ -52,16 +53,19 @@ def run(options: Namespace) -> int:
     if not workspace.files:
         raise Refused(f"no BehaviorTree.CPP XML below {options.folder}; nothing was written")
     factories = [*_factories(workspace, folder)]
+    packages = packages_of(folder)
     excluded: list[str] = []
     if options.convert:
-        from btq_lang.commands.import_xml import run as convert
+        from btq_lang.commands.import_xml import import_files
 
         files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
-        if code := convert(Namespace(files=files, output=None, force=False, keep_v3=False, xml=False)):
+        overlay = {target: f"engine = {json.dumps(packages.engines)}\n"} if packages.engines else {}
+        named = Namespace(files=files, output=None, force=False, keep_v3=False, xml=False)
+        if code := import_files(named, overlay)[0]:
             return code
         trees, models = _by_kind(workspace)
         excluded = [f"/{each}.xml" for each in patterns(folder, trees, models)]
-    engine = _ENGINE_3 if _is_for_version_3(workspace) and not options.convert else _ENGINES
+    engine = _engine_line(workspace, packages) if not options.convert else _ENGINES
     ending = ".btq" if options.convert else ".xml"
     rest = _EXCLUDED.format(json.dumps(excluded, ensure_ascii=False)) if excluded else ""
     rest += "".join(f"\n{each.written(ending)}" for each in factories)
@@ -69,11 +73,12 @@ def run(options: Namespace) -> int:
     def holds(line: str) -> bool:
         return _unknown_in(folder, line + rest) <= _unknown_in(folder, engine + rest)
 
-    nodes = nav2_line(workspace, holds)
+    nodes = nav2_line(workspace, packages.engines, holds)
     if nodes.startswith("nodes"):
         engine = ""  # a distribution has a version of its own
+    sources = _SOURCES.format(json.dumps(packages.sources)) if packages.sources else ""
     try:
-        write_whole(target, f"{_HEAD}{engine}{nodes}{rest}")
+        write_whole(target, f"{_HEAD}{engine}{nodes}{sources}{rest}{''.join(_parameters(packages.parameters))}")
     except OSError as error:
         raise Refused(f"{shown(target)}: {error.strerror}") from error
     count = f"{len(factories) or 'no'} factor{'y' if len(factories) == 1 else 'ies'}"
@@ -167,10 +172,21 @@ def _beside(workspace: Workspace, paths: list[str], lone: list[str]) -> list[str
     return found
 
 
-def _is_for_version_3(workspace: Workspace) -> bool:
-    """Whether some files are written for version 3 of the engine, and none for version 4."""
-    words = [words_of_3(workspace.store, path) for path in workspace.files]
-    return any(words) and None not in words
+def _engine_line(workspace: Workspace, packages: Packages) -> str:
+    """The line that names the versions of the engine: those that packages depend on, or else version 3 if some files
+    are written for it, and none for version 4."""
+    if packages.engines:
+        why, is_old = f"the packages depend on {packages.depends_on}", is_before_4(packages.engines[-1])
+    else:
+        engines = {workspace.store.ask(declared_engines, path) for path in workspace.files}
+        why, is_old = "the XML is written for version 3 of BehaviorTree.CPP", engines - {()} == {(VERSION_3,)}
+    return f"engine = {json.dumps(VERSION_3)}  # {why}\n" if is_old else _ENGINES
+
+
+def _parameters(paths: Iterable[str]) -> Iterator[str]:
+    """Factories that the project file may have, as comments."""
+    for path in paths:
+        yield f'\n# [[factory]]  # what bt_navigator loads\n# name = "navigator"\n# nav2 = {json.dumps(path)}\n'
 
 
 def _unknown_in(folder: str, project: str) -> set[tuple[str, int]]:
@@ -260,13 +276,17 @@ def _folders(path: str, top: str) -> Iterator[str]:
         yield posixpath.join(top, *names[:number])
 
 
-def nav2_line(workspace: Workspace, holds: Callable[[str], bool]) -> str:
+def nav2_line(workspace: Workspace, engines: tuple[str, ...], holds: Callable[[str], bool]) -> str:
     """The line of a project file that names Nav2's nodes, a comment if it is unknown which; empty if XML uses none.
-    `holds`: whether a line may be written, as far as its effect on the project is concerned."""
+
+    Args:
+        engines: the versions of the engine that the packages depend on; empty if that is unknown.
+        holds: whether a line may be written, as far as its effect on the project is concerned.
+    """
     used = _used(workspace)
     if not any(used.values()):
         return ""  # a `Wait` alone may be anybody's
-    fitting = [each for each in _of_format(workspace, used) if _has(each, used)]
+    fitting = [each for each in _of_engine(workspace, engines, used) if _has(each, used)]
     if len(fitting) == 1:
         line = f'nodes = ["nav2-{fitting[0]}"]  # the only distribution of Nav2 with the nodes and ports of the trees\n'
         if holds(line):
@@ -276,13 +296,15 @@ def nav2_line(workspace: Workspace, holds: Callable[[str], bool]) -> str:
     return f'# nodes = ["nav2-DISTRIBUTION"]  # the trees use nodes of Nav2; name yours: {fit}\n'
 
 
-def _of_format(workspace: Workspace, used: Mapping[str, set[str]]) -> Iterator[str]:
-    """The distributions whose engine reads the format of the files that use some nodes."""
-    formats = {
-        "BTCPP_format" in file.source for file in workspace.files.values() if not file.said(Kind.MODEL).isdisjoint(used)
-    }
+def _of_engine(workspace: Workspace, engines: tuple[str, ...], used: Mapping[str, set[str]]) -> Iterator[str]:
+    """The distributions with the engine that the files are for which use some nodes; Nav2's own trees declare a format
+    from version 4 on."""
+    project = replace(workspace.project, engines=engines or VERSIONS, names_all=engines == VERSIONS)
+    users = [file for file in workspace.files.values() if not file.said(Kind.MODEL).isdisjoint(used)]
+    signs = [file.origin.signs for file in users if file.origin is not None]
+    wanted = {is_before_4((written_for(project, None, each) or (VERSION_3,))[-1]) for each in signs}
     for each in DISTRIBUTIONS:
-        if formats <= {each not in _OF_VERSION_3}:
+        if wanted <= {is_before_4(ENGINES[each])}:
             yield each
 
 

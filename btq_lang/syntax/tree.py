@@ -101,7 +101,15 @@ class Port(Part):
     @property
     def id(self) -> Word | None:
         """Its name, wherever it is written: XML may have it after other attributes."""
-        return self.name or next((pair.value for pair in self.attributes if pair.key.text == "name"), None)
+        return self.name or self._said("name")
+
+    @property
+    def initial(self) -> Word | None:
+        """Its default, likewise."""
+        return self.default or self._said("default")
+
+    def _said(self, key: str) -> Word | None:
+        return next((pair.value for pair in self.attributes if pair.key.text == key), None)
 
 
 class Meta(Part):
@@ -250,7 +258,7 @@ def models_in(item: Item) -> list[Model]:
 
 def port_named(ports: Iterable[Port], name: str) -> Port | None:
     """The declared port of a name."""
-    return next((port for port in ports if port.name is not None and port.name.text == name), None)
+    return next((port for port in ports if port.id is not None and port.id.text == name), None)
 
 
 def quote(text: str) -> str:

@@ -53,6 +53,7 @@ class Project(Record):
         moves_to: the distribution of Nav2, or the version of the engine, for which its trees are checked besides
             their own.
         written_for: what `engines` was, if it now has the versions that take its files whatever they are written for.
+        names_all: whether its file names all versions, instead of none.
     """
 
     root: str = "."
@@ -75,6 +76,7 @@ class Project(Record):
     hides_nodes: bool = False
     moves_to: str | None = None
     written_for: tuple[str, ...] = ()
+    names_all: bool = False
 
     def shown(self, path: str) -> str:
         """A path for display: relative to a working folder if it is inside one, else as it is."""
@@ -101,7 +103,7 @@ class Project(Record):
     @property
     def pinned(self) -> bool:
         """Whether the project names the versions it is for."""
-        return self.engines != VERSIONS
+        return self.names_all or self.engines != VERSIONS
 
     @property
     def target(self) -> str:
@@ -146,6 +148,7 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
             at = _find(text, (*above, key, *complaint.below), complaint.value)
             problems.append(ProjectProblem(complaint.message, at))
     given = {field: value for field, value in fields.items() if value is not None}
+    given["names_all"] = given.get("engines") == VERSIONS
     if "include_paths" in given:
         given["include_paths"] = tuple(_joined(root, path) for path in given["include_paths"])
     if "baseline" in given:

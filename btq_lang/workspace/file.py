@@ -385,6 +385,22 @@ class Definition(Record):
         return Span(self.symbol.target.start, self.symbol.target.end).shifted(self.entry.start)
 
 
+class Signs(Record):
+    """What XML says of the version that it is written for.
+
+    Attributes:
+        format: its BTCPP_format; empty if it has none.
+        is_new: whether something in it is read by version 4 alone.
+        old: what version 4 does not read as version 3 does, as it is spelt; empty if something is new.
+        is_refused: whether version 4 refuses some of that.
+    """
+
+    format: str = ""
+    is_new: bool = False
+    old: tuple[str, ...] = ()
+    is_refused: bool = False
+
+
 class Origin(Record):
     """The file in another language from which a file was translated.
 
@@ -395,6 +411,7 @@ class Origin(Record):
         is_complete: whether all of it could be read, so that a name that is not in the file's text is not in this one.
         defines: the names of its trees and models.
         nodes: by ID, those that it registers, if it is C++; its diagnostics are then all there are.
+        signs: what it says of its version of the engine, if it is XML.
     """
 
     text: str
@@ -403,6 +420,7 @@ class Origin(Record):
     is_complete: bool
     defines: frozenset[str] = frozenset()
     nodes: Mapping[str, CppNode] | None = None
+    signs: Signs | None = None
 
 
 def is_xml(path: str, text: str) -> bool:

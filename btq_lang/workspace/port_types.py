@@ -61,7 +61,7 @@ def meetings(scope: Scope, version: str, tree: str, port: str) -> Iterator[Meeti
 
 def as_kind(port: Port) -> PortKind:
     """A port that a tree or a model declares, as one of a built-in; required if it is an input without a default."""
-    name, default = port.id, port.default.text if port.default is not None else None
+    name, default = port.id, port.initial.text if port.initial is not None else None
     return PortKind(
         name.text if name is not None else "",
         port.direction.raw,  # type: ignore[arg-type]  # one of the parser's three

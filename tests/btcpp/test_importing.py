@@ -464,8 +464,10 @@ OLD_NODES = (
 
 @pytest.mark.parametrize("node", OLD_NODES)
 def test_a_node_that_version_3_has_already_says_nothing_new(node: str) -> None:
-    """The version is a property of the root's tag, without its brackets."""
-    xml = f'<root main_tree_to_execute="T"><BehaviorTree ID="T"><{node}/></BehaviorTree></root>'
+    """So an old word beside it counts; the version is a property of the root's tag, without its brackets."""
+    plain = f'<root main_tree_to_execute="T"><BehaviorTree ID="T"><{node}/></BehaviorTree></root>'
+    assert import_xml(plain).changes == ()
+    xml = plain.replace(f"<{node}/>", f"<SequenceStar><{node}/></SequenceStar>")
     change, *_ = import_xml(xml).changes
     assert change.message == 'BTCPP_format="4" is added'
     assert xml[change.span.start : change.span.end] == 'root main_tree_to_execute="T"'

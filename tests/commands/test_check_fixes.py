@@ -109,13 +109,14 @@ def test_xml_is_mended_in_its_place(check: Check, tmp_path: Path) -> None:
 
 
 def test_xml_that_may_be_for_version_3_is_not_mended(check: Check, tmp_path: Path) -> None:
-    """There the old name is right; the fix stays a proposal."""
-    old = XML.replace(' BTCPP_format="4"', "")
-    (tmp_path / "tree.xml").write_text(old)
+    """The fix stays a proposal, until something says that the file is for version 4."""
+    text = '<root>\n<BehaviorTree ID="Main"><Condition ID="AlwaysSuccess"/></BehaviorTree>\n</root>\n'
+    (tmp_path / "tree.xml").write_text(text)
     assert check("--diff", "tree.xml") == (0, "", "")
-    printed = check("--fix", "tree.xml")[1]
-    assert "= help: Replace it with `SequenceWithMemory`\n" in printed
-    assert (tmp_path / "tree.xml").read_text() == old
+    assert "= help: Replace it with `Action`\n" in check("--fix", "tree.xml")[1]
+    assert (tmp_path / "tree.xml").read_text() == text
+    (tmp_path / "btq.toml").write_text('engine = "4.8"\n')
+    assert check("--diff", "tree.xml")[2] == "Would fix 1 problem\n"
 
 
 def test_xml_that_a_build_wrote_is_not_mended(check: Check, tmp_path: Path) -> None:

@@ -72,7 +72,9 @@ def test_a_project_of_groot_says_what_belongs_together(tmp_path: Path, write: Wr
 def test_xml_is_converted_and_what_changes_is_said(tmp_path: Path, write: Write) -> None:
     write("main.xml", "Main: Dock")
     write("dock.xml", "Dock")
-    (tmp_path / "dock.xml").write_text((tmp_path / "dock.xml").read_text().replace(' BTCPP_format="4"', ""))
+    old = (tmp_path / "dock.xml").read_text().replace(' BTCPP_format="4"', "")
+    old = old.replace("<AlwaysSuccess/>", "<SequenceStar><AlwaysSuccess/></SequenceStar>")
+    (tmp_path / "dock.xml").write_text(old)
     code, out, err = run_btq("init", "--from-xml", "--convert", cwd=tmp_path)
     assert (code, out.splitlines()[-1]) == (0, "Wrote btq.toml with 1 factory. Next: btq check .")
     assert 'dock.xml:1:2: BTCPP_format="4" is added\n' in err

@@ -25,7 +25,8 @@ _CLEARS: Final = ("ClearEntireCostmap", "ClearCostmapExceptRegion", "ClearCostma
 
 def _read_again(since: str, nodes: tuple[str, ...], *ports: str) -> tuple[Change, ...]:
     what = "reads the entry in `{}` at each start, no longer only when the tree is created"
-    return tuple(Change(since, nodes, what.format(port), port=port, value=_ENTRY) for port in ports)
+    instead = "write the value itself if the entry changes meanwhile and must not count"
+    return tuple(Change(since, nodes, what.format(port), instead, port, _ENTRY) for port in ports)
 
 
 CHANGES: Final = (
@@ -101,6 +102,7 @@ CHANGES: Final = (
         "jazzy",
         ("AreErrorCodesPresent",),
         "reads the list of codes, from 1.3.6 on; before, it always failed",
+        "remove it if what follows its success should not run",
         port="error_codes_to_check",
         value=r"[^{].*",
     ),
@@ -145,7 +147,7 @@ CHANGES: Final = (
         "kilted",
         ("IsPathValid",),
         "ends the goal with an exception if there is no answer in time; before, it failed",
-        "look at `server_timeout`",
+        "write a `server_timeout` that is long enough",
     ),
     # Lyrical
     Change(
@@ -169,6 +171,7 @@ CHANGES: Final = (
         "lyrical",
         ("TruncatePathLocal",),
         f"without a frame of the robot {_FRAME.format('base_link')}",
+        'write `robot_base_frame="base_link"`, or the frame that is meant',
         port="robot_frame",
         value=None,
     ),
@@ -176,14 +179,21 @@ CHANGES: Final = (
         "lyrical",
         ("TruncatePathLocal",),
         "takes a negative `distance_forward` for no limit",
+        "write the distance that is meant",
         port="distance_forward",
         value=r"-.+",
     ),
-    Change("lyrical", _CLEARS, "fails if the service answers that it has not succeeded; before, it succeeded"),
+    Change(
+        "lyrical",
+        _CLEARS,
+        "fails if the service answers that it has not succeeded; before, it succeeded",
+        "write a ForceSuccess around it to go on all the same",
+    ),
     Change(
         "lyrical",
         ("FollowPath", "GetPoseFromPath", "IsPathValid", "PathExpiringTimer", "PathLongerOnApproach"),
         "finds an empty path in `{path}` at the start of each goal, no longer that of the last goal",
+        "put it after the node that computes the path, or write another entry to keep one",
         port="path",
         value=r"\{path\}",
     ),

@@ -80,7 +80,8 @@ _TABLE = (
     Rule("xml-syntax", _E, "XML that the engine cannot read"),
     Rule("xml-root", _E, "a document element that is not `root`"),
     Rule("xml-not-well-formed", _W, "XML that the engine reads although it is not well-formed"),
-    Rule("xml-ignored", _W, "text or trees in XML that the engine ignores"),
+    Rule("xml-ignored", _W, "text, elements or attributes in XML that the engine ignores"),
+    Rule("refused-element", _E, "models, a port of a tree or an include that the engine refuses"),
     # Nodes and their ports.
     Rule("unknown-node", _W, "a node kind that neither the engine nor any model defines"),
     Rule("no-models", _H, "many nodes with ports, and no model for any of them"),
@@ -94,6 +95,7 @@ _TABLE = (
     Rule("trailing-text-in-number", _W, "text after a number that the engine drops silently"),
     Rule("version-3-file", _W, "XML for version 3 of the engine in a project that does not say so"),
     Rule("old-entry", _W, "`${key}`, which is an entry only to version 3 of the engine"),
+    Rule("json-in-braces", _W, "JSON in braces, which the engine reads as the name of an entry"),
     Rule("number-for-text", _E, "a number that a SubTree passes to a string port below it"),
     Rule("entry-with-two-types", _E, "a blackboard entry that is connected to ports of two types"),
     Rule("quantity-on-unitless-port", _E, "a quantity on a port whose unit is unknown or has another dimension"),

@@ -1,0 +1,94 @@
+"""What the packages around trees say, for the project file that `btq init --from-xml` writes: the version of the
+engine that they depend on, C++ sources that register nodes, and parameter files of Nav2.
+
+One invariant: what several places say otherwise is not decided here.
+"""
+
+from __future__ import annotations
+
+import os.path
+import posixpath
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final
+
+from btq_lang.catalog.versions import VERSION_3, VERSIONS
+from btq_lang.util.record import Record
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.file import CPP_SUFFIXES, YAML_SUFFIXES
+from btq_lang.workspace.loader import collect, pool_of, read
+
+
+class Packages(Record):
+    """What packages say.
+
+    Attributes:
+        engines: the versions of the engine that they depend on; empty if none or several do.
+        depends_on: the package of the engine that says so.
+        sources: folders with C++ that registers nodes, as patterns.
+        parameters: files with the parameters of a bt_navigator.
+    """
+
+    engines: tuple[str, ...] = ()
+    depends_on: str = ""
+    sources: tuple[str, ...] = ()
+    parameters: tuple[str, ...] = ()
+
+
+def packages_of(folder: str) -> Packages:
+    """What the packages below a folder say, or if they name no engine, the package that it is in."""
+    texts = _texts(folder, (*_MANIFESTS, *CPP_SUFFIXES, *YAML_SUFFIXES))
+    depends_on = _engine_among(texts)
+    if not depends_on and (above := pool_of(folder, folder)) != folder:
+        depends_on = _engine_among(_texts(above, _MANIFESTS))
+    below = {posixpath.relpath(path, folder): text for path, text in texts.items()}
+    sources = (path for path, text in below.items() if path.endswith(CPP_SUFFIXES) and _REGISTERS(text))
+    parameters = (path for path, text in below.items() if path.endswith(YAML_SUFFIXES) and _NAVIGATOR(text))
+    return Packages(_ENGINES.get(depends_on, ()), depends_on, tuple(_patterns(sources)), tuple(parameters))
+
+
+def _texts(folder: str, suffixes: tuple[str, ...]) -> dict[str, str]:
+    """The files below a folder whose names end with one of the suffixes, with their texts."""
+    return {path: read(path)[0] or "" for path in collect((folder,), Project(), suffixes)[0]}
+
+
+def _engine_among(texts: Mapping[str, str]) -> str:
+    """The package of the engine that manifests name, or else CMake, or else includes; empty if none or both are."""
+    for suffixes, comments, mention in _MENTIONS:
+        named = (path for path in texts if path.endswith(suffixes))
+        names = [name for path in named for name in mention.findall(comments.sub("", texts[path]))]
+        packages = {_OLD if "3" in name else _NEW for name in names}
+        if packages:
+            return packages.pop() if len(packages) == 1 else ""
+    return ""
+
+
+def _patterns(sources: Iterable[str]) -> Iterator[str]:
+    """A pattern for each folder with sources of one suffix."""
+    for folder, suffix in dict.fromkeys((posixpath.dirname(path), os.path.splitext(path)[1]) for path in sources):
+        yield posixpath.join(folder, f"*{suffix}")
+
+
+_OLD: Final = "behaviortree_cpp_v3"
+_NEW: Final = "behaviortree_cpp"
+_ENGINES: Final = {_OLD: (VERSION_3,), _NEW: VERSIONS}
+_NAMES: Final = f"{_OLD}|{_NEW}|behaviortree_ros2"
+_MANIFESTS: Final = ("package.xml", "CMakeLists.txt")
+# How paths end, what is a comment in such a file, and how it names the engine.
+_MENTIONS: Final = (
+    (
+        _MANIFESTS[0],
+        re.compile("<!--.*?-->", re.DOTALL),
+        re.compile(rf"<(?:build_|exec_|run_|build_export_)?depend\b[^>]*>\s*({_NAMES})\s*</"),
+    ),
+    (_MANIFESTS[1], re.compile("#.*"), re.compile(rf"\b({_NAMES}|BehaviorTreeV3)\b")),
+    (
+        CPP_SUFFIXES,
+        re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL),
+        re.compile(rf"#\s*include\s*[<\"]({_NAMES})/"),
+    ),
+)
+_REGISTERS: Final = re.compile(
+    r"\b(?:registerNodeType|registerBuilder|registerSimple(?:Action|Condition|Decorator)|BT_REGISTER_(?:ROS_)?NODES)\b"
+).search
+_NAVIGATOR: Final = re.compile(r"^[ \t]*bt_navigator[ \t]*:", re.MULTILINE).search
