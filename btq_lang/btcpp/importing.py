@@ -110,15 +110,15 @@ def import_xml(
             return Imported("", (), (*done.problems, problem), Places())
         writer = _Writer(text, for_people, included_as or (lambda path: path))
         described = without_generated(done.document, writer.changes) if may_be_generated(text) else 0
-        said = signs(root)
-        engines = written_for(Project(), None, said) if engines is None else engines
+        of_root = signs(root)
+        engines = written_for(Project(), None, of_root) if engines is None else engines
         if not keep_v3 and engines and is_before_4(engines[-1]):
             translated(root, writer.changes)
         writer.document(done.document)
         changes = tuple(sorted(writer.changes, key=lambda change: change.span))
         problems = (*done.problems, *writer.ignored)
         places = Places() if writer.marks is None else Places(writer.marks, writer.out, located)
-        return Imported("".join(writer.out), changes, problems, places, described, frozenset(_defined(root)), said)
+        return Imported("".join(writer.out), changes, problems, places, described, frozenset(_defined(root)), of_root)
 
 
 def _defined(root: Element) -> Iterator[str]:

@@ -157,11 +157,12 @@ def _attributes(view: View) -> Iterator[Diagnostic]:
     lists = [(port.attributes, _OF_PORT) for port in ports]
     if isinstance(item, Root | Include):
         lists.append((item.attributes, _OF_ROOT_TAG if isinstance(item, Root) else _OF_INCLUDE))
-    for pairs, known in lists:
+    for pairs, keys in lists:
         given = {pair.key.text for pair in pairs}
         for pair in pairs:
             key = pair.key.text
-            meant = near(key, known.difference(given), 1) if key not in known and key not in _TOOL_ATTRIBUTES else ()
+            is_other = key not in keys and key not in _TOOL_ATTRIBUTES
+            meant = near(key, keys.difference(given), 1) if is_other else ()
             if meant:
                 yield _ignored(pair.key, f"the engine ignores `{key}`{did_you_mean(meant)}")
 

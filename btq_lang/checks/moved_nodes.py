@@ -64,8 +64,10 @@ def changed(view: View, seen: ResolvedNode, name: Word, change: Change) -> Itera
     fixes: tuple[Fix, ...] = ()
     notes = [change.instead] if change.instead else []
     if change.keeps is not None:
-        said = f'{change.port}="{change.keeps}"' if view.is_xml else f"{written(change.port)} = {written(change.keeps)}"
-        notes.append(f"write `{said}` to keep its meaning")
+        keeping = (
+            f'{change.port}="{change.keeps}"' if view.is_xml else f"{written(change.port)} = {written(change.keeps)}"
+        )
+        notes.append(f"write `{keeping}` to keep its meaning")
         fixes = adding_fix(view, seen.node, "Keep its meaning", f"{written(change.port)} = {written(change.keeps)}")
     rule = "target-breaks" if change.breaks else "target-differs"
     message = f"from {change.since.title()} on `{name.text}` {change.what}"

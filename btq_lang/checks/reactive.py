@@ -36,9 +36,10 @@ def reactive_multiple_async(view: View) -> Iterator[Diagnostic]:
         first: Node | None = None
         surely = False
         pausing: Node | None = None
-        for each in seen.children:
-            child, results = each.node, result(view, each.node)
-            if pausing is not None and not surely and (_pauses(view, each) or results.first == RUNNING):
+        for below in seen.children:
+            child, results = below.node, result(view, below.node)
+            pauses = _pauses(view, below)
+            if pausing is not None and not surely and (pauses or results.first == RUNNING):
                 yield _pauses_again(seen, pausing, child)
                 break
             if first is not None and results.ever & RUNNING:
@@ -47,7 +48,7 @@ def reactive_multiple_async(view: View) -> Iterator[Diagnostic]:
             if first is None and not results.usual & goes_on and results.ever & goes_on:
                 first = child
                 surely = not results.first & goes_on
-            if pausing is None and results.ever & goes_on and _pauses(view, each):
+            if pausing is None and pauses and results.ever & goes_on:
                 pausing = child
 
 

@@ -49,7 +49,8 @@ def packages_of(folder: str) -> Packages:
 
 def _texts(folder: str, suffixes: tuple[str, ...]) -> dict[str, str]:
     """The files below a folder whose names end with one of the suffixes, with their texts."""
-    return {path: read(path)[0] or "" for path in collect((folder,), Project(), suffixes)[0]}
+    paths, _ = collect((folder,), Project(), suffixes)
+    return {path: read(path)[0] or "" for path in paths}
 
 
 def _engine_among(texts: Mapping[str, str]) -> str:
