@@ -98,10 +98,9 @@ class Robot(LoggedRun):
         holds = {
             "SensorsAlive": True,
             "BatteryOk": level >= LOW,
-            "BatteryLow?": level < LOW,
+            "BatteryLow": level < LOW,
             "BatteryFull": level >= FULL,
             "MicroplateNotEmpty": self.tubes > 0,
-            "MicroplateNotEmpty?": self.tubes > 0,
         }[self.name_of(condition)]
         return engine.SUCCESS if holds else engine.FAILURE
 
