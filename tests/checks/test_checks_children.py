@@ -13,7 +13,8 @@ def tree(*lines: str) -> str:
 def test_numbers_of_children() -> None:
     assert_clean(tree("->", "    X"))
     assert_clean(tree("IfThenElse", "    X", "    Y", "    Z"))
-    assert_clean(tree("Own", "    X", "    Y"))  # whose category nobody knows
+    assert_clean("Control Own\n" + tree("Own", "    X", "    Y"))
+    assert_clean(tree("PipelineSequence", "    X", "    Y"))  # of Nav2, whose category nobody knows
     assert_clean(tree("->", '    xml "<X/>"'))
     assert_problems(tree("->"), "2:5 error child-count «->» `->` requires 1 or more children, found none")
     assert_problems(

@@ -84,7 +84,9 @@ _TABLE = (
     # Nodes and their ports.
     Rule("unknown-node", _W, "a node kind that neither the engine nor any model defines"),
     Rule("no-models", _H, "many nodes with ports, and no model for any of them"),
-    Rule("not-an-engine-node", _W, "a word of the classic syntax that the engine does not register as a node"),
+    Rule(
+        "not-an-engine-node", _W, "a word of the classic syntax, or of another engine, that is not a node"
+    ),
     Rule("newer-engine-node", _E, "a built-in node that the project's engine version does not have"),
     Rule("category-mismatch", _W, "a node used as another category than its model declares"),
     Rule("unknown-port", _E, "a port that the node does not have"),
