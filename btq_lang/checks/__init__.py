@@ -9,7 +9,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
     kinds.py, names.py, ports.py, children.py, trees.py, includes.py   what the engine would refuse
     literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
-    entries.py, pointers.py, writers.py, misspelt.py, mixed_types.py   blackboard entries
+    entries.py, pointers.py, writers.py, keys.py, misspelt.py, mixed_types.py   blackboard entries
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
@@ -34,6 +34,7 @@ from btq_lang.checks import (
     demands,
     empty,
     includes,
+    keys,
     kinds,
     literals,
     lookups,
@@ -126,6 +127,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         ports.duplicate_attribute,
         *_OF_PORTS,
         literals.old_entry,
+        keys.key_in_braces,
         literals.number_for_text,
         mixed_types.entry_with_two_types,
         outputs.literal_for_output,
