@@ -45,6 +45,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
         nobody = TextIOWrapper(BytesIO(), encoding="utf-8")
         sys.stdout, sys.stderr = sys.stdout or nobody, sys.stderr or nobody
+    for stream in (sys.stdout, sys.stderr):
+        if getattr(stream, "errors", "") == "strict":  # texts have signs that not every encoding has
+            stream.reconfigure(errors="replace")  # type: ignore[union-attr]
     given = list(sys.argv[1:] if arguments is None else arguments)
     if given in (["--version"], ["-V"]):
         from btq_lang.util.version import __version__
@@ -66,6 +69,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except AttributeError:
         parser.print_help()
         return TROUBLE
+    usual_paths = command.get_default("paths")  # only of commands that take any number
+    if usual_paths and unknown and not any(word.startswith("-") for word in unknown):
+        # argparse takes all paths from one place; those behind a later option are left.
+        options.paths = [*(options.paths if options.paths != usual_paths else ()), *unknown]
+        unknown = []
     if unknown:
         command.error(f"unrecognized arguments: {' '.join(unknown)}")
     return _finish(name, _command(name), options)

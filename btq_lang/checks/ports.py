@@ -196,6 +196,12 @@ def misspelt_type(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("misspelt-type", port.type.span, message, fixes=(fix,))
 
 
+def first_port(view: View, seen: ResolvedNode) -> PortKind | None:
+    """The port that a value without a name is most likely for: the first that needs one, or else the first."""
+    ports = _ports(view, seen)
+    return next(iter((*ports.required, *ports.all)), None) if ports is not None else None
+
+
 def is_case(seen: ResolvedNode, key: str) -> bool:
     """Whether an attribute is a case of a Switch; which ones exist depends on the number of its children."""
     return seen.flow == "switch" and key.startswith("case_") and key[5:].isdecimal()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from btq_lang.checks.measures import is_measured
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
+from btq_lang.requirements.terms import TIME
 from btq_lang.syntax.tree import Requirement, Signal, Word
 from btq_lang.util.text import Span
 from btq_lang.workspace.queries import Store
@@ -62,6 +64,11 @@ def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | N
     from btq_lang.requirements.constraints import clauses_of
 
     text = " ".join(constraint.text.split()).rstrip(".")
+    if (bound := _TIME_BOUND.fullmatch(text)) is not None and bound["word"] not in signals:
+        unit = parse_unit(bound["unit"])
+        is_most = (bound["sign"][0] in "<≤") != constraint.violates
+        if unit is not None and unit.dimension == TIME:
+            return f"takes at {'most' if is_most else 'least'} {bound['number']} {unit.symbol}"
     condition = f"{'never' if constraint.violates else 'keeps'} {text}"
     if any(sign in text for sign in "<>=") and clauses_of(condition) is not None:
         return condition
@@ -92,3 +99,11 @@ def _fixes(view: View, text: Word, name: str, clauses: tuple[str, ...]) -> tuple
         return ()
     added = " ".join(clauses)
     return (replace_fix(f"Add `{added}`", Span(text.end, text.end), f" {added}"),)
+
+
+# The time that a node takes, where no signal has that name.
+_TIME_BOUND = re.compile(
+    r"(?:the )?(?P<word>(?:execution |elapsed |running )?time|duration|runtime)\s*(?P<sign>[<>]=?|[≤≥])"
+    r"\s*(?P<number>[0-9]+(?:\.[0-9]+)?)\s*(?P<unit>[a-z]+)",
+    re.IGNORECASE,
+)

@@ -20,6 +20,7 @@ from btq_lang.workspace.loader import (
     decoded,
     excluder,
     find_project,
+    is_project_file,
     load,
     pool_of,
     read,
@@ -67,6 +68,11 @@ class Group(Record):
     def watched(self) -> Iterator[str]:
         """The files that another run would depend on."""
         return (path for path in (*self.workspace.files, *self.absent, self.project_file) if path)
+
+
+def _whole(path: str) -> str:
+    """The folder of a project file, for which that stands; any other path as it is."""
+    return os.path.dirname(path) if is_project_file(path) and os.path.isfile(path) else path
 
 
 def usage_problem(paths: Iterable[str]) -> str | None:
@@ -143,7 +149,7 @@ class Files:
                     problems.extend(projects[folder].problems)
             return projects[folder]
 
-        for path in (self._read_stdin(stdin_filename) if path == STDIN else absolute(path) for path in paths):
+        for path in (self._read_stdin(stdin_filename) if path == STDIN else _whole(absolute(path)) for path in paths):
             if path == self.stdin and self._of_stdin is not None:
                 problems += [self._of_stdin] if self._of_stdin not in problems else []
                 if path not in self.overlay:

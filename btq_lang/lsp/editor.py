@@ -23,13 +23,13 @@ from typing import Protocol as Shape
 from lsprotocol import types
 from pygls.capabilities import get_capability
 from pygls.exceptions import JsonRpcException
-from pygls.io_ import StdoutWriter, run_async
+from pygls.io_ import run_async
 from pygls.lsp.server import LanguageServer
 
 from btq_lang import ide as features
 from btq_lang.lsp import failures
 from btq_lang.lsp.convert import Converter
-from btq_lang.lsp.protocol import Json, Messages, Protocol
+from btq_lang.lsp.protocol import Json, Messages, Protocol, UntilGone
 from btq_lang.util.version import __version__
 from btq_lang.workspace.queries import Cancelled
 
@@ -128,14 +128,12 @@ class Server(LanguageServer):
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
         """As in pygls, except for how messages are read."""
         self._stop_event = Event()
-        self.protocol.set_writer(StdoutWriter(stdout or sys.stdout.buffer))
+        self.protocol.set_writer(UntilGone(stdout or sys.stdout.buffer))
         reader = Messages(stdin or sys.stdin.buffer, self._end_soon)
         self.has_message = lambda: reader.has_message
         report = self.report_server_error
         try:
             asyncio.run(run_async(self._stop_event, reader, self.protocol, error_handler=report))
-        except BrokenPipeError:
-            logging.getLogger(__name__).error("the editor has gone")
         except (KeyboardInterrupt, SystemExit):
             pass
         finally:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+import os
 import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
@@ -16,6 +17,7 @@ from typing import Any, BinaryIO
 from cattrs import ClassValidationError, transform_error
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidRequest, JsonRpcServerNotInitialized
+from pygls.io_ import StdoutWriter
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
 Plain = dict[str, Any]  # what json writes directly
@@ -25,6 +27,16 @@ class Json(str):
     """A result, or parameters of a notification, already serialised."""
 
     __slots__ = ()
+
+
+class UntilGone(StdoutWriter):
+    """A writer that drops messages once nobody reads them: the end of the input follows, and ends the server."""
+
+    def write(self, data: bytes) -> None:
+        try:
+            super().write(data)
+        except (BrokenPipeError, ConnectionResetError):
+            self._stdout = open(os.devnull, "wb")  # noqa: SIM115 - until the process ends
 
 
 class Protocol(LanguageServerProtocol):
