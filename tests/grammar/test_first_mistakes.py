@@ -558,7 +558,7 @@ FROM_OTHER_LANGUAGES: list[tuple[str, str, str | None]] = [
     ),
     (
         tree('Timeout "at most" (msec = 1 s) SubTree Dock_it') + "BehaviorTree Dock_it\n    Go\n",
-        f'2:36 error syntax-error «SubTree "Dock_it"» {ON_ITS_OWN}',
+        f"2:36 error syntax-error «SubTree Dock_it» {ON_ITS_OWN}",
         tree('Timeout "at most" (msec = 1 s)', "    SubTree Dock_it") + "BehaviorTree Dock_it\n    Go\n",
     ),
     (

@@ -224,10 +224,11 @@ def test_an_editor_that_reads_nothing_any_more_ends_it_silently(tmp_path: Path) 
     assert process.stdin is not None
     assert process.stdout is not None
     assert process.stderr is not None
-    process.stdout.close()
-    editor.open("main.btq", "BehaviorTree Main\n    Rety\n")
-    process.stdin.close()
-    assert (process.wait(timeout=20), process.stderr.read()) == (1, b"")
+    with process:
+        process.stdout.close()
+        editor.open("main.btq", "BehaviorTree Main\n    Rety\n")
+        process.stdin.close()
+        assert (process.wait(timeout=20), process.stderr.read()) == (1, b"")
 
 
 # Standard input and output of an editor, to and from a port.
