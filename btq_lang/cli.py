@@ -71,7 +71,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return TROUBLE
     usual_paths = command.get_default("paths")  # only of commands that take any number
     if usual_paths and unknown and not any(word.startswith("-") for word in unknown):
-        # argparse takes all paths from one place; those behind a later option are left.
+        # argparse takes the paths before or after an option, and leaves the others.
         options.paths = [*(options.paths if options.paths != usual_paths else ()), *unknown]
         unknown = []
     if unknown:

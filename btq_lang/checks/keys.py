@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks.view import View
-from btq_lang.checks.writers import all_entries, key_of
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.syntax.tree import Tree, is_name
 from btq_lang.workspace import inputs
@@ -28,6 +27,8 @@ def key_in_braces(view: View) -> Iterator[Diagnostic]:
             value = seen.node.attribute(port)
             if value is None or not is_pointer(value.text):
                 continue
+            from btq_lang.checks.writers import key_of  # few files have such a name
+
             key = key_of(value.text, port)
             if key.removeprefix("@") in view.ask(_given):
                 continue
@@ -39,6 +40,8 @@ def key_in_braces(view: View) -> Iterator[Diagnostic]:
 
 def _given(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
     """The entries that something in scope certainly gives a value, which may be a name, and the ports of trees."""
+    from btq_lang.checks.writers import all_entries
+
     view = View(store, viewpoint)
     written = {
         key.removeprefix("@")

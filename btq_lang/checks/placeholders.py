@@ -27,7 +27,7 @@ from btq_lang.workspace.workspace import Workspace
 
 _BLANKS = " \t"
 _AFTER_NAME = r"[ \t]*(?:,[ \t]*)?(?P<closing>[ \t\r\n]*\))?"  # compiled when the first file needs it
-_OPERATOR = re.compile(r"[<>=]|&&|\|\|")  # what every script has that is no name
+_OPERATOR = re.compile(r"[<>=]|&&|\|\|")  # a name that is a script has one of these
 # Words that mean something else in the place of a node's kind or label.
 _NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERB_WORDS | {"xml"}
 
@@ -61,7 +61,7 @@ def _is_script(view: View, name: str) -> bool:
 
 
 def _code_as_name(node: Node, kind: Word, name: Word) -> Diagnostic:
-    """`Script "speed := 0.5"`, which is no placeholder."""
+    """`Script "speed := 0.5"` is not a placeholder: its code lacks the port."""
     message = f"`{name.text}` is the name of this `{kind.text}`; a script goes in its port `code`"
     key = next((pair.key for pair in node.attributes if pair.value is name), None)
     code = f"code = {name.raw if name.quoted else quote(name.text)}"

@@ -7,12 +7,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.units import Dimension, parse_unit
+from btq_lang.catalog.units import Dimension, dimension_name, parse_unit
 from btq_lang.checks.measures import is_measured
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
-from btq_lang.requirements.terms import TIME
 from btq_lang.syntax.tree import Requirement, Signal, Word
 from btq_lang.util.text import Span
 from btq_lang.workspace.queries import Store
@@ -67,7 +66,7 @@ def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | N
     if (bound := _TIME_BOUND.fullmatch(text)) is not None and bound["word"] not in signals:
         unit = parse_unit(bound["unit"])
         is_most = (bound["sign"][0] in "<≤") != constraint.violates
-        if unit is not None and unit.dimension == TIME:
+        if unit is not None and dimension_name(unit) == "time":
             return f"takes at {'most' if is_most else 'least'} {bound['number']} {unit.symbol}"
     condition = f"{'never' if constraint.violates else 'keeps'} {text}"
     if any(sign in text for sign in "<>=") and clauses_of(condition) is not None:

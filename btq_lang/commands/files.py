@@ -71,7 +71,7 @@ class Group(Record):
 
 
 def _whole(path: str) -> str:
-    """The folder of a project file, for which that stands; any other path as it is."""
+    """The folder of a project file, which is requested by it; any other path as it is."""
     return os.path.dirname(path) if is_project_file(path) and os.path.isfile(path) else path
 
 

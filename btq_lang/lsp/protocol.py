@@ -8,7 +8,6 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
-import os
 import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
@@ -30,13 +29,17 @@ class Json(str):
 
 
 class UntilGone(StdoutWriter):
-    """A writer that drops messages once nobody reads them: the end of the input follows, and ends the server."""
+    """A writer that drops messages when their reader has gone; the server ends when its input does."""
+
+    is_gone = False
 
     def write(self, data: bytes) -> None:
+        """Write a message."""
         try:
-            super().write(data)
+            if not self.is_gone:
+                super().write(data)
         except (BrokenPipeError, ConnectionResetError):
-            self._stdout = open(os.devnull, "wb")  # noqa: SIM115 - until the process ends
+            self.is_gone = True
 
 
 class Protocol(LanguageServerProtocol):
