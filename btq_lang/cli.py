@@ -70,6 +70,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except AttributeError:
         parser.print_help()
         return TROUBLE
+    usual_paths = command.get_default("paths")  # only of commands that take any number
+    if usual_paths and unknown and not any(word.startswith("-") for word in unknown):
+        # argparse takes the paths before or after an option, and leaves the others.
+        options.paths = [*(options.paths if options.paths != usual_paths else ()), *unknown]
+        unknown = []
     if unknown:
         command.error(f"unrecognized arguments: {' '.join(unknown)}")
     return _finish(name, _command(name), options)

@@ -298,7 +298,19 @@ class Parser(ItemParser):
         """Skip lines that do not begin an item, with their blocks; report the first."""
         start = self.start()
         notes: tuple[str, ...] = ()
-        if self.at_word("from") and "import" in self.raws[self.index + 2 : self.index + 3]:
+        fixes: tuple[Fix, ...] = ()
+        if self.kind == STRING and self.is_doc_string():
+            self.other_comment(self.here().start + 3)
+        elif self.at_key() and self.raw == "main_tree_to_execute":
+            span = Span(self.here().start, self.starts[self.index + 2])
+            notes, fixes = ("`Root` names the main tree",), (replace_fix("Write `Root`", span, "Root "),)
+        elif self.at_key():
+            notes = (_A_VALUE,)
+        elif self.at("/") and self.kinds[self.index + 1] == NAME and self.kinds[self.index + 2] == NEWLINE:
+            span = Span(self.here().start, line_end(self.text, self.here().start))
+            notes = ("a block ends where its indentation does, without a line of its own",)
+            fixes = (replace_fix("Remove it", span, ""),)
+        elif self.at_word("from") and "import" in self.raws[self.index + 2 : self.index + 3]:
             notes = ('another file is read with `include "stations.btq"`',)
         elif self.kind == NAME and self.raw in NODE_CLAUSES:
             notes = ("write it after a node, or indented in the block of a node or BehaviorTree",)
@@ -315,7 +327,7 @@ class Parser(ItemParser):
         elif self.kind == SYMBOL or (self.at_name() and self.kinds[self.index + 1] in (NEWLINE, OPEN)):
             notes = ("a node goes in the block of a BehaviorTree, indented",)
         if self.kind != NEWLINE:
-            self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes)
+            self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes, fixes)
         end = self.end_line()
         while self.more and not self.ends_skipping(level):
             known = len(self.lexer.problems)
@@ -348,6 +360,7 @@ class Parser(ItemParser):
         return not word.startswith("<") and bool(item_word_meant(word))
 
 
+_A_VALUE: Final = 'a value goes to a port: `MoveBase (speed = 0.5)`; or to an entry: `Script (code = "speed := 0.5")`'
 _ALONE: Final = ("BehaviorTree", "Root", "TreeNodesModel")  # items whose name is optional
 _OTHER_ITEMS: Final = {  # words of other languages, in lower case
     **dict.fromkeys(("import", "require", "use"), "include"),

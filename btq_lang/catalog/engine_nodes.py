@@ -38,8 +38,10 @@ def _script(name: str, type_: str, doc: str) -> PortKind:
     return PortKind(name, "input", type_, doc, required=True, content="script")
 
 
-def _key(name: str, direction: Direction, type_: str, doc: str, *, removes: bool = False) -> PortKind:
-    return PortKind(name, direction, type_, doc, required=True, content="key", removes=removes)
+def _key(
+    name: str, direction: Direction, type_: str, doc: str, *, removes: bool = False, indirect: bool = False
+) -> PortKind:
+    return PortKind(name, direction, type_, doc, required=True, content="key", removes=removes, indirect=indirect)
 
 
 # ---- control nodes ----
@@ -432,7 +434,7 @@ _LEAVES: Final = (
         "empty value: use Script instead.",
         ports=(
             _input("value", _ANYTHING, "The literal, or the entry to copy", required=True),
-            _key("output_key", "inout", _ANYTHING, "The entry to write, without braces"),
+            _key("output_key", "inout", _ANYTHING, "The entry to write, without braces", indirect=True),
         ),
         execution="synchronous",
         flow="succeeds",
@@ -442,7 +444,7 @@ _LEAVES: Final = (
         "UnsetBlackboard",
         "Removes a blackboard entry.",
         "Also succeeds if the entry does not exist. Scripts that read it afterwards throw.",
-        ports=(_key("key", "input", _STRING, "The entry to remove, without braces", removes=True),),
+        ports=(_key("key", "input", _STRING, "The entry to remove, without braces", removes=True, indirect=True),),
         execution="synchronous",
         flow="succeeds",
     ),

@@ -7,9 +7,10 @@ which caches results from one edit to the next.  Not known here: what an edit ch
 
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
-    kinds.py, names.py, ports.py, children.py, trees.py, includes.py, elements.py   what the engine would refuse
-    literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
-    entries.py, pointers.py, writers.py, misspelt.py, mixed_types.py   blackboard entries
+    kinds.py, names.py, ports.py, children.py, one_parent.py   what the engine would refuse
+    trees.py, includes.py, elements.py   likewise, of whole trees and files
+    positional.py, literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
+    entries.py, pointers.py, writers.py, keys.py, misspelt.py, mixed_types.py   blackboard entries
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
@@ -35,6 +36,7 @@ from btq_lang.checks import (
     elements,
     empty,
     includes,
+    keys,
     kinds,
     literals,
     lookups,
@@ -139,6 +141,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         *_OF_PORTS,
         literals.old_entry,
         literals.json_in_braces,
+        keys.key_in_braces,
         literals.number_for_text,
         mixed_types.entry_with_two_types,
         outputs.literal_for_output,
@@ -343,7 +346,9 @@ def _reported(
     if type(facts.item) is syntax.Include and not is_alone:
         found = [*found, *includes.include_with_errors(view, _errors_in)]
     if entry.diagnostics:
-        found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
+        from btq_lang.checks.positional import with_ports  # few items have mistakes in their syntax
+
+        found = (*with_ports(view, entry.diagnostics), *_on_sound_lines(found, entry, view.text))
     elif not found:
         return None
     wanted = tuple(configured(view.project, viewpoint, trees.as_uncreated(view, found)))

@@ -10,6 +10,7 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.nodes import is_by_children
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.kinds import OF_SUBTREE, declared_category, model_related
+from btq_lang.checks.one_parent import sequence_above
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
@@ -38,6 +39,12 @@ def child_count(view: View) -> Iterator[Diagnostic]:
             continue  # the wrong one of the two is reported first
         if any(misspelt_clause(child) for child in seen.node.nodes):
             continue  # a child that is meant as a clause is reported
+        if (
+            most is not None
+            and count > most
+            and any(view.is_torn(child.start, child.end) for child in seen.node.children)
+        ):
+            continue  # a line that could not be read was taken for a child
         if count == 0 and view.entry.diagnostics:
             after = nodes[index + 1].node.start if index + 1 < len(nodes) else len(view.text)
             if view.is_torn(seen.node.start, after - 1):
@@ -52,7 +59,8 @@ def child_count(view: View) -> Iterator[Diagnostic]:
             span = extra.head.span if isinstance(extra, Node) else Span(extra.start, extra.end)
             related += (Related(Place(span), "first extra child"),)
         message = f"{_called(seen)} requires {_range(least, most)}, found {count or 'none'}"
-        yield Diagnostic("child-count", seen.node.head.span, message, related=related, notes=notes)
+        fixes = sequence_above(view, seen.node.children) if most == 1 < count else ()
+        yield Diagnostic("child-count", seen.node.head.span, message, related=related, notes=notes, fixes=fixes)
 
 
 def switch_cases(view: View) -> Iterator[Diagnostic]:

@@ -6,10 +6,11 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.foreign_names import ForeignName, foreign_name
 from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, model_name_problem
-from btq_lang.catalog.nav2 import FILES
+from btq_lang.catalog.nav2 import FILES, ports_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
 from btq_lang.checks import lookups
@@ -51,7 +52,7 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
                 yield _tree_as_node(view, seen, name)
         elif view.is_pooled(Kind.MODEL, name.text):
             continue  # models that differ: whichever the program means, it is known
-        elif name.text in KNOWN_WORDS or _quoted_alias(seen, name) is not None:
+        elif name.text in KNOWN_WORDS or _quoted_alias(seen, name) is not None or _foreign(view, seen) is not None:
             continue  # not a node of the engine, which is reported
         elif (category := _category_meant(view, seen)) is not None:
             fix = replace_fix(f"Replace `{name.text}` with `{category}`", name.span, category)
@@ -84,6 +85,11 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
             note = f"a quoted kind is the XML tag, and the engine's tag is {meant.tag}"
             fix = replace_fix("Remove the quotes", name.span, name.text)
             yield Diagnostic("not-an-engine-node", name.span, message, notes=(note,), fixes=(fix,))
+        elif (foreign := _foreign(view, seen)) is not None:
+            message += did_you_mean((foreign.tag,))
+            notes = (foreign.note,) if foreign.note else ()
+            fixes = (_as_built_in(view, seen, name, foreign),)
+            yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
 
 
 def newer_engine_node(view: View) -> Iterator[Diagnostic]:
@@ -249,6 +255,26 @@ def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ..
     return ()
 
 
+def _foreign(view: View, seen: ResolvedNode) -> ForeignName | None:
+    """What a node means to other engines, if it has children and nothing says that there is such a node."""
+    name = seen.id
+    if name is None or seen.node.category is not None or seen.of_model is not None or not seen.node.children:
+        return None
+    foreign = foreign_name(name.text)
+    if foreign is None or view.defines(Kind.TREE, name.text) or view.is_pooled(Kind.MODEL, name.text):
+        return None
+    return foreign if view.is_complete and not view.project.hides_nodes else None
+
+
+def _as_built_in(view: View, seen: ResolvedNode, name: Word, foreign: ForeignName) -> Fix:
+    """The fix that writes the built-in, in XML without what it requires: that needs an attribute more."""
+    end = (seen.node.label or name).end
+    if foreign.attributes and not (seen.node.attributes or view.is_xml):
+        changes = (Change(Place(name.span), foreign.tag), Change(Place(Span(end, end)), f" ({foreign.attributes})"))
+        return Fix(f"Replace it with `{foreign.tag} ({foreign.attributes})`", changes)
+    return replace_fix(f"Replace `{name.text}` with `{foreign.tag}`", name.span, foreign.tag)
+
+
 def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:
     """The built-in that a word would mean without its quotes: `"Retry"` is not a tag of the engine."""
     return lookup(name.text) if name.quoted and seen.kind is None else None
@@ -260,9 +286,11 @@ def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]
     if not has_palette and seen.node.category is not None:
         return  # written as a declaration: `Action Foo` declares such a node
     likely = view.near(name.text, Kind.MODEL)
+    is_parent = False  # and nothing else is known against its name
     if not has_palette:
         likely = tuple(meant for meant in likely if _is_slip(name.text, meant))
-        if not likely and not (is_complete and view.look_up(lookups.most_have_models)):
+        is_parent = not (is_complete and view.look_up(lookups.most_have_models))
+        if not likely and is_parent and not (is_complete and _has_own_children(view, seen, name)):
             return
     if not likely and not view.is_first_use(seen.node, name.text):
         return  # one model is missing, however many nodes would need it
@@ -275,12 +303,20 @@ def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]
         if view.is_xml:
             shortest = f'`<{category} ID="{name.text}"/>` in <TreeNodesModel>'
         others = "the other nodes of this file" if has_palette else "most nodes of this file"
-        notes = (f"{others} have models; to declare this one, write {shortest}",)
+        why = "it has children and is not built in" if is_parent else f"{others} have models"
+        notes = (f"{why}; to declare {'it' if is_parent else 'this one'}, write {shortest}",)
     severity = None if likely or has_palette else Severity.HINT
     if has_palette and view.factory is not None and view.factory.nodes:
         severity = Severity.ERROR  # the program registers what `nodes` names, and refuses to load any other
     message = f"unknown node `{name.text}`{did_you_mean(likely)}"
     yield Diagnostic("unknown-node", name.span, message, notes=notes, fixes=fixes, severity=severity)
+
+
+def _has_own_children(view: View, seen: ResolvedNode, name: Word) -> bool:
+    """Whether a node that no known library has must be one of the program's own with children."""
+    if ports_of(name.text) is not None or view.entry.diagnostics:
+        return False
+    return bool(seen.node.nodes) and not any(misspelt_clause(child) for child in seen.node.nodes)
 
 
 def _declared(view: View, seen: ResolvedNode, model: str, ports: tuple[LikelyPort, ...]) -> Fix:

@@ -10,7 +10,8 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
@@ -26,6 +27,7 @@ from btq_lang.workspace.workspace import Workspace
 
 _BLANKS = " \t"
 _AFTER_NAME = r"[ \t]*(?:,[ \t]*)?(?P<closing>[ \t\r\n]*\))?"  # compiled when the first file needs it
+_OPERATOR = re.compile(r"[<>=]|&&|\|\|")  # a name that is a script has one of these
 # Words that mean something else in the place of a node's kind or label.
 _NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERB_WORDS | {"xml"}
 
@@ -38,10 +40,37 @@ def classic_placeholder(view: View) -> Iterator[Diagnostic]:
         name = _id_of(seen.name.text)
         if _taken(view, name) is not None:
             continue  # reported as a clash
+        if _is_script(view, seen.name.text):
+            yield _code_as_name(seen.node, seen.node.kind, seen.name)
+            continue
         what = "the condition" if seen.category == "Condition" else "the action"
         fix = _short_form(view, seen, name)
         message = f"`{seen.node.kind.text}` without code is a placeholder for {what} `{name}`"
         yield Diagnostic("classic-placeholder", seen.node.kind.span, message, fixes=(fix,) if fix is not None else ())
+
+
+def _is_script(view: View, name: str) -> bool:
+    """Whether a name can only be meant as code: `speed := 0.5`, `battery > 20`."""
+    if _OPERATOR.search(name) is None:
+        return False
+    from btq_lang.syntax.script.tree import Assign, Binary, Comparison  # few files need it
+
+    script = view.script(name)
+    ends = (script.statements[-1],) if script.complete and script.statements and not script.problems else ()
+    return any(isinstance(end, Assign | Comparison | Binary) for end in ends)
+
+
+def _code_as_name(node: Node, kind: Word, name: Word) -> Diagnostic:
+    """`Script "speed := 0.5"` is not a placeholder: its code lacks the port."""
+    message = f"`{name.text}` is the name of this `{kind.text}`; a script goes in its port `code`"
+    key = next((pair.key for pair in node.attributes if pair.value is name), None)
+    code = f"code = {name.raw if name.quoted else quote(name.text)}"
+    fixes: tuple[Fix, ...] = ()
+    if key is not None:
+        fixes = (replace_fix("Replace `name` with `code`", key.span, "code"),)
+    elif not node.attributes:
+        fixes = (replace_fix(f"Write `{kind.text} ({code})`", name.span, f"({code})"),)
+    return Diagnostic("classic-placeholder", name.span, message, fixes=fixes, severity=Severity.WARNING)
 
 
 def placeholder_clash(view: View) -> Iterator[Diagnostic]:

@@ -13,12 +13,14 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nav2 import ports_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS, PortKind
+from btq_lang.catalog.units import Unit, convert, dimension_name, parse_unit
 from btq_lang.catalog.versions import ID_IN_COMPACT_FORM, PORTS_OF_SUBTREE, UNDERSCORES, is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import model_related, way_in
 from btq_lang.checks.view import View, ports_beside
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.syntax.tokens import NUMBER, QUANTITY
 from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, written
 from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean, distance, near
@@ -44,7 +46,7 @@ def unknown_port(view: View) -> Iterator[Diagnostic]:
     for seen in view.seen.given:
         yield from _forbidden_id(seen) if ID_IN_COMPACT_FORM.holds(view.target) else ()
         ports = _ports(view, seen)
-        if ports is None or not (meant := _meant(seen, ports)) or _may_have_more(view, seen):
+        if ports is None or not (meant := _meant(view, seen, ports)) or _may_have_more(view, seen):
             continue
         known = ports.all
         names = ", ".join(f"`{port.name}`" for port in known)
@@ -58,9 +60,10 @@ def unknown_port(view: View) -> Iterator[Diagnostic]:
             # may register another node than the one that another file of the project declares.
             harmless = (seen.is_subtree and not required.intersection(likely)) or not (known or seen.kind)
             harmless = harmless or _is_of_pool(view, seen)
-            fixes = tuple(
-                replace_fix(f"Replace `{key.text}` with `{port}`", key.span, written(port)) for port in likely
-            )
+            fixes = _renamings(view, seen, ports, key, likely)
+            if node := _node_meant(seen, ports, key, likely):
+                likely = (node,)
+                fixes = (replace_fix(f"Replace `{seen.node.head.text}` with `{node}`", seen.node.head.span, node),)
             message = f"{seen.shown_kind} has no port `{key.text}`{did_you_mean(likely) or stale}"
             related = _declared(view, seen)
             notes = (f"it has {names}" if known else "it has no ports", *_of_version_3(view, seen, key.text))
@@ -84,7 +87,9 @@ def missing_port(view: View) -> Iterator[Diagnostic]:
             continue  # a value may be on a line that could not be read
         if _may_have_more(view, seen):
             continue  # and so may a default
-        misspelt = {likely[0] for likely in _meant(seen, ports).values() if likely}  # reported as unknown, with a fix
+        misspelt = {
+            likely[0] for likely in _meant(view, seen, ports).values() if likely
+        }  # reported as unknown, with a fix
         missing = [port for port in missing if port.name not in misspelt]
         if not missing:
             continue
@@ -121,6 +126,9 @@ def unknown_attribute(view: View) -> Iterator[Diagnostic]:
         for pair in seen.node.attributes:
             key = pair.key.text
             if is_port_name(key) or key in _OWN:
+                meant = _ATTRIBUTES.get(_plain(key)) if UNDERSCORES.holds(view.target) else None
+                if meant is not None and _ports(view, seen) is None:
+                    yield from _without_underscore(seen, pair.key, meant)
                 continue
             if not UNDERSCORES.holds(view.target):
                 if seen.category != "SubTree" and key != "_description":
@@ -162,6 +170,15 @@ def _wished(view: View, pair: Pair, value: Word) -> Diagnostic:
     fix = Fix(f'Write `_skipIf="{script}"`', tuple(changes))
     message = f"no version of the engine has `{key}`, and it ignores it silently; did you mean `_skipIf`?"
     return Diagnostic("unknown-attribute", pair.key.span, message, notes=(f'write `_skipIf="{script}"`',), fixes=(fix,))
+
+
+def _without_underscore(seen: ResolvedNode, key: Word, meant: str) -> Iterator[Diagnostic]:
+    """`skipIf` on a node whose ports are unknown; elsewhere it is an unknown port."""
+    if key.text.islower() and "_" not in key.text and not seen.is_subtree:
+        return  # `while` and `post` may be ports
+    message = f"the engine takes `{key.text}` for a port; did you mean `{meant}`?"
+    fix = replace_fix(f"Replace `{key.text}` with `{meant}`", key.span, meant)
+    yield Diagnostic("unknown-attribute", key.span, message, fixes=(fix,))
 
 
 def duplicate_attribute(view: View) -> Iterator[Diagnostic]:
@@ -208,6 +225,12 @@ def misspelt_type(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("misspelt-type", port.type.span, message, fixes=(fix,))
 
 
+def first_port(view: View, seen: ResolvedNode) -> PortKind | None:
+    """The port that a value without a name is most likely for: the first that needs one, or else the first."""
+    ports = _ports(view, seen)
+    return next(iter((*ports.required, *ports.all)), None) if ports is not None else None
+
+
 def is_case(seen: ResolvedNode, key: str) -> bool:
     """Whether an attribute is a case of a Switch; which ones exist depends on the number of its children."""
     return seen.flow == "switch" and key.startswith("case_") and key[5:].isdecimal()
@@ -222,6 +245,9 @@ class KnownPorts:
         self.all = ports
         self.names = frozenset([port.name for port in ports])
         self.required = tuple([port for port in ports if port.required])
+
+    def named(self, name: str) -> PortKind | None:
+        return next((port for port in self.all if port.name == name), None)
 
 
 def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
@@ -311,7 +337,7 @@ def _builtin_ports(tag: str, has_old_names: bool) -> KnownPorts:
     return KnownPorts(tuple([replace(port, doc=f"{port.doc[0].lower()}{port.doc[1:]}") for port in named]))
 
 
-def _meant(seen: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:
+def _meant(view: View, seen: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:
     """The keys that are not ports, each with the ports that may be meant and have no value."""
     names = ports.names
     given = [pair.key.text for pair in seen.node.attributes]
@@ -325,6 +351,7 @@ def _meant(seen: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]
         if key in names or key in _OWN or not is_port_name(key) or is_case(seen, key):
             continue
         old = OLD_PORTS.get((seen.kind.tag, key)) if seen.kind else None
+        old = old or (_ATTRIBUTES.get(_plain(key)) if UNDERSCORES.holds(view.target) else None)
         likely = near(key, (port.name for port in free)) if len(found) * len(free) < _MOST_COMPARED else ()
         found[pair.key] = (old,) if old else likely
     strange = [key for key, likely in found.items() if not likely]
@@ -332,6 +359,48 @@ def _meant(seen: ResolvedNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]
     if len(strange) == len(missing) == 1 and not any(missing[0] in likely for likely in found.values()):
         found[strange[0]] = (missing[0],)  # `timeout_ms` can only be `msec`
     return found
+
+
+def _renamings(
+    view: View, seen: ResolvedNode, ports: KnownPorts, key: Word, likely: tuple[str, ...]
+) -> tuple[Fix, ...]:
+    """The fixes that write a port's name in place of a key, and with a unit what a key with that unit is given."""
+    value = seen.node.attribute(key.text)
+    unit = _unit_in(key.text)
+    fixes: list[Fix] = []
+    for name in likely:
+        of_port = parse_unit(port.unit or "") if (port := ports.named(name)) is not None else None
+        title = f"Replace `{key.text}` with `{name}`"
+        if unit is None or of_port is None or value is None or unit == of_port or value.kind == QUANTITY:
+            fixes.append(replace_fix(title, key.span, written(name)))
+        elif value.kind == NUMBER and unit.dimension == of_port.dimension:
+            amount = f"{value.raw} {unit.symbol}"
+            if view.is_xml:
+                amount = f"{convert(float(value.raw), unit, of_port):g}"
+            changes = (Change(Place(key.span), written(name)), Change(Place(value.span), amount))
+            fixes.append(Fix(f"Write `{name} = {amount}`", changes))
+    return tuple(fixes)
+
+
+def _unit_in(key: str) -> Unit | None:
+    """The unit of time with which a key ends: `seconds`, `timeout_s`, `delaySec`."""
+    word = _WORDS_IN_KEY.findall(key)[-1:]
+    unit = parse_unit(word[0].lower()) if word else None
+    return unit if unit is not None and dimension_name(unit) == "time" else None
+
+
+def _node_meant(seen: ResolvedNode, ports: KnownPorts, key: Word, likely: tuple[str, ...]) -> str | None:
+    """The one built-in with a port of this name, of another role than the missing one: `Loop (num_cycles = 3)`."""
+    port = ports.named(likely[0]) if len(likely) == 1 else None
+    if seen.kind is None or port is None or near(key.text, likely):
+        return None
+    beside = [kind for kind in BUILTINS.values() if kind.category == seen.kind.category and kind.port(key.text)]
+    meant = beside[0].port(key.text) if len(beside) == 1 else None
+    return beside[0].tag if meant is not None and meant.role not in ("", port.role) else None
+
+
+def _plain(key: str) -> str:
+    return key.replace("_", "").casefold()
 
 
 def _forbidden_id(seen: ResolvedNode) -> Iterator[Diagnostic]:
@@ -433,3 +502,6 @@ _MOST_COMPARED = 2_000
 # Version 3's attributes of a SubTree, and their successors.
 _OF_TODAY = {"__shared_blackboard": "_autoremap", "__autoremap": "_autoremap"}
 _KEPT = frozenset(RESERVED_ATTRIBUTES) - frozenset(_OF_TODAY)
+# The attributes that the engine reads, as one writes them who forgets the `_`.
+_ATTRIBUTES = {_plain(name): name for name in _KEPT if RESERVED_ATTRIBUTES[name].group != "tool"}
+_WORDS_IN_KEY = re.compile(r"[A-Z]?[a-z]+")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.units import Dimension, parse_unit
+from btq_lang.catalog.units import Dimension, dimension_name, parse_unit
 from btq_lang.checks.measures import is_measured
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
@@ -62,6 +63,11 @@ def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | N
     from btq_lang.requirements.constraints import clauses_of
 
     text = " ".join(constraint.text.split()).rstrip(".")
+    if (bound := _TIME_BOUND.fullmatch(text)) is not None and bound["word"] not in signals:
+        unit = parse_unit(bound["unit"])
+        is_most = (bound["sign"][0] in "<≤") != constraint.violates
+        if unit is not None and dimension_name(unit) == "time":
+            return f"takes at {'most' if is_most else 'least'} {bound['number']} {unit.symbol}"
     condition = f"{'never' if constraint.violates else 'keeps'} {text}"
     if any(sign in text for sign in "<>=") and clauses_of(condition) is not None:
         return condition
@@ -92,3 +98,11 @@ def _fixes(view: View, text: Word, name: str, clauses: tuple[str, ...]) -> tuple
         return ()
     added = " ".join(clauses)
     return (replace_fix(f"Add `{added}`", Span(text.end, text.end), f" {added}"),)
+
+
+# The time that a node takes, where no signal has that name.
+_TIME_BOUND = re.compile(
+    r"(?:the )?(?P<word>(?:execution |elapsed |running )?time|duration|runtime)\s*(?P<sign>[<>]=?|[≤≥])"
+    r"\s*(?P<number>[0-9]+(?:\.[0-9]+)?)\s*(?P<unit>[a-z]+)",
+    re.IGNORECASE,
+)

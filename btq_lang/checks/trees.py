@@ -12,6 +12,7 @@ from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.lookups import Meaning
+from btq_lang.checks.one_parent import sequence_above
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -202,7 +203,8 @@ def tree_root_count(view: View) -> Iterator[Diagnostic]:
         return
     message = f"a tree must have one node at its top, found {len(tree.children)}"
     notes = (f"put them below one node, such as a Sequence{'' if view.is_xml else ' `->`'}",)
-    yield Diagnostic("tree-root-count", extra, message, (Related(Place(first), "first one"),), notes)
+    related = (Related(Place(first), "first one"),)
+    yield Diagnostic("tree-root-count", extra, message, related, notes, sequence_above(view, tree.children))
 
 
 def tree_named_like_node(view: View) -> Iterator[Diagnostic]:

@@ -7,6 +7,7 @@ from argparse import Namespace
 from collections.abc import Iterator
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES, AttributeKind
+from btq_lang.catalog.foreign_names import ForeignName, foreign_name
 from btq_lang.catalog.language import PHRASES, SIGNS, phrases_of
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
@@ -45,6 +46,12 @@ def run(options: Namespace) -> int:
 
 
 def _pages(name: str) -> Iterator[str]:
+    foreign = foreign_name(name)
+    own = [*_own_pages(name)]
+    yield from own if own or foreign is None else _foreign(name, foreign)
+
+
+def _own_pages(name: str) -> Iterator[str]:
     if name in RULES:
         yield page(name).rstrip()
     kind = lookup(name) or lookup(name, quoted=True)
@@ -88,6 +95,12 @@ def _node(kind: NodeKind) -> Iterator[str]:
         needed = "required" if port.required else f"default {port.default}" if port.default else "optional"
         yield f"{port.direction + ':':<9} {port.name} : {port.type} ({needed}{', ' + port.unit if port.unit else ''})"
         yield f"          {port.doc}"
+
+
+def _foreign(name: str, foreign: ForeignName) -> Iterator[str]:
+    note = f"\n{foreign.note[0].upper()}{foreign.note[1:]}." if foreign.note else ""
+    doc = BUILTINS[foreign.tag].doc
+    yield f"# {name} (of other engines)\n\nThe node of BehaviorTree.CPP is {foreign.tag}. {doc}{note}"
 
 
 def _quality(quality: Quality, name: str, explanation: str) -> Iterator[str]:

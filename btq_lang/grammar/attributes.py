@@ -94,6 +94,10 @@ class AttributeParser(RequirementParser):
             notes = (f"a value goes after the name of its port: `port = {shown(self.raw)}`",)
         elif self.kinds[at - 1] == OPEN and self.kind == NAME and self.raws[at + 1] == ",":
             notes = (CHILDREN,)
+        elif self.raw in ("+", "%") and self.kinds[at - 1] in (STRING, NAME, BRACED):
+            self.complain(self.here(), _PUT_TOGETHER, notes=(_LITERAL_OR_ENTRY,))
+            self.recover()
+            return
         fixes = self.id_in_brackets() or self.classic_quality(clauses)
         if self.kind == NAME and self.kinds[at + 1] in (STRING, NUMBER, QUANTITY, BRACED):
             gap = Span(self.here().end, self.starts[at + 1])
@@ -142,8 +146,13 @@ class AttributeParser(RequirementParser):
         return self.needs_quotes(word)
 
     def half_quoted(self, word: Word) -> Word:
-        """`charger" …`: the rest is a string only because a quote is missing."""
+        """`charger" …`: the rest is a string only because a quote is missing; or Python is meant: `f"dock{n}"`."""
         span = word.span.shifted(self.base)
+        if word.raw.lower() in _STRING_PREFIXES and self.adjacent(self.index):
+            end = self.here().end
+            self.complain(Span(span.start, end), _PUT_TOGETHER, notes=(_LITERAL_OR_ENTRY,))
+            self.recover()
+            return Word(NAME, word.start, self.text[span.start : end])
         fix = Fix(f"Put {self.raw[0]} before it", (Change(Place(Span(span.start, span.start)), self.raw[0]),))
         at = self.starts[self.index]
         unclosed = [problem for problem in self.lexer.problems[self.known :] if problem.span.start == at]
@@ -276,6 +285,8 @@ class AttributeParser(RequirementParser):
         """ReqUse = Requirement | ReqRef"""
         if self.at_word("QualityReq"):
             return self.requirement()
+        if self.kind == NAME and self.raw.lower() in _REQUIREMENTS and self.kinds[self.index + 1] in (NAME, STRING):
+            return self.requirement_in_other_words()
         if self.kind == NEWLINE and self.index and self.raws[self.index - 1] == ",":
             at = self.last_end() + self.base
             fix = replace_fix("Remove `,`", Span(at - 1, at), "", safe=True)
@@ -283,6 +294,20 @@ class AttributeParser(RequirementParser):
             return None
         name = self.requirement_id("a requirement: its ID, or QualityReq and a definition")
         return self.req_ref(name) if name is not None else None
+
+    def requirement_in_other_words(self) -> Requirement | ReqRef | None:
+        """`satisfies QualityRequirement ID = r`, `satisfies requirement r`"""
+        word = self.here()
+        if self.is_word(self.index + 1, "ID") and self.is_operator(self.index + 2, "="):
+            message = f"unknown word `{self.raw}`; did you mean `QualityReq`?"
+            self.complain(word, message, replace_fix(f"Replace `{self.raw}` with `QualityReq`", word, "QualityReq"))
+            return self.requirement()
+        if self.raws[self.index + 1] in _ATTRIBUTE_WORDS or self.is_operator(self.index + 2, "="):
+            return self.req_ref(self.take())
+        fix = replace_fix(f"Remove `{self.raw}`", Span(word.start, self.starts[self.index + 1]), "")
+        self.complain(word, "a requirement is named by its ID alone", fix)
+        self.advance()
+        return self.req_ref(self.take())
 
     def list_goes_on(self, qualities: bool = False) -> bool:
         """Skip a comma if another element follows it; in brackets an attribute may follow instead."""
@@ -310,3 +335,7 @@ def meant_clause(word: str) -> str | None:
 
 
 _ATTRIBUTE_WORDS: Final = NODE_CLAUSES | {"parameters"}
+_STRING_PREFIXES: Final = frozenset(("f", "r", "b", "u", "fr", "rf", "br", "rb"))
+_PUT_TOGETHER: Final = "a value is one literal or one entry, and nothing puts several together"
+_LITERAL_OR_ENTRY: Final = "write a text in quotes or an entry `{key}`, to which a Script before can give `'dock' .. n`"
+_REQUIREMENTS: Final = frozenset(("requirement", "req", "qualityrequirement", "qualityreq"))

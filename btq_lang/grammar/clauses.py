@@ -67,6 +67,9 @@ class ClauseParser(ClaimParser):
             return self.because()
         if word == "verified":
             return self.how()
+        if word.lower() in _NOT_IN_BTQ and self.is_other_clause():
+            self.other_clause(_NOT_IN_BTQ[word.lower()])
+            return None
         if (self.lost_quote() or self.wrong_unit()) and not self.is_verb(1):
             self.expected(_A_CLAUSE)
             return None
@@ -76,6 +79,24 @@ class ClauseParser(ClaimParser):
             self.advance()
             return self.clause() if self.kind == NAME else None
         return self.claim()
+
+    def is_other_clause(self) -> bool:
+        """Whether the current word, of other notations, begins a clause of them and is not the subject of one."""
+        following = self.index + 1
+        if self.kinds[following] == NAME and self.raws[following] in VERB_WORDS:
+            return False
+        return self.kinds[following] in (NAME, STRING, NUMBER, QUANTITY) or self.raws[following] in (":", "=")
+
+    def other_clause(self, nearest: str) -> None:
+        """Report a clause of another notation, with the nearest of this one."""
+        at, value = self.here(), self.index + 1 + (self.raws[self.index + 1] in (":", "="))
+        fixes: tuple[Fix, ...] = ()
+        if nearest == _BECAUSE and self.kinds[value] == STRING:
+            fixes = (replace_fix("Write `because`", Span(at.start, self.starts[value]), "because "),)
+        elif nearest == _COMMENT and self.index == 0:
+            fixes = (replace_fix("Write it as a comment", Span(at.start, at.start), "# "),)
+        self.complain(at, f"`{self.raw}` is not in btq; nearest is {nearest}", *fixes)
+        self.recover()
 
     def scope(self) -> Scope:
         """Scope = ( "while" | "when" ) Cond"""
@@ -268,3 +289,18 @@ _OTHER_WORDS: Final = {  # for actions and methods
     **dict.fromkeys(("simulation", "proof", "calculation"), ("analysis", "test")),
 }
 _A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"
+_BECAUSE: Final = '`because "…"`'
+_COMMENT: Final = "a comment `# …`"
+# Words with which other notations begin a part of a requirement, each with what is nearest to it.
+_NOT_IN_BTQ: Final = {
+    **dict.fromkeys(("rationale", "reason", "justification", "motivation", "why"), _BECAUSE),
+    **dict.fromkeys(
+        ("status", "state", "owner", "author", "source", "stakeholder", "version", "date", "note"), _COMMENT
+    ),
+    **dict.fromkeys(
+        ("priority", "severity", "criticality", "importance", "risk"), "`on violation` with what happens then"
+    ),
+    **dict.fromkeys(("wish", "desire", "target", "ideal", "optional"), "`goal`, a better bound than the required one"),
+    **dict.fromkeys(("verification", "verify", "validation"), "`verified by` with a method"),
+    **dict.fromkeys(("precondition", "assumption", "context"), "`while` or `when` with a condition"),
+}

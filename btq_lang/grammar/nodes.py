@@ -173,7 +173,8 @@ class NodeParser(AttributeParser):
         bare = False
         if self.kind != NEWLINE:
             bare = self.index == 1 and self.at_bare_value()  # `key = value` after a forgotten bracket
-            self.leftover(kind, label is not None, clauses)
+            if not self.child_on_the_line(label):
+                self.leftover(kind, label is not None, clauses)
         end = self.end_line()
         if bare and not self.deeper(level):
             return None
@@ -260,6 +261,8 @@ class NodeParser(AttributeParser):
         elif kind is not None and kind.kind == NAME and (kind.raw in VERB_WORDS or kind.raw in HEADS):
             message = f"unexpected clause `{kind.raw}` in a tree; clauses go in a requirement"
             note = "write `satisfies QualityReq` and an ID before it, or indent it below a line that does"
+            if kind.raw == "on" and not self.is_word(self.index - 1, "violation"):
+                note = "after a failure, a Fallback `?` runs its next child; `_onFailure` on a node runs a script"
             self.complain(kind.span.shifted(self.base), message, notes=(note,))
         elif self.kind == SYMBOL and self.index == 1 and kind is not None and kind.raw.upper() + self.raw in SYMBOLS:
             span = Span(kind.start + self.base, self.here().end)
@@ -290,6 +293,24 @@ class NodeParser(AttributeParser):
         else:
             return
         self.go_to(len(self.kinds) - 1)
+
+    def child_on_the_line(self, label: Word | None) -> bool:
+        """Report `Inverter Condition Dark`, whose child lacks a line of its own; False if there is none."""
+        index = self.index
+        if label is not None and self.starts[index - 1] == label.start + self.base:
+            index -= 1
+        if not (index and self.kinds[index] == NAME and self.raws[index] in CATEGORIES):
+            return False
+        if self.kinds[index + 1] not in (NAME, STRING) or self.raws[index + 1] in NODE_CLAUSES:
+            return False
+        start, end = self.starts[index], self.starts[-2] + len(self.raws[-2])
+        margin = self.text[line_start(self.text, 0, self.starts[0]) : self.starts[0]]
+        before = self.starts[index - 1] + len(self.raws[index - 1])
+        step = "\t" if margin.startswith("\t") else "    "
+        fix = replace_fix("Put it on a line of its own", Span(before, start), f"\n{margin}{step}")
+        self.complain(Span(start, end), CHILD, *(() if margin.strip() else (fix,)))
+        self.go_to(len(self.kinds) - 1)
+        return True
 
     def ends_label(self, clauses: list[NodeClause]) -> bool:
         """Whether the current name may be the label of a node: only clauses follow, and the brackets before it are the

@@ -13,7 +13,7 @@ from btq_lang.grammar.clauses import ENDS_CLAUSES, ClauseParser
 from btq_lang.grammar.conditions import HEADS, RELATIONS
 from btq_lang.syntax.scan import is_unit, path_end, unit_run
 from btq_lang.syntax.suggestions import unknown_unit
-from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
+from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import Argument, Parameter, QualityPath, ReqRef, Requirement, Word, quote, unquote
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
@@ -118,13 +118,27 @@ class RequirementParser(ClauseParser):
             self.advance()
 
     def second_quality(self, requirement: Requirement) -> None:
-        """Report a comma after a requirement that is not an element of a list: `QualityReq r : safety, usability`."""
-        if requirement.quality is not None and not requirement.clauses and self.at(","):
-            self.expected("the requirement's title, or its clauses", ("a requirement has one quality",))
+        """Report a list of qualities at a requirement that is not an element of a list itself: `QualityReq r : safety,
+        usability`.
+        """
+        is_open = requirement.quality is not None and not (requirement.clauses or requirement.text)
+        if is_open and self.kind == OPERATOR and self.raw in (",", "&", "+"):
+            self.one_quality()
+
+    def one_quality(self) -> None:
+        """Report another quality of a requirement: the current sign or `and`, and what follows."""
+        following = self.index + 1
+        end = self.starts[following] + len(self.raws[following])
+        note = "write a second requirement for the other one, or choose the one that matters most"
+        self.complain(Span(self.here().start, end), "a requirement has one quality", notes=(note,))
+        self.recover()
 
     def bare_title(self, has_quality: bool) -> Word | None:
         """Report and accept a title without quotes; or report a quality without its `:`."""
         following = self.index + 1
+        if has_quality and self.at_word("and") and self.kinds[following + 1] == NEWLINE:
+            self.one_quality()
+            return None
         if self.kind != NAME or self.group or self.raw in VERB_WORDS or self.raw in HEADS or self.raw in ENDS_CLAUSES:
             return None
         is_word = self.kinds[following] == NEWLINE

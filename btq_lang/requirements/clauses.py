@@ -147,8 +147,12 @@ def _limit(reader: Reader, written: syntax.Bound | None, wanted: Wanted) -> mode
 
 def _per(reader: Reader, written: syntax.Path | syntax.Word | None) -> model.Target | model.Value | None:
     if isinstance(written, syntax.Path):
-        return reader.target(written)
+        is_run = written.names[-1].text.lower() in _RUN
+        return reader.target(written, ("without `per` it counts per run",) if is_run else ())
     return reader.quantity(written, DURATION) if written is not None else None
+
+
+_RUN = frozenset(("mission", "run", "execution", "trial", "tree"))
 
 
 def _event(reader: Reader, written: syntax.Event | None) -> model.Event | None:

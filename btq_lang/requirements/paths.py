@@ -126,8 +126,8 @@ class PathReader:
 
     # ---- paths ----
 
-    def target(self, path: Path) -> Target | None:
-        """The one node that a path names."""
+    def target(self, path: Path, notes: tuple[str, ...] = ()) -> Target | None:
+        """The one node that a path names; `notes` are for a path that names none."""
         names = tuple(name.text for name in path.names)
         found = self.find(names)
         if len(found) == 1:
@@ -141,7 +141,7 @@ class PathReader:
                 replace_fix(f"Replace `{word.text}` with `{name}`", word.span, written(name)) for word, name in likely
             )
             message = f"{self._missing(names, shown)}{did_you_mean(name for _, name in likely)}"
-            notes = (_ONE_DEMAND,) if path.names[0].raw == "and" else ()
+            notes = (_ONE_DEMAND,) if path.names[0].raw == "and" else notes
             self.complain("unmatched-path", path.span, message, notes=notes, fixes=fixes)
         return None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_clean, assert_fix, assert_problems
+from check_asserts import assert_clean, assert_fix, assert_problems, fixes
 
 
 def tree(*lines: str) -> str:
@@ -13,7 +13,8 @@ def tree(*lines: str) -> str:
 def test_numbers_of_children() -> None:
     assert_clean(tree("->", "    X"))
     assert_clean(tree("IfThenElse", "    X", "    Y", "    Z"))
-    assert_clean(tree("Own", "    X", "    Y"))  # whose category nobody knows
+    assert_clean("Control Own\n" + tree("Own", "    X", "    Y"))
+    assert_clean(tree("PipelineSequence", "    X", "    Y"))  # of Nav2, whose category nobody knows
     assert_clean(tree("->", '    xml "<X/>"'))
     assert_problems(tree("->"), "2:5 error child-count «->» `->` requires 1 or more children, found none")
     assert_problems(
@@ -146,3 +147,29 @@ def test_nothing_is_said_of_children_that_forgotten_brackets_may_have_swallowed(
         f"BehaviorTree Main\n    {parent}\n        X (x = 1\n        Y\n        Z\n",
         "3:11 error unclosed-bracket «(» missing `)` for this `(`",
     )
+
+
+BELOW_ONE = "Put them below a Sequence `->`"
+
+
+def test_two_children_are_put_below_a_sequence() -> None:
+    text = tree("Inverter", "    Action A (x = 1", "        y = 2)", "", "    # why", "    ?", "        B", "        C")
+    after = tree(
+        *("Inverter", "    ->", "        Action A (x = 1", "            y = 2)", ""),
+        *("        # why", "        ?", "            B", "            C"),
+    )
+    assert_fix(text, BELOW_ONE, after)
+
+
+def test_two_nodes_of_a_tree_are_put_below_a_sequence() -> None:
+    assert_fix("BehaviorTree Main\n\tA\n\tB\n", BELOW_ONE, "BehaviorTree Main\n\t->\n\t\tA\n\t\tB\n")
+    ports = "BehaviorTree Main\n    input x\n"
+    assert_fix(f"{ports}    A\n    B\n# end\n", BELOW_ONE, f"{ports}    ->\n        A\n        B\n# end\n")
+
+
+def test_a_string_over_lines_is_not_indented() -> None:
+    assert fixes(tree("Inverter", '    A (x = "1', '    2")', "    B"), "child-count") == []
+
+
+def test_a_leaf_gets_no_sequence() -> None:
+    assert fixes(tree("AlwaysSuccess", "    A", "    B"), "child-count") == []

@@ -49,6 +49,72 @@ def test_a_slip_of_a_built_in(slip: str, meant: str) -> None:
     assert_fix(tree(slip), f"Replace `{slip}` with `{meant}`", tree(meant))
 
 
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("Selector", "Fallback"),
+        ("selector", "Fallback"),
+        ("MemSelector", "Fallback"),
+        ("BTSelector", "Fallback"),
+        ("SelectorComposite", "Fallback"),
+        ("ActiveSelector", "ReactiveFallback"),
+        ("MemSequence", "Sequence"),
+        ("SequenceNode", "Sequence"),
+        ("Not", "Inverter"),
+        ("Invert", "Inverter"),
+        ("InverterDecorator", "Inverter"),
+        ("Succeeder", "ForceSuccess"),
+        ("ReturnSuccess", "ForceSuccess"),
+        ("FailureIsSuccess", "ForceSuccess"),
+        ("Failer", "ForceFailure"),
+        ("OneShot", "RunOnce"),
+        ("UntilFail", "KeepRunningUntilFailure"),
+        ("Wait", "Delay"),
+        ("TimeLimit", "Timeout"),
+    ],
+)
+def test_a_name_of_another_engine(written: str, meant: str) -> None:
+    message = f"`{written}` is not built into BehaviorTree.CPP 4.6–4.10; did you mean `{meant}`?"
+    mission = tree(f"{written}\n            Action Dock")
+    assert_problems(mission, f"3:9 warning not-an-engine-node «{written}» {message}")
+    node = f'<{written}><Action ID="Dock"/></{written}>'
+    xml = f'<root BTCPP_format="4"><BehaviorTree ID="Main">{node}</BehaviorTree></root>'
+    assert [found.message for found in check(workspace_of({"main.xml": xml}), "main.xml")] == [message]
+    for declared in (f"Control {written}\n", f"BehaviorTree {written}\n    Action Go\n"):
+        assert message not in {found.message for found in check(workspace_of({"m.btq": declared + mission}), "m.btq")}
+    assert_clean(tree(f"{written} (x = 1)"))  # a node of the program
+    assert_clean(tree(f"Decorator {written}\n            Action Dock"))
+
+
+@pytest.mark.parametrize(
+    ("written", "title", "after"),
+    [
+        ("Selector", "Replace `Selector` with `Fallback`", "Fallback"),
+        ("Wait (s = 3)", "Replace `Wait` with `Delay`", "Delay (s = 3)"),
+        ("Repeater", "Replace it with `Repeat (num_cycles = -1)`", "Repeat (num_cycles = -1)"),
+        ("Loop3", None, None),
+        ("Repeater (times = 3)", "Replace `Repeater` with `Repeat`", "Repeat (times = 3)"),
+        (
+            'UntilSuccess "try again"',
+            "Replace it with `RetryUntilSuccessful (num_attempts = -1)`",
+            'RetryUntilSuccessful "try again" (num_attempts = -1)',
+        ),
+    ],
+)
+def test_a_name_of_another_engine_is_replaced(written: str, title: str | None, after: str | None) -> None:
+    child = "\n            Action Dock"
+    if title is None:
+        assert_problems(tree(written + child), f"3:9 hint unknown-node «{written}» unknown node `{written}`")
+    else:
+        assert_fix(tree(written + child), title, tree(f"{after}{child}"))
+
+
+def test_a_parent_without_a_model_is_a_hint() -> None:
+    text = tree("Race\n            Action Dock\n            Action Go")
+    assert_problems(text, "3:9 hint unknown-node «Race» unknown node `Race`")
+    assert_fix(text, "Declare it: `Control Race`", f"Control Race\n{text}")
+
+
 @pytest.mark.parametrize(("model", "node"), [("Pick", "Pik"), ("MoveBase", "movebase"), ("OpenDoor", "OpenDoors")])
 def test_a_slip_of_a_model(model: str, node: str) -> None:
     text = f"Action {model}\n{tree(node)}"
@@ -278,7 +344,7 @@ def test_a_node_may_be_called_as_a_clause() -> None:
     assert_clean(tree('"keeps"'))
     assert_clean(tree("Action keeps"))
     assert_clean("Action goal\n" + tree("goal"))
-    assert_clean(tree("every\n            X"))
+    assert_problems(tree("every\n            X"), "3:9 hint unknown-node «every» unknown node `every`")
     assert_fix(tree("goal"), 'Write "goal" for a node of that name', tree('"goal"'))
 
 

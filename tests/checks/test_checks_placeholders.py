@@ -164,3 +164,35 @@ def test_an_id_that_the_engine_or_a_tree_has() -> None:
         "2 error «Sleep» `Sleep` becomes the node ID `Sleep`, which is a built-in node",
         "5 error «Main» `Main` becomes the node ID `Main`, which is the name of a tree",
     ]
+
+
+@pytest.mark.parametrize(
+    ("written", "after"),
+    [
+        ('Script "speed := 0.5"', 'Script (code = "speed := 0.5")'),
+        ("Script 'speed = 0.5; n += 1'", "Script (code = 'speed = 0.5; n += 1')"),
+        ('ScriptAction "@n := 1 + 2"', 'ScriptAction (code = "@n := 1 + 2")'),
+        ('ScriptAction (name = "a := b")', 'ScriptAction (code = "a := b")'),
+        ('ScriptCondition "battery > 20"', 'ScriptCondition (code = "battery > 20")'),
+        ('ScriptCondition (name = "ok && battery > 20")', 'ScriptCondition (code = "ok && battery > 20")'),
+        ("Script \"speed := 'fast'\"", "Script (code = \"speed := 'fast'\")"),
+    ],
+)
+def test_a_script_where_a_name_goes(written: str, after: str) -> None:
+    kind, code = written.split(" ")[0], after.split("code = ")[1][1:-2]
+    name = written.split("name = ")[1][:-1] if "name =" in written else written.partition(" ")[2]
+    message = f"`{code}` is the name of this `{kind}`; a script goes in its port `code`"
+    assert findings(tree(written), "classic-placeholder") == [f"2 warning «{name}» {message}"]
+    assert [(safe, mended) for _, safe, mended in fixes(tree(written), "classic-placeholder")] == [(False, tree(after))]
+    assert problems(tree(after), "classic-placeholder", "script-error") == []
+
+
+def test_a_script_as_a_name_beside_a_port_is_not_moved() -> None:
+    assert fixes(tree('Script "n := 1" (x = 1)'), "classic-placeholder") == []
+
+
+@pytest.mark.parametrize(
+    "name", ["pick-up", "Battery low?", "Dock & charge", "a/b", "=> dock", "<undock>", "3 > 2 > dock!"]
+)
+def test_names_that_are_no_scripts(name: str) -> None:
+    assert problems(tree(f'Script "{name}"'), "classic-placeholder")[0].message.startswith("`Script` without code is")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_clean, assert_fix, assert_problems
+from check_asserts import assert_clean, assert_fix, assert_problems, fixes, problems, workspace_of
 
 from btq_lang.checks import check
 from btq_lang.workspace.config import Project
@@ -42,6 +42,74 @@ def test_a_port_of_another_name_is_one_mistake(wrong: str, right: str) -> None:
         text, f"3:{column} error unknown-port «{key}» `{kind}` has no port `{key}`; did you mean `{meant}`?"
     )
     assert_fix(text, f"Replace `{key}` with `{meant}`", tree(f"{right}\n            X"))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        ("Timeout (seconds = 30)", "Timeout (msec = 30 s)"),
+        ("Timeout (timeout_s = 0.5)", "Timeout (msec = 0.5 s)"),
+        ("Timeout (limitMinutes = 2)", "Timeout (msec = 2 min)"),
+        ("Timeout (hours = 1)", "Timeout (msec = 1 h)"),
+        ("Timeout (timeout_sec = 2 s)", "Timeout (msec = 2 s)"),
+        ("Delay (seconds = 30)", "Delay (delay_msec = 30 s)"),
+    ],
+)
+def test_a_key_with_a_unit_is_replaced_with_its_unit(wrong: str, right: str) -> None:
+    text, after = (tree(f"{node}\n            X") for node in (wrong, right))
+    (found,) = problems(text, "unknown-port")
+    assert [(fix.title.startswith(("Write", "Replace")), fix.safe) for fix in found.fixes] == [(True, False)]
+    assert_fix(text, found.fixes[0].title, after)
+
+
+def test_a_key_with_a_unit_and_an_entry_is_not_replaced() -> None:
+    assert fixes(tree("Timeout (seconds = {s})\n            X"), "unknown-port") == []
+
+
+def test_a_port_of_another_node() -> None:
+    text = tree("Loop (num_cycles = 3)\n            X")
+    assert_problems(
+        text, "3:15 error unknown-port «num_cycles» `Loop` has no port `num_cycles`; did you mean `Repeat`?"
+    )
+    assert_fix(text, "Replace `Loop` with `Repeat`", tree("Repeat (num_cycles = 3)\n            X"))
+    renamed = fixes(tree("Retry (num_cycles = 3)\n            X"), "unknown-port")
+    assert [title for title, _, _ in renamed] == ["Replace `num_cycles` with `num_attempts`"]
+
+
+@pytest.mark.parametrize(
+    ("key", "meant"),
+    [
+        ("skipIf", "_skipIf"),
+        ("skip_if", "_skipIf"),
+        ("successIf", "_successIf"),
+        ("failure_if", "_failureIf"),
+        ("onSuccess", "_onSuccess"),
+        ("on_halted", "_onHalted"),
+    ],
+)
+def test_an_attribute_without_its_underscore(key: str, meant: str) -> None:
+    text = tree(f'Action Dock ({key} = "a == 1")')
+    warning = f"the engine takes `{key}` for a port; did you mean `{meant}`?"
+    assert_problems(text, f"3:22 warning unknown-attribute «{key}» {warning}")
+    assert_fix(text, f"Replace `{key}` with `{meant}`", text.replace(key, meant))
+    refused = f"`->` has no port `{key}`; did you mean `{meant}`?"
+    assert_problems(
+        f'BehaviorTree Main\n    -> ({key} = "a == 1")\n        X\n', f"2:9 error unknown-port «{key}» {refused}"
+    )
+    xml = f'<root BTCPP_format="4"><BehaviorTree ID="Main"><Dock {key}="a == 1"/></BehaviorTree></root>'
+    assert [each.message for each in check(workspace_of({"main.xml": xml}), "main.xml")] == [warning]
+    assert_clean(f"Action Dock\n    input {key}\n{text}")
+
+
+def test_an_attribute_of_a_subtree_without_its_underscore() -> None:
+    text = tree("SubTree Pick (autoremap = true)") + "BehaviorTree Pick\n    X\n"
+    warning = "the engine takes `autoremap` for a port; did you mean `_autoremap`?"
+    assert_problems(text, f"3:23 warning unknown-attribute «autoremap» {warning}")
+
+
+@pytest.mark.parametrize("key", ["while", "post", "description"])
+def test_a_port_named_like_an_attribute(key: str) -> None:
+    assert_clean(tree(f'Dock ({key} = "x")'))
 
 
 def test_a_port_that_has_a_value_is_not_meant() -> None:

@@ -207,3 +207,24 @@ def test_any_description_at_all(text: str) -> None:
     source = requirement(f"SuccessIf {text} FailureIf {text}")
     for found in problems(source, "prose-constraint"):
         assert source[found.span.start : found.span.end] in ("SuccessIf", "FailureIf")
+
+
+@pytest.mark.parametrize(
+    ("prose", "clause"),
+    [
+        ("SuccessIf time < 90 sec", "takes at most 90 s"),
+        ("SuccessIf time <= 1.5 min", "takes at most 1.5 min"),
+        ("SuccessIf execution time ≤ 90 s", "takes at most 90 s"),
+        ("FailureIf time > 90 sec", "takes at most 90 s"),
+        ("FailureIf duration < 5 s", "takes at least 5 s"),
+        ("SuccessIf time > 5 s", "takes at least 5 s"),
+    ],
+)
+def test_the_time_that_a_node_takes(prose: str, clause: str) -> None:
+    text = f'QualityReq r : safety "{prose}"\n'
+    assert [title for title, _, _ in fixes(text, "prose-constraint")] == [f"Add `{clause}`"]
+
+
+def test_a_signal_called_time_is_a_condition() -> None:
+    text = 'signal time : s\nQualityReq r : safety "SuccessIf time < 90 s"\n'
+    assert "takes" not in str(fixes(text, "prose-constraint"))

@@ -243,8 +243,8 @@ FROM_PYTHON: Final[list[Case]] = [
     (
         tree("Retry (3)", "    Go"),
         "2:12 error syntax-error «3» expected an attribute: key = value, found `3` | "
-        "a value goes after the name of its port: `port = 3`",
-        None,
+        "a value goes after the name of its port: `num_attempts = 3`",
+        tree("Retry (num_attempts = 3)", "    Go"),
     ),
     (
         "def main():\n    Go\n",
@@ -533,7 +533,136 @@ FROM_THE_PUBLISHED_SYNTAX: Final[list[Case]] = [
 ]
 
 
-@pytest.mark.parametrize(("text", "said", "mended"), FROM_XML + FROM_PYTHON + FROM_THE_PUBLISHED_SYNTAX)
+PUT_TOGETHER = (
+    "a value is one literal or one entry, and nothing puts several together | "
+    "write a text in quotes or an entry `{key}`, to which a Script before can give `'dock' .. n`"
+)
+ON_ITS_OWN = "a child goes on a line of its own below its parent, indented"
+A_VALUE = 'a value goes to a port: `MoveBase (speed = 0.5)`; or to an entry: `Script (code = "speed := 0.5")`'
+AN_ITEM = "expected an item: BehaviorTree, QualityReq, include, signal, …, found"
+FROM_OTHER_LANGUAGES: list[tuple[str, str, str | None]] = [
+    (tree('Go (station = f"dock{n}")'), f'2:19 error syntax-error «f"dock{{n}}"» {PUT_TOGETHER}', None),
+    (tree("Go (station = f'dock')"), f"2:19 error syntax-error «f'dock'» {PUT_TOGETHER}", None),
+    (tree('Go (station = rb"dock" x = 1)'), f'2:19 error syntax-error «rb"dock"» {PUT_TOGETHER}', None),
+    (tree('Go (station = "dock" + n)'), f"2:26 error syntax-error «+» {PUT_TOGETHER}", None),
+    (tree('Go (station = "dock%d" % n)'), f"2:28 error syntax-error «%» {PUT_TOGETHER}", None),
+    (
+        tree("Inverter Condition Dark"),
+        f"2:14 error syntax-error «Condition Dark» {ON_ITS_OWN}",
+        tree("Inverter", "    Condition Dark"),
+    ),
+    (
+        tree("Retry (num_attempts = 3) Action Dock (x = 1)"),
+        f"2:30 error syntax-error «Action Dock (x = 1)» {ON_ITS_OWN}",
+        tree("Retry (num_attempts = 3)", "    Action Dock (x = 1)"),
+    ),
+    (
+        tree('Timeout "at most" (msec = 1 s) SubTree Dock_it') + "BehaviorTree Dock_it\n    Go\n",
+        f"2:36 error syntax-error «SubTree Dock_it» {ON_ITS_OWN}",
+        tree('Timeout "at most" (msec = 1 s)', "    SubTree Dock_it") + "BehaviorTree Dock_it\n    Go\n",
+    ),
+    (
+        "BehaviorTree Main\n\t->\n\t\tInverter Action Dock\n",
+        f"3:12 error syntax-error «Action Dock» {ON_ITS_OWN}",
+        "BehaviorTree Main\n\t->\n\t\tInverter\n\t\t\tAction Dock\n",
+    ),
+    ("speed = 0.5\n" + tree("Go"), f"1:1 error syntax-error «speed» {AN_ITEM} `speed` | {A_VALUE}", None),
+    (
+        'main_tree_to_execute = "Main"\n' + tree("Go"),
+        f"1:1 error syntax-error «main_tree_to_execute» {AN_ITEM} `main_tree_to_execute` | `Root` names the main tree",
+        'Root "Main"\n' + tree("Go"),
+    ),
+    (
+        '"""docks"""\n' + tree("Go"),
+        '1:1 error syntax-error «"""docks"""» a comment begins with `#`',
+        "# docks\n" + tree("Go"),
+    ),
+    (
+        tree("->", "    Go") + "/Sequence\n",
+        f"4:1 error syntax-error «/» {AN_ITEM} `/` | "
+        "a block ends where its indentation does, without a line of its own",
+        tree("->", "    Go") + "\n",
+    ),
+    (
+        tree("Action Go", "    on failure abort"),
+        "3:9 error syntax-error «on» unexpected clause `on` in a tree; clauses go in a requirement | "
+        "after a failure, a Fallback `?` runs its next child; `_onFailure` on a node runs a script",
+        None,
+    ),
+    (
+        tree("Go satisfies QualityRequirement ID = r takes at most 3 s"),
+        "2:18 error syntax-error «QualityRequirement» unknown word `QualityRequirement`; did you mean `QualityReq`?",
+        tree("Go satisfies QualityReq ID = r takes at most 3 s"),
+    ),
+    (
+        tree("-> (satisfies qualityreq ID = r takes at most 3 s)", "    Go"),
+        "2:19 error syntax-error «qualityreq» unknown word `qualityreq`; did you mean `QualityReq`?",
+        tree("-> (satisfies QualityReq ID = r takes at most 3 s)", "    Go"),
+    ),
+    (
+        tree("Go satisfies requirement r") + R,
+        "2:18 error syntax-error «requirement» a requirement is named by its ID alone",
+        tree("Go satisfies r") + R,
+    ),
+    (
+        requirement("takes at most 3 s", 'rationale "the dock is near"'),
+        '5:5 error syntax-error «rationale» `rationale` is not in btq; nearest is `because "…"`',
+        requirement("takes at most 3 s", 'because "the dock is near"'),
+    ),
+    (
+        requirement("takes at most 3 s", 'Reason: "it is near"'),
+        '5:5 error syntax-error «Reason» `Reason` is not in btq; nearest is `because "…"`',
+        requirement("takes at most 3 s", 'because "it is near"'),
+    ),
+    (
+        requirement("takes at most 3 s", "status approved"),
+        "5:5 error syntax-error «status» `status` is not in btq; nearest is a comment `# …`",
+        requirement("takes at most 3 s", "# status approved"),
+    ),
+    (
+        requirement("takes at most 3 s", "priority must"),
+        "5:5 error syntax-error «priority» `priority` is not in btq; nearest is `on violation` with what happens then",
+        None,
+    ),
+    (
+        requirement("takes at most 3 s", "wish Go takes at most 2 s"),
+        "5:5 error syntax-error «wish» `wish` is not in btq; nearest is `goal`, a better bound than the required one",
+        None,
+    ),
+    (
+        requirement("tries at most 2 per mission"),
+        "4:25 error unmatched-path «mission» unknown node `mission` | without `per` it counts per run",
+        None,
+    ),
+    (
+        "Action Go\n    input station\n" + tree('Go ("dock")'),
+        '4:9 error syntax-error «"dock"» expected an attribute: key = value, found `"dock"` | '
+        'a value goes after the name of its port: `station = "dock"`',
+        "Action Go\n    input station\n" + tree('Go (station = "dock")'),
+    ),
+    (
+        tree("Timeout (30)", "    Go"),  # of which unit nobody knows
+        "2:14 error syntax-error «30» expected an attribute: key = value, found `30` | "
+        "a value goes after the name of its port: `port = 30`",
+        None,
+    ),
+    (
+        tree("Timeout (30 s)", "    Go"),
+        "2:14 error syntax-error «30 s» expected an attribute: key = value, found `30 s` | "
+        "a value goes after the name of its port: `msec = 30 s`",
+        tree("Timeout (msec = 30 s)", "    Go"),
+    ),
+]
+
+
+def test_subjects_that_are_words_of_other_notations() -> None:
+    text = tree("->", "    status satisfies r", "    Go") + "QualityReq r\n    status takes at most 3 s\n"
+    assert mistakes(text) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "said", "mended"), [*FROM_XML, *FROM_PYTHON, *FROM_THE_PUBLISHED_SYNTAX, *FROM_OTHER_LANGUAGES]
+)
 def test_one_mistake_is_one_diagnostic(text: str, said: str, mended: str | None) -> None:
     found = mistakes(text)
     assert [" | ".join((line, *found[0].notes)) for line in show(text, found)] == [said]

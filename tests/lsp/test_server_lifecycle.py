@@ -249,6 +249,20 @@ def test_over_a_port_it_ends_the_same(is_shut_down: bool, tmp_path: Path) -> Non
         editor.process.communicate(timeout=20)
 
 
+def test_an_editor_that_reads_nothing_any_more_ends_it_silently(tmp_path: Path) -> None:
+    editor = Editor(tmp_path, command=SERVER)
+    process = editor.process
+    assert isinstance(process, subprocess.Popen)
+    assert process.stdin is not None
+    assert process.stdout is not None
+    assert process.stderr is not None
+    with process:
+        process.stdout.close()
+        editor.open("main.btq", "BehaviorTree Main\n    Rety\n")
+        process.stdin.close()
+        assert (process.wait(timeout=20), process.stderr.read()) == (1, b"")
+
+
 # Standard input and output of an editor, to and from a port.
 BRIDGE = """
 port = socket.create_connection(("127.0.0.1", PORT))

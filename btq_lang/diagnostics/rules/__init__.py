@@ -85,7 +85,7 @@ _TABLE = (
     # Nodes and their ports.
     Rule("unknown-node", _W, "a node kind that neither the engine nor any model defines"),
     Rule("no-models", _H, "many nodes with ports, and no model for any of them"),
-    Rule("not-an-engine-node", _W, "a word of the classic syntax that the engine does not register as a node"),
+    Rule("not-an-engine-node", _W, "a word of the classic syntax, or of another engine, that is not a node"),
     Rule("newer-engine-node", _E, "a built-in node that the project's engine version does not have"),
     Rule("category-mismatch", _W, "a node used as another category than its model declares"),
     Rule("unknown-port", _E, "a port that the node does not have"),
@@ -96,6 +96,7 @@ _TABLE = (
     Rule("version-3-file", _W, "XML for version 3 of the engine in a project that does not say so"),
     Rule("old-entry", _W, "`${key}`, which is an entry only to version 3 of the engine"),
     Rule("json-in-braces", _W, "JSON in braces, which the engine reads as the name of an entry"),
+    Rule("key-in-braces", _W, "the name of an entry in braces, where the node reads the name from that entry"),
     Rule("number-for-text", _E, "a number that a SubTree passes to a string port below it"),
     Rule("entry-with-two-types", _E, "a blackboard entry that is connected to ports of two types"),
     Rule("quantity-on-unitless-port", _E, "a quantity on a port whose unit is unknown or has another dimension"),

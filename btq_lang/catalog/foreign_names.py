@@ -1,0 +1,96 @@
+"""Names that other engines have for what a built-in of this one does: people who know those write them here.
+
+One invariant: no name here, written as its engine writes it, is a spelling of a built-in.  A node of a program may have
+any of them, so callers ask only about nodes with children that nothing declares.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from btq_lang.catalog.nodes import BUILTINS, spellings
+from btq_lang.util.record import Record
+
+
+class ForeignName(Record):
+    """What a name of other engines means.
+
+    Attributes:
+        tag: the built-in that does the same.
+        attributes: what it requires to do so, as a file writes it; empty if nothing, or if the name does not tell.
+        note: in what the two differ, as a sentence; empty if in nothing.
+    """
+
+    tag: str
+    attributes: str = ""
+    note: str = ""
+
+
+def foreign_name(word: str) -> ForeignName | None:
+    """The meaning of a name in other engines, or of a class of this one: `Selector`, `BTInvert`, `SequenceNode`; None
+    if it has none there."""
+    plain = _plain(word)
+    if plain in _SPELLINGS:
+        return None
+    stem = _AFFIXES.sub("", plain)
+    known = _NAMES.get(plain) or _NAMES.get(stem)
+    return ForeignName(_SPELLINGS[stem]) if known is None and stem in _SPELLINGS else known
+
+
+def _plain(word: str) -> str:
+    return re.sub(r"[\W_]", "", word).casefold()
+
+
+_ENDLESS: Final = "; -1 means without end"
+_UNTIL_FAILURE: Final = ForeignName(
+    "KeepRunningUntilFailure",
+    note="it returns FAILURE at the end; for SUCCESS, write `Retry (num_attempts = -1)` around an `Inverter`",
+)
+
+# By name without case and underscores; sources: the documentation of py_trees, behavior3, Unreal Engine, Behavior
+# Designer, gdx-ai, BrainTree, Beehave and LimboAI.
+_NAMES: Final[dict[str, ForeignName]] = {
+    **dict.fromkeys(
+        ("selector", "select", "priority", "priorityselector", "mempriority", "memselector", "statefulselector", "or"),
+        ForeignName("Fallback"),
+    ),
+    **dict.fromkeys(("memsequence", "and"), ForeignName("Sequence")),
+    **dict.fromkeys(
+        ("activeselector", "dynamicselector", "reactiveselector", "selectorreactive"), ForeignName("ReactiveFallback")
+    ),
+    **dict.fromkeys(("activesequence", "dynamicsequence", "sequencereactive"), ForeignName("ReactiveSequence")),
+    **dict.fromkeys(("simpleparallel", "parallelsequence", "concurrent"), ForeignName("Parallel")),
+    **dict.fromkeys(("if", "ifelse", "ifthen"), ForeignName("IfThenElse")),
+    **dict.fromkeys(("not", "negate", "negation", "negator", "invert", "inversion"), ForeignName("Inverter")),
+    **dict.fromkeys(
+        ("succeeder", "succeed", "alwayssucceed", "forcesucceed", "returnsuccess", "failureissuccess"),
+        ForeignName("ForceSuccess"),
+    ),
+    **dict.fromkeys(
+        ("failer", "fail", "alwaysfail", "forcefail", "returnfailure", "successisfailure"), ForeignName("ForceFailure")
+    ),
+    **dict.fromkeys(("untilfail", "untilfailure", "repeatuntilfail", "repeatuntilfailure"), _UNTIL_FAILURE),
+    **dict.fromkeys(
+        ("untilsuccess", "untilsucceed", "repeatuntilsuccess"),
+        ForeignName("RetryUntilSuccessful", "num_attempts = -1", f"`num_attempts` limits how often{_ENDLESS}"),
+    ),
+    **dict.fromkeys(
+        ("repeater", "looper", "loop"),
+        ForeignName("Repeat", "num_cycles = -1", f"`num_cycles` says how often{_ENDLESS}"),
+    ),
+    **dict.fromkeys(
+        ("timelimit", "timelimiter", "maxtime"),
+        ForeignName("Timeout", note="`msec` says after which time it halts its child: `msec = 30 s`"),
+    ),
+    **dict.fromkeys(
+        ("wait", "delayer"),
+        ForeignName("Delay", note="`delay_msec` says how long it waits before its child: `delay_msec = 2 s`"),
+    ),
+    **dict.fromkeys(("oneshot", "once"), ForeignName("RunOnce")),
+}
+
+_SPELLINGS: Final = {
+    _plain(spelling): kind.tag for kind in BUILTINS.values() for spelling in spellings(kind) if spelling[0].isalpha()
+}
+_AFFIXES: Final = re.compile(r"^bt(?:composite|decorator)?|^decorator|(?:composite|decorator|node)$")
