@@ -77,7 +77,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         unknown = []
     if unknown:
         command.error(f"unrecognized arguments: {' '.join(unknown)}")
-    return _finish(name, _command(name), options)
+    run = _command(name)
+    if getattr(options, "config", None) is not None:
+        from btq_lang.commands.configuring import configured
+
+        run = configured(run, options.config)
+    return _finish(name, run, options)
 
 
 def _readable(error: UnicodeError) -> tuple[str, int]:

@@ -102,3 +102,5 @@ PLACEHOLDERS: Final[dict[str, Category]] = {
     "Script": "Action",
     "ScriptCondition": "Condition",
 }
+# What other libraries and textbooks call the engine's nodes.
+ELSEWHERE: Final = {"Selector": ("Fallback",)}

@@ -153,7 +153,13 @@ def _add_check(parser: Parser) -> None:
         help="write a comment that silences them for all findings; with `=`, it says why",
     )
     parser.flag("--watch", "check again whenever a file changes")
+    parser.flag("--show-files", "check nothing, print the files that would be checked")
+    parser.flag(
+        "--show-settings", "check nothing, print the settings that hold for the paths, and where each comes from"
+    )
+    parser.add("-q", "--quiet", action="store_true", help="print findings alone, without a summary")
     parser.add("--jobs", type=int, metavar="N", help="number of processes; default: chosen by btq")
+    _add_config(parser)
     _add_color(parser)
     parser.set_defaults(**{name: value for name, value in vars(CheckOptions).items() if not name.startswith("_")})
 
@@ -171,6 +177,7 @@ def _add_format(parser: Parser) -> None:
     _add_paths(parser)
     parser.flag("--check", "write nothing; exit 1 if a file would change")
     parser.flag("--diff", "write nothing, show the changes; exit 1 if there are any")
+    _add_config(parser)
     _add_color(parser)
 
 
@@ -196,6 +203,7 @@ def _add_build(parser: Parser) -> None:
     parser.flag("--verbose", "show for every clause whether and how it is enforced")
     parser.flag("--watch", "build again whenever a file changes")
     parser.set_defaults(report="full")  # editors need one line for each error
+    _add_config(parser)
     _add_color(parser)
 
 
@@ -225,6 +233,7 @@ def _add_import(parser: Parser) -> None:
     parser.flag("--keep-v3", "keep the syntax of files for version 3 of the engine")
     parser.flag("--xml", "of logs: write the tree as XML")
     parser.flag("--force", "overwrite existing files")
+    _add_config(parser)
     _add_color(parser)
 
 
@@ -243,6 +252,7 @@ def _add_trace(parser: Parser) -> None:
     parser.flag("--bundle", "what is enforced in builds with --bundle")
     parser.add("--format", choices=TRACE_FORMATS, help="default: by the suffix of the -o file, else table")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    _add_config(parser)
     _add_color(parser)
 
 
@@ -329,6 +339,7 @@ def _add_verify(parser: Parser) -> None:
     fails = parser.add_mutually_exclusive_group()
     fails.add_argument("--strict", action="store_true", help="exit 1 unless every requirement is satisfied")
     fails.add_argument("--exit-zero", action="store_true", help="exit 0 also if a requirement is violated")
+    _add_config(parser)
     _add_color(parser)
 
 
@@ -361,6 +372,7 @@ def _add_compare(parser: Parser) -> None:
     )
     parser.add("--format", choices=COMPARISON_FORMATS, help="default: as the file of -o ends, else table")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    _add_config(parser)
 
 
 @_command(
@@ -383,6 +395,7 @@ def _add_report(parser: Parser) -> None:
     )
     parser.add("--sides", nargs=2, metavar=("A", "B"), help="the labels to compare; default: the two that began last")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    _add_config(parser)
 
 
 @_command(
@@ -401,6 +414,7 @@ def _add_graph(parser: Parser) -> None:
     _add_evidence(parser, "none")
     parser.add("--direction", choices=DIRECTIONS, default="down", help="the position of the children; default: down")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    _add_config(parser)
     _add_color(parser)
 
 
@@ -425,6 +439,7 @@ def _add_preview(parser: Parser) -> None:
         "--follow",
         'for an editor: read {"line": N} and {"text": "…"} from standard input, an object a line, until it closes',
     )
+    _add_config(parser)
 
 
 @_command(
@@ -446,6 +461,7 @@ def _add_diff(parser: Parser) -> None:
     parser.add("--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes")
     parser.add("--git", metavar="REV", help="compare revisions: REV with the working tree, REV..REV, or REV...REV")
     parser.add("--format", choices=("text", "markdown", "json"), default="text", help="default: text")
+    _add_config(parser)
     _add_color(parser)
 
 
@@ -456,7 +472,7 @@ def _add_diff(parser: Parser) -> None:
     "  btq explain on violation\n",
 )
 def _add_explain(parser: Parser) -> None:
-    parser.add("subject", nargs="*", metavar="RULE|NODE|QUALITY|WORD", help="default: list them all")
+    parser.add("subject", nargs="*", metavar="RULE|NODE|QUALITY|WORD", help="default: list the rules")
     _add_color(parser)
 
 
@@ -489,6 +505,7 @@ def _add_schema(parser: Parser) -> None:
     parser.add("paths", nargs="*", metavar="PATH", help="of xsd: files and folders with nodes; default: .")
     parser.add("--target", choices=targets(), help="the engine's version; default: the project's newest")
     parser.add("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    _add_config(parser)
 
 
 @_command(
@@ -528,6 +545,14 @@ def _add_evidence(parser: Parser, default: str) -> None:
         metavar="PATH",
         help="with each requirement its verdict, last value and history: by logs, of a store, or of a file of"
         f" btq verify --format json; may be repeated; default: {default}",
+    )
+
+
+def _add_config(parser: Parser) -> None:
+    parser.add(
+        "--config",
+        metavar="FILE",
+        help="the project file of all paths, instead of the nearest btq.toml; paths in it are relative to this folder",
     )
 
 

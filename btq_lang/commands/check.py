@@ -20,7 +20,7 @@ from btq_lang.util.text import counted
 from btq_lang.workspace.config import Project, unknown_rule
 from btq_lang.workspace.factories import Factory, merged
 from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES, YAML_SUFFIXES
-from btq_lang.workspace.loader import LoadProblem, absolute
+from btq_lang.workspace.loader import LoadProblem, absolute, shown
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -35,6 +35,11 @@ _FAILS = (Severity.ERROR, Severity.WARNING)
 def run(options: CheckOptions) -> int:
     """Check once, or again and again with `--watch`."""
     refuse(_usage_problem(options))
+    if options.show_settings:
+        from btq_lang.commands.show_settings import show_settings
+
+        given = {"select": _rules(options.select), "ignore": _rules(options.ignore), "baseline": options.baseline}
+        return show_settings(options.paths, given)
     files = Files()
     code, watched = _check(options, files)
     if options.watch:
@@ -90,6 +95,10 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
             raise Refused("no baseline to update; name it with --baseline, or in btq.toml")
         parameter_files = _parameter_files(files, options)
         groups = _chosen(groups, parameter_files, options)
+        if options.show_files:
+            tell(problems)
+            _show_files(groups, parameter_files, files)
+            return 2 if problems or (empty and not parameter_files) else 0, ()
         if options.diff:
             tell(problems)
             code = _show_fixes(groups, options, bool(problems))
@@ -111,8 +120,15 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     return code, (*_watched(groups), *files.project_files, *(each.path for each in files.parameter_files))
 
 
+def _show_files(groups: Iterable[Group], parameter_files: Iterable[ParameterFile], files: Files) -> None:
+    """`--show-files`: print what would be checked."""
+    missions = (path for group in groups for path in (*group.given, *group.cpp))
+    for path in sorted({*missions, *files.project_files, *(each.path for each in parameter_files)}):
+        print(shown(path))
+
+
 def _is_other(path: str) -> bool:
-    """Whether a path names a file that is no mission; without a suffix it is one, such as a stream of a shell."""
+    """Whether a path names a file of another kind; one without a suffix is a mission, such as a stream of a shell."""
     kinds = (*SUFFIXES, *XML_SUFFIXES, *YAML_SUFFIXES)
     return bool(os.path.splitext(path)[1]) and not path.endswith(kinds) and not os.path.isdir(path)
 
@@ -161,7 +177,7 @@ def _report(
         findings = together(findings)
     why_empty = empty or (f"nothing has changed since {options.since}" if options.since else None)
     checked += files.project_files
-    report = Report(tuple(findings), texts, checked, problems, why_empty, known)
+    report = Report(tuple(findings), texts, checked, problems, why_empty, known, options.quiet)
     write_report(report, options, mended)
     if empty and form_of(options, os.environ) not in FOR_PEOPLE:  # those have it in their summary
         print(f"btq check: {empty}", file=sys.stderr)

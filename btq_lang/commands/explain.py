@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from textwrap import wrap
+from typing import Final
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES, AttributeKind
 from btq_lang.catalog.foreign_names import ForeignName, foreign_name
@@ -14,9 +16,10 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spel
 from btq_lang.catalog.qualities import Quality, find, parts, qualities, siblings
 from btq_lang.catalog.units import dimension_name, nearest_units, parse_unit, symbols
 from btq_lang.catalog.verdicts import VERDICTS, Verdict
+from btq_lang.catalog.words import ELSEWHERE
 from btq_lang.commands.explain_nav2 import nav2_nodes, nav2_page
 from btq_lang.commands.output import is_coloured
-from btq_lang.diagnostics.rules import RULES, page
+from btq_lang.diagnostics.rules import RULES, by_subject, page
 from btq_lang.ide.describe import in_si, si_symbol
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import is_name, quote
@@ -25,7 +28,7 @@ from btq_lang.util.spelling import near
 
 
 def run(options: Namespace) -> int:
-    """Print everything with the given names; without a name, list all names."""
+    """Print everything with the given names; without a name, list the rules."""
     names = [name for word in options.subject if (name := word.strip())]
     pages = list(_pages(" ".join(names)))  # a name of several words: `time behaviour`
     unknown = []
@@ -37,7 +40,7 @@ def run(options: Namespace) -> int:
         unknown = [name for name, found in by_name.items() if not found]
     for name in unknown:
         likely = _likely(name)
-        meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` lists all names"
+        meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` says what there is"
         print(f"btq explain: unknown name `{name}`{meant}", file=sys.stderr)
     bold = is_coloured(options, sys.stdout.isatty())
     for number, text in enumerate(pages):
@@ -75,6 +78,8 @@ def _own_pages(name: str) -> Iterator[str]:
     yield from _type(name)
     yield from _sign(name)
     yield from _unit(name)
+    if name in (lists := _lists()) and name != "verdicts":  # those have a page
+        yield "\n".join((f"# {name.capitalize()}", *lists[name]()))
     if name == "io-error":
         yield _IO_ERROR
 
@@ -186,33 +191,59 @@ def _verdicts() -> Iterator[str]:
 
 
 def _likely(name: str) -> tuple[str, ...]:
-    """Names similar to a name, or else names that contain it."""
-    names = _names()
-    parts = [each for each in names if len(name) > 2 and name.casefold() in each.casefold()]
-    return near(name, names) or tuple(sorted(parts, key=lambda each: (len(each), each))[:5]) or nearest_units(name)
+    """Names similar to a name, or else names that contain it, of the kind that it has the form of."""
+    kind = _nodes if name[:1].isupper() else _rules if "-" in name else _names
+    parts = [each for each in kind() if len(name) > 2 and name.casefold() in each.casefold()]
+    close = ELSEWHERE.get(name) or near(name, kind()) or near(name, _names())
+    return close or tuple(sorted(parts, key=lambda each: (len(each), each))[:5]) or _units(name)
+
+
+def _units(name: str) -> tuple[str, ...]:
+    """The units that a name begins with; without more in common, a unit is a wild guess."""
+    return tuple(unit for unit in nearest_units(name) if name.casefold().startswith(unit.casefold()))
 
 
 def _overview() -> str:
+    """All rules on one screen, and how to list what else there is."""
+    subjects = {title: "  ".join(rule.name for rule in rules) for title, rules in by_subject().items()}
+    lines = [line for title, names in subjects.items() for line in (f"# {title}", *_wrapped(names))]
+    return "\n".join((*lines, "", f"Lists: btq explain {' '.join(_lists())}"))
+
+
+def _wrapped(text: str) -> list[str]:
+    return wrap(text, _WIDTH, break_on_hyphens=False, break_long_words=False)
+
+
+def _lists() -> dict[str, Callable[[], Iterable[str]]]:
+    """The lines about all of a kind, by its name."""
     by_dimension = grouped((dimension_name(unit), unit.symbol) for unit in symbols())
-    sections = {
-        "Rules": [f"{rule.name:<28} {rule.severity.value:<8} {rule.summary}" for rule in RULES.values()],
-        "Nodes": [f"{kind.tag:<28} {'  '.join(spellings(kind)[1:]):<22} {kind.doc}" for kind in BUILTINS.values()],
-        "Qualities": [f"{quality.id:<58} {quality.name}" for quality in qualities()],
-        "Words of the language": [f"{one.words:<20} {one.part:<22} {one.brief}" for one in PHRASES],
-        "Signs": [f"{sign:<12} {form:<38} {meaning}" for sign, form, meaning in SIGNS],
-        "Attributes of nodes": [f"{each.name:<20} {each.doc}" for each in RESERVED_ATTRIBUTES.values()],
-        "Verdicts": _verdicts(),
-        "Units": [f"{measured:<22} {' '.join(units)}" for measured, units in by_dimension.items()],
+    return {
+        "rules": lambda: (f"{rule.name:<28} {rule.severity.value:<8} {rule.summary}" for rule in RULES.values()),
+        "nodes": lambda: (
+            f"{kind.tag:<28} {'  '.join(spellings(kind)[1:]):<22} {kind.doc}" for kind in BUILTINS.values()
+        ),
+        "qualities": lambda: (f"{quality.id:<58} {quality.name}" for quality in qualities()),
+        "words": lambda: (f"{one.words:<20} {one.part:<22} {one.brief}" for one in PHRASES),
+        "signs": lambda: (f"{sign:<12} {form:<38} {meaning}" for sign, form, meaning in SIGNS),
+        "attributes": lambda: (f"{each.name:<20} {each.doc}" for each in RESERVED_ATTRIBUTES.values()),
+        "verdicts": _verdicts,
+        "units": lambda: (f"{measured:<22} {' '.join(units)}" for measured, units in by_dimension.items()),
     }
-    return "\n\n".join("\n".join((f"# {title}", *lines)) for title, lines in sections.items())
+
+
+def _rules() -> list[str]:
+    return [*RULES, *(quality.id for quality in qualities())]
+
+
+def _nodes() -> list[str]:
+    return [*(spelling for kind in BUILTINS.values() for spelling in spellings(kind)), *nav2_nodes()]
 
 
 def _names() -> list[str]:
-    words = [spelling for kind in BUILTINS.values() for spelling in spellings(kind)]
     ports = {port.name for kind in BUILTINS.values() for port in kind.ports}
     units = (unit.symbol for unit in symbols())
-    known = [*RULES, *words, *ports, *nav2_nodes(), *VERDICTS, *RESERVED_ATTRIBUTES, *units]
-    return [*known, *(quality.id for quality in qualities()), *(phrase.words for phrase in PHRASES)]
+    others = [*ports, *VERDICTS, *RESERVED_ATTRIBUTES, *units, *(phrase.words for phrase in PHRASES)]
+    return [*_rules(), *_nodes(), *others, *_lists()]
 
 
 def _with_bold_headings(text: str) -> str:
@@ -220,6 +251,7 @@ def _with_bold_headings(text: str) -> str:
     return "\n".join(f"\x1b[1m{line}\x1b[0m" if line.startswith("#") else line for line in lines)
 
 
+_WIDTH: Final = 80
 _SORTS = {
     "bool": "A signal that is true or false, and a condition by itself: `keeps door_open`.",
     "text": 'A signal that is a text: `keeps zone == "corridor"`.',

@@ -43,6 +43,10 @@ class CheckOptions:
     diff = False
     watch = False
     jobs = 0
+    quiet = False
+    show_files = False
+    show_settings = False
+    config: str | None = None
     color = "auto"
 
     def __init__(self, paths: Sequence[str]) -> None:

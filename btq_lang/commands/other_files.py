@@ -1,4 +1,4 @@
-"""Files that a command line of `btq check` names, and that are no missions: project files, and what is not checked."""
+"""Files that a command line of `btq check` names, and that are not missions: project files, and what is not checked."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _reason(path: str) -> str | None:
             return None
         is_beside = counts is not None and os.path.dirname(counts) == os.path.dirname(path)
         return (
-            "is not read, because btq.toml beside it is" if is_beside else "is no project file of btq: add [tool.btq]"
+            "is not read, because btq.toml beside it is" if is_beside else "has no [tool.btq], where btq reads settings"
         )
     if path.endswith(SIDE_SUFFIX):
         return f"is what a build writes; check {os.path.basename(path).removesuffix(SIDE_SUFFIX)}.xml beside it"

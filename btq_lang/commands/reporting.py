@@ -56,7 +56,8 @@ def write_report(report: Report, options: CheckOptions, mended: int) -> None:
     width = terminal_width() if stream.isatty() and not options.output_file else 120
     colour = options.color == "always" if options.output_file else is_coloured(options, stream.isatty())
     pieces = _pieces(_named(report, form), form, options.statistics, colour, width)
-    last = f"Fixed {counted(mended, 'problem')}\n" if mended and form in FOR_PEOPLE else ""
+    is_told = mended and form in FOR_PEOPLE and not options.quiet
+    last = f"Fixed {counted(mended, 'problem')}\n" if is_told else ""
     if options.output_file or (form not in FOR_PEOPLE and stream is sys.stdout):
         write_output(options.output_file, "".join((*pieces, last)), form)
     else:

@@ -10,6 +10,7 @@ from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_of, form_problem, is_coloured, tell, terminal_width, write_output
 from btq_lang.trace import FORMATS
 from btq_lang.trace.missions import trace_tables
+from btq_lang.trace.wording import incomplete
 
 
 def run(options: Namespace) -> int:
@@ -35,7 +36,6 @@ def run(options: Namespace) -> int:
     write_output(options.output, text, form)
     if wrong:
         return 2
-    if table.errors:
-        what = "an error" if table.errors == 1 else f"{table.errors} errors"
-        print(f"btq trace: the missions have {what}, so the overview may be incomplete; run btq check", file=sys.stderr)
+    if why := incomplete(table.overview):
+        print(f"btq trace: {why}", file=sys.stderr)
     return int(table.errors > 0)

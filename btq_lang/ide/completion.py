@@ -121,9 +121,16 @@ def _complete(workspace: Workspace, path: str, place: Place, offset: int) -> Com
     if special is not None:
         return special
     found = _unique(_in_code(workspace, path, place, offset))
+    if text[offset - 1 : offset] in (":", ",") and place.span.start == offset:
+        found = tuple(map(_with_blank, found))
     if text[place.span.end : place.span.end + 2].lstrip(" ").startswith("("):  # the brackets are there already
         found = tuple(replace(one, snippet=None) for one in found)
     return Completion(place.span, found)
+
+
+def _with_blank(one: Proposal) -> Proposal:
+    """The proposal after a sign that needs a blank: an editor that goes on with the list after one replaces it, too."""
+    return replace(one, insert=f" {one.insert}", snippet=None if one.snippet is None else f" {one.snippet}")
 
 
 def _unique(found: Iterable[Proposal]) -> tuple[Proposal, ...]:

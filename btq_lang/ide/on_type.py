@@ -97,7 +97,8 @@ def _opens(workspace: Workspace, path: str, words: tuple[Token, ...]) -> bool:
     if first.kind == NAME and (first.text in _OPENERS or first.text in NODE_CLAUSES):
         return first.text in _OPENERS
     if first.kind == NAME and first.text in CATEGORIES:
-        is_model = not blanks_before(workspace.files[path].text, first.start)
+        file = workspace.files[path]
+        is_model = not blanks_before(file.text, first.start) or item_tokens(file, first.start)[0].text == _MODELS
         return is_model or first.text in ("Control", "Decorator")
     kind = lookup(word_text(first), first.kind == STRING)
     if kind is not None:
@@ -106,4 +107,5 @@ def _opens(workspace: Workspace, path: str, words: tuple[Token, ...]) -> bool:
     return isinstance(target, Model) and target.category.raw in ("Control", "Decorator")
 
 
-_OPENERS = frozenset(("BehaviorTree", "TreeNodesModel"))
+_MODELS = "TreeNodesModel"
+_OPENERS = frozenset(("BehaviorTree", _MODELS))

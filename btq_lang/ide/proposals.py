@@ -390,7 +390,7 @@ _TYPES = (
 )
 _COMPOUNDS = ("m/s", "m/s^2", "rad/s", "deg/s", "1/s", "%/h", "kB/s")
 _ITEMS = (
-    ("BehaviorTree", "BehaviorTree ${1:Name}\n    ->\n        $0"),
+    ("BehaviorTree", "BehaviorTree ${1:Name}\n    ->$0"),
     ("QualityReq", 'QualityReq ${1:id} : ${2:quality} "${3:text}"\n    $0'),
     ("include", 'include "$0"'),
     ("Root", "Root ${0:Main}"),

@@ -31,10 +31,9 @@ _ITEMS = (
         "BehaviorTree ${4:Mission}\n"
         "    ->\n"
         "        Condition ${5:BatteryGood}\n"
-        '        Action ${6:MoveBase} (${7:station} = "${8:charger}") satisfies $1\n'
-        "        $0",
+        '        Action ${6:MoveBase} (${7:station} = "${8:charger}") satisfies $1$0',
     ),
-    ("tree", "a behavior tree", "BehaviorTree ${1:Name}\n    ${2|->,?,R->,R?|}\n        $0"),
+    ("tree", "a behavior tree", "BehaviorTree ${1:Name}\n    ${2|->,?,R->,R?|}$0"),
     (
         "req-time",
         "a requirement: a node takes no longer than this",

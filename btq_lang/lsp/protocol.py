@@ -198,7 +198,7 @@ class Output(StdoutWriter):
     """Outgoing messages.
 
     Args:
-        at_end: called when nobody reads them any more.
+        at_end: called when they are not read any more.
     """
 
     def __init__(self, stream: BinaryIO, at_end: Callable[[], None]) -> None:

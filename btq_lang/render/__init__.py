@@ -31,9 +31,9 @@ def render(form: str, report: Report, *, colour: bool = False, width: int = 120)
     """
     # A run imports only the renderer that it uses: importing `json` takes longer than all of `full`.
     if form in ("full", "concise") and not report.findings:
-        from btq_lang.render.summary import summary
+        from btq_lang.render.summary import last_line
 
-        return iter((summary(report) + "\n",))
+        return iter((last_line(report),))
     if form not in FORMATS:
         raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")
     options: dict[str, dict[str, object]] = {"full": {"colour": colour, "width": width}, "concise": {"colour": colour}}
@@ -59,4 +59,5 @@ def with_paths(report: Report, shown: Callable[[str], str]) -> Report:
         tuple(replace(trouble, path=shown(trouble.path)) for trouble in report.troubles),
         report.why_empty,
         report.known,
+        report.is_quiet,
     )

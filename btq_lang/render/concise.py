@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from btq_lang.render.cells import printable
 from btq_lang.render.colour import painter
 from btq_lang.render.report import Report, location
-from btq_lang.render.summary import summary
+from btq_lang.render.summary import last_line
 
 
 def render(report: Report, *, colour: bool = False) -> Iterator[str]:
@@ -18,4 +18,4 @@ def render(report: Report, *, colour: bool = False) -> Iterator[str]:
         severity = finding.diagnostic.effective_severity.value
         rule = paint(severity, f"{severity}[{finding.diagnostic.rule}]")
         yield f"{printable(at.path)}:{at.line}:{at.column}: {rule} {printable(finding.diagnostic.message)}\n"
-    yield summary(report) + "\n"
+    yield last_line(report)

@@ -20,7 +20,7 @@ from btq_lang.render.cells import printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.render.frame import Row, frame
 from btq_lang.render.report import Finding, Report, line_index, location, text_of
-from btq_lang.render.summary import summary
+from btq_lang.render.summary import last_line
 
 _LEAST_ROOM = 20  # lines are not cut below this width
 
@@ -35,7 +35,7 @@ def render(report: Report, *, colour: bool = False, width: int = 120) -> Iterato
         for row in rows:
             yield _line(row, gutter, paint)
         yield "\n"
-    yield summary(report) + "\n"
+    yield last_line(report)
 
 
 def _header(finding: Finding, paint: Paint) -> str:

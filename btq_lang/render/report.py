@@ -36,6 +36,7 @@ class Report(Record):
             formats for programs: for people, the command prints them itself.
         why_empty: why there are no findings, if known.
         known: the number of findings that a baseline has, and the report leaves out.
+        is_quiet: leave out the summary.
     """
 
     findings: tuple[Finding, ...]
@@ -44,6 +45,7 @@ class Report(Record):
     troubles: tuple[LoadProblem, ...] = ()
     why_empty: str | None = None
     known: int = 0
+    is_quiet: bool = False
 
 
 class Location(Record):

@@ -16,7 +16,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from btq_lang.render.report import Report
-from btq_lang.render.summary import is_fixable, summary
+from btq_lang.render.summary import is_fixable, last_line
 
 FORMATS = ("full", "concise", "json")
 
@@ -40,4 +40,4 @@ def render(form: str, report: Report) -> Iterator[str]:
     for rule, count in rows:
         mark = "*" if fixable[rule] == count else "-" if fixable[rule] else " "
         yield f"{count:>{width}}  {f'[{mark}] ' if fixable else ''}{rule}\n"
-    yield summary(report) + "\n"
+    yield last_line(report)

@@ -17,6 +17,11 @@ _WORDS = {
 }
 
 
+def last_line(report: Report) -> str:
+    """The summary as a line; nothing in a quiet report."""
+    return "" if report.is_quiet else f"{summary(report)}\n"
+
+
 def summary(report: Report) -> str:
     """`Found 3 errors, 1 warning (2 fixable with --fix)`, or that nothing was found."""
     if not report.findings and not report.checked:

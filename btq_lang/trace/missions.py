@@ -14,7 +14,7 @@ from btq_lang.trace import write
 from btq_lang.trace.collect import collect
 from btq_lang.trace.overview import Clause, Overview
 from btq_lang.trace.ways import declared_ways
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, replace
 from btq_lang.workspace.loader import shown
 from btq_lang.workspace.workspace import Workspace
 
@@ -27,11 +27,14 @@ class TraceTable(Record):
 
     Attributes:
         overview: the rows: requirements, qualities, nodes, trees, and totals.
-        errors: how many errors the missions have; with any, rows may be missing.
     """
 
     overview: Overview
-    errors: int
+
+    @property
+    def errors(self) -> int:
+        """How many errors the missions have; with any, rows may be missing."""
+        return self.overview.errors
 
     def write(self, form: str = "table", *, colour: bool = False, width: int = 120) -> str:
         """Write the table as text.
@@ -88,7 +91,8 @@ def trace_tables(
         is_built = is_mission(workspace, path)
         return built_ways(workspace, path, found, bundled) if is_built else declared_ways(workspace, path, found)
 
-    return TraceTable(collect(parts, ways, shown, details_of, verdicts_of), sum(errors.values()))
+    overview = collect(parts, ways, shown, details_of, verdicts_of)
+    return TraceTable(replace(overview, errors=sum(errors.values())))
 
 
 def built_ways(

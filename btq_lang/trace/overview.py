@@ -199,6 +199,7 @@ class Overview(Record):
         files: the missions.
         totals: of each characteristic of the edition, including unused ones.
         has_evidence: whether logs, or verdicts on them, were given.
+        errors: how many errors the missions have; with any, rows may be missing.
     """
 
     edition: str
@@ -209,6 +210,7 @@ class Overview(Record):
     trees: tuple[TreeRow, ...]
     totals: tuple[Total, ...]
     has_evidence: bool = False
+    errors: int = 0
 
     @property
     def unmeasured(self) -> tuple[QualityRow, ...]:

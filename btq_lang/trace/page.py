@@ -18,7 +18,7 @@ from btq_lang.render.page_style import PAGE_STYLE
 from btq_lang.trace.overview import WAYS, At, Overview, RequirementRow, TreeRow
 from btq_lang.trace.page_parts import SCRIPT, TRACE_STYLE, coded
 from btq_lang.trace.verdicts import VERDICT_STYLE, verdicts
-from btq_lang.trace.wording import GAPS, evidence_lines, remarks, shown_quality, summary
+from btq_lang.trace.wording import GAPS, evidence_lines, incomplete, remarks, shown_quality, summary
 from btq_lang.util.text import counted
 
 
@@ -40,6 +40,8 @@ def _lines(overview: Overview, missions: Sequence[MissionVerdicts]) -> Iterator[
     yield "<body>"
     yield '<a class="skip" href="#requirements">To the requirements</a>'
     yield f"<header><h1>{escape(title)}</h1><p>{escape(summary(overview))}</p>"
+    if why := incomplete(overview):
+        yield f'<p class="incomplete" role="alert">{escape(why[0].upper() + why[1:])}.</p>'
     yield from _navigation(overview, bool(missions))
     yield "</header>"
     yield "<main>"

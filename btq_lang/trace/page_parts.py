@@ -55,6 +55,7 @@ tr.chosen > th:first-child, tr:target > th:first-child { border-left-color: var(
 .box.chosen .outline, .note.chosen .outline, .box:target .outline { stroke: var(--accent); stroke-width: 3.5; }
 .box.chosen .outline, .box:target .outline { fill: var(--chosen); }
 .choosing .box:not(.chosen):not(.near), .choosing .note:not(.chosen):not(.near) { opacity: .45; }
+.incomplete { padding: .5rem .75rem; border-left: 4px solid var(--missing); background: var(--raised); }
 .live { position: absolute; left: -99rem; }
 .sortable thead button { font: inherit; color: inherit; background: none; border: 0; padding: 0; cursor: pointer;
   text-align: inherit; white-space: nowrap; }

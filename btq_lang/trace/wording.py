@@ -12,6 +12,12 @@ if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import Verdict
 
 
+def incomplete(overview: Overview) -> str:
+    """What errors in the missions mean for the overview; empty without any."""
+    what = "an error" if overview.errors == 1 else f"{overview.errors} errors"
+    return f"the missions have {what}, so the overview may be incomplete; run btq check" if overview.errors else ""
+
+
 def summary(overview: Overview) -> str:
     """All counts, in a sentence."""
     ways: dict[str, int] = {way: sum(getattr(total, way) for total in overview.totals) for way in WAYS}

@@ -125,14 +125,11 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
         kind: which of the two files it is; in a pyproject.toml only `[tool.btq]` counts.
         root: the folder of the file, which relative include paths are relative to.
     """
+    above = keys_above(kind)
     try:
-        table: object = _toml(text)
+        table = table_of(text, above)
     except (ValueError, RecursionError) as error:  # not only TOMLDecodeError: int() refuses 5,000 digits
         return Project(root), (_syntax_problem(text, error),)
-    above: tuple[str, ...] = ()
-    for key in ("tool", "btq") if kind == "pyproject.toml" else ():
-        above = (*above, key)
-        table = table.get(key, {}) if isinstance(table, dict) else table
     if not isinstance(table, dict):
         return Project(root), (ProjectProblem(f"`{'.'.join(above)}` must be a table", _find(text, above)),)
 
@@ -160,6 +157,23 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
         given["node_files"] = tuple(PACKAGED[name] for name in named if name in PACKAGED)
         given["cpp"] = tuple(name for name in named if name not in PACKAGED)
     return Project(**given), tuple(problems)
+
+
+def keys_above(path: str) -> tuple[str, ...]:
+    """The keys above those of btq in a project file."""
+    return ("tool", "btq") if path.rpartition("/")[2] == "pyproject.toml" else ()
+
+
+def table_of(text: str, above: tuple[str, ...]) -> Any:
+    """What a TOML file has below some keys, which should be a table.
+
+    Raises:
+        ValueError, RecursionError: it is not TOML.
+    """
+    table: object = _toml(text)
+    for key in above:
+        table = table.get(key, {}) if isinstance(table, dict) else table
+    return table
 
 
 def has_btq_table(text: str) -> bool:

@@ -18,7 +18,14 @@ from typing import BinaryIO
 
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import LineIndex, Position
-from btq_lang.workspace.config import PROJECT_FILES, Project, has_btq_table, include_candidates, parse_project
+from btq_lang.workspace.config import (
+    PROJECT_FILES,
+    Project,
+    has_btq_table,
+    include_candidates,
+    keys_above,
+    parse_project,
+)
 from btq_lang.workspace.file import SUFFIXES
 
 _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv
@@ -79,6 +86,8 @@ def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:
         known: texts that replace those on the disk, by path.
     """
     known = known or {}
+    if _project_file:
+        return _project_in(_project_file, absolute("."), known)
     start = absolute(start)
     folder = start if os.path.isdir(start) else os.path.dirname(start)
     for root in _upwards(folder):
@@ -86,14 +95,18 @@ def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:
             path = absolute(os.path.join(root, kind))
             if path not in known and not os.path.exists(path):  # a folder of that name is a mistake worth reporting
                 continue
-            text, problem = (known[path], None) if path in known else read(path)
-            if kind == "pyproject.toml" and not has_btq_table(text or ""):
+            if kind == "pyproject.toml" and not has_btq_table(known.get(path) or read(path)[0] or ""):
                 continue
-            project, problems = parse_project(text or "", kind, root)
-            reported = tuple(LoadProblem(path, found.message, found.position) for found in problems)
-            lost = tuple(folder for folder in project.include_paths if not os.path.isdir(folder))
-            return Found(replace(project, lost_paths=lost), path, (problem, *reported) if problem else reported)
+            return _project_in(path, root, known)
     return Found(Project(folder), None)
+
+
+def _project_in(path: str, root: str, known: Mapping[str, str]) -> Found:
+    text, problem = (known[path], None) if path in known else read(path)
+    project, problems = parse_project(text or "", "pyproject.toml" if keys_above(path) else "btq.toml", root)
+    reported = tuple(LoadProblem(path, found.message, found.position) for found in problems)
+    lost = tuple(folder for folder in project.include_paths if not os.path.isdir(folder))
+    return Found(replace(project, lost_paths=lost), path, (problem, *reported) if problem else reported)
 
 
 def pool_of(folder: str, top: str) -> str:
@@ -303,6 +316,12 @@ def work_in(folder: str) -> None:
     _folder = folder
 
 
+def use_project_file(path: str | None) -> None:
+    """Have a project file count for all files, its paths relative to the current folder; None: the nearest to each."""
+    global _project_file
+    _project_file = path
+
+
 def shown(path: str) -> str:
     """An absolute path for display: relative to the working folder if it is inside it."""
     here = (_folder or absolute(".")).rstrip("/") + "/"
@@ -310,6 +329,7 @@ def shown(path: str) -> str:
 
 
 _folder = ""  # else the current one
+_project_file: str | None = None  # else the nearest
 
 
 def _upwards(folder: str) -> Iterator[str]:

@@ -6,7 +6,7 @@ or the command line leaves out with `select` and `ignore` stays out everywhere.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from typing import TypeAlias
 
@@ -36,10 +36,14 @@ def severities_at(
 ) -> Mapping[str, Severity | None]:
     """The severities of rules in a file."""
     found = dict(severities)
-    for override in overrides:
-        if _matcher(override.include, root)(path):
-            found.update(override.severities)
+    for number in overrides_at(root, overrides, path):
+        found.update(overrides[number].severities)
     return found
+
+
+def overrides_at(root: str, overrides: tuple[Override, ...], path: str) -> Iterator[int]:
+    """The numbers of the overrides that are for a file."""
+    return (number for number, override in enumerate(overrides) if _matcher(override.include, root)(path))
 
 
 @lru_cache(64)

@@ -18,6 +18,7 @@ from in_process import run_btq
 from btq_lang import __version__
 from btq_lang.catalog.language import SIGNS
 from btq_lang.catalog.verdicts import VERDICTS
+from btq_lang.diagnostics.rules import RULES
 from btq_lang.evidence.verdicts import WORST_FIRST
 from btq_lang.util import processes
 from btq_lang.workspace.config import parse_project
@@ -629,7 +630,7 @@ def test_explain_of_several_names(btq: Run) -> None:
     assert btq("explain", "takes at most").stdout == btq("explain", "takes").stdout != ""
     done = btq("explain", "Retry", "nonsense")
     assert done.stdout == btq("explain", "Retry").stdout
-    assert done.stderr == ("btq explain: unknown name `nonsense`; `btq explain` lists all names\n")
+    assert done.stderr == ("btq explain: unknown name `nonsense`; `btq explain` says what there is\n")
     assert done.returncode == 2
 
 
@@ -640,6 +641,28 @@ def test_explain_of_something_unknown(btq: Run) -> None:
     meant_by = (("kwh", "kWh"), ("_skipif", "_skipIf"), ("msecs_", "msec"), ("sek", "s"), ("skip", "_skipIf, "))
     for name, meant in meant_by:
         assert f"did you mean {meant}" in btq("explain", name).stderr
+
+
+def test_near_names_are_of_the_kind_that_is_asked_for(btq: Run) -> None:
+    def meant(name: str) -> str:
+        return btq("explain", name).stderr.partition("; ")[2].strip()
+
+    assert meant("Selector") == "did you mean Fallback?"
+    assert meant("Sequnce") == "did you mean Sequence?"
+    assert meant("unused-nod") == "`btq explain` says what there is"
+    assert meant("unused-tre") == "did you mean unused-tree?"
+    assert meant("foo") == "`btq explain` says what there is"
+
+
+def test_explain_lists_the_rules_on_one_screen(btq: Run) -> None:
+    lines = btq("explain").stdout.splitlines()
+    assert max(map(len, lines)) <= 80
+    assert len(lines) <= 55
+    assert {word for line in lines for word in line.split()} > {*RULES}
+    assert lines[lines.index("# XML") + 1] == "xml-syntax  xml-root  xml-not-well-formed  xml-ignored"
+    assert lines[-1] == "Lists: btq explain rules nodes qualities words signs attributes verdicts units"
+    for kind in lines[-1].removeprefix("Lists: btq explain ").split():
+        assert btq("explain", kind).stdout.startswith("# ")
 
 
 def test_explain_of_units(btq: Run) -> None:

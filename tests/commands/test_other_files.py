@@ -30,7 +30,7 @@ def test_mistakes_in_a_project_file_are_findings(file: str, text: str, line: int
 @pytest.mark.parametrize(
     ("file", "reason"),
     [
-        ("pyproject.toml", "is no project file of btq: add [tool.btq]"),
+        ("pyproject.toml", "has no [tool.btq], where btq reads settings"),
         ("main.qreq.json", "is what a build writes; check main.xml beside it"),
         (
             "main.txt",

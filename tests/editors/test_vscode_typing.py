@@ -299,6 +299,51 @@ def test_enter_after_the_type_of_a_port_is_a_line_break(code: Workbench, typed: 
     assert path.read_text(encoding="utf-8").rstrip(" ") == f"Action Read\n    output label {typed}\n"
 
 
+@pytest.mark.parametrize(
+    ("text", "typed", "label", "after"),
+    [
+        ("QualityReq soon ", ": ", "reliability", "QualityReq soon : reliability"),
+        ("BehaviorTree Main\n    Dock satisfices safety", ", ", "reliability", "safety, reliability"),
+    ],
+)
+def test_an_accepted_quality_keeps_the_blank_before_it(
+    code: Workbench, text: str, typed: str, label: str, after: str
+) -> None:
+    """The list opens at the sign and goes on after the blank, which VS Code takes for the beginning of the word."""
+    path = begin(code, text)
+    for key in typed:
+        code.type(key)
+        code.see(LIST)
+    code.type(label[:-2])
+    code.see(f"{LIST} .monaco-list-row.focused[aria-label^='{label}']")
+    code.keys("Enter")
+    code.gone(LIST)
+    code.save()
+    assert path.read_text(encoding="utf-8").endswith(after)
+
+
+def test_enter_after_a_declared_node_goes_on_with_its_ports(code: Workbench) -> None:
+    path = begin(code, "")
+    code.type('Action Drive "Drives"')
+    code.keys("Enter")
+    code.type("input goal")
+    code.save()
+    assert path.read_text(encoding="utf-8") == 'Action Drive "Drives"\n    input goal'
+
+
+def test_the_snippet_of_a_tree_leaves_no_blank_line(code: Workbench) -> None:
+    path = begin(code, "")
+    code.type("tree")
+    code.see(f"{LIST} .monaco-list-row.focused[aria-label^='tree']")
+    code.keys("Enter")
+    code.gone(LIST)
+    code.type("Main")
+    code.keys("Tab")
+    code.keys("Enter")
+    code.save()
+    assert path.read_text(encoding="utf-8") == "BehaviorTree Main\n    ->"
+
+
 def test_enter_after_a_word_that_begins_another_is_a_line_break(code: Workbench) -> None:
     path = begin(code, "BehaviorTree Main\n    ")
     code.type("Retry")

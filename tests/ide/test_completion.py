@@ -543,3 +543,19 @@ def test_in_a_long_list_every_word_stays_as_it_is_typed() -> None:
     names = [f"Skill{number:03}" for number in range(300)]
     tree = "BehaviorTree Main\n    ->\n" + "".join(f"        {name}\n" for name in names)
     check_left(f"{tree}        Skill299$0\n", "Skill299")
+
+
+@pytest.mark.parametrize(
+    ("text", "insert"),
+    [
+        ("QualityReq soon :", " reliability"),
+        ("QualityReq soon : ", "reliability"),
+        ("BehaviorTree Main\n    Dock satisfices safety,", " reliability"),
+        ("BehaviorTree Main\n    Dock satisfices safety, ", "reliability"),
+    ],
+)
+def test_a_quality_right_after_its_sign_is_written_with_a_blank(text: str, insert: str) -> None:
+    """An editor whose list goes on after a blank replaces that."""
+    workspace = Workspace.of({"main.btq": text})
+    proposals = complete(workspace, "main.btq", len(text)).proposals
+    assert [each.insert for each in proposals if each.label == "reliability"] == [insert]

@@ -25,6 +25,7 @@ from feature_asserts import check_linked, check_typed
         ),
         ("BehaviorTree Main\n    -> satisfies rq\n$0", "BehaviorTree Main\n    -> satisfies rq\n        "),
         ("Root Main\n$0", "Root Main\n"),
+        ('TreeNodesModel\n    Action A "a"\n    $0', 'TreeNodesModel\n    Action A "a"\n        '),
         # Between lines, too, and behind blank ones and comments.
         ("BehaviorTree Main\n    ->\n$0\n        Pick\n", "BehaviorTree Main\n    ->\n        \n        Pick\n"),
         ("BehaviorTree Main\n    ->  # first\n\n$0", "BehaviorTree Main\n    ->  # first\n\n        "),

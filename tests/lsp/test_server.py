@@ -487,7 +487,7 @@ def test_a_list_opens_over_a_complete_word_only_where_somebody_asks(
 
 def test_snippets_are_for_editors_that_have_places_to_fill_in(tmp_path: Path) -> None:
     for takes, expected in (
-        (True, [(15, 2, "BehaviorTree ${1:Name}\n    ${2|->,?,R->,R?|}\n        $0")]),
+        (True, [(15, 2, "BehaviorTree ${1:Name}\n    ${2|->,?,R->,R?|}$0")]),
         (False, []),
     ):
         editor = Editor(

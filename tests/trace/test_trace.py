@@ -611,6 +611,12 @@ def test_of_missions_with_errors_it_shows_what_it_understands(
     out, err = capfd.readouterr()
     assert "Custom leaf nodes without any quality: `A`" in out
     assert err == "btq trace: the missions have an error, so the overview may be incomplete; run btq check\n"
+    assert main(["trace", str(mission), "--format", "html"]) == 1
+    banner = "The missions have an error, so the overview may be incomplete; run btq check."
+    assert f'<p class="incomplete" role="alert">{banner}</p>' in capfd.readouterr().out
+    mission.write_text("BehaviorTree Main\n    Dock\n", encoding="utf-8")
+    assert main(["trace", str(mission), "--format", "html"]) == 0
+    assert 'class="incomplete"' not in capfd.readouterr().out
     assert main(["trace", str(tmp_path / "none.btq")]) == 2
     assert main(["trace", ""]) == 2
 

@@ -35,6 +35,18 @@ class Rule(Record):
     summary: str
 
 
+def by_subject() -> dict[str, list[Rule]]:
+    """The rules by what they are about."""
+    subjects: dict[str, list[Rule]] = {}
+    rules: list[Rule] = []
+    for row in _TABLE:
+        if isinstance(row, Rule):
+            rules.append(row)
+        else:
+            rules = subjects.setdefault(row, [])
+    return subjects
+
+
 def page(rule: str) -> str:
     """The page of a rule, in Markdown.
 
@@ -56,8 +68,8 @@ def page_path(rule: str) -> str:
 
 _E, _W, _H = Severity.ERROR, Severity.WARNING, Severity.HINT
 
-_TABLE = (
-    # What the lexer and the parser find.
+_TABLE: tuple[str | Rule, ...] = (  # a string is the subject of the rules below it
+    "Text",
     Rule("syntax-error", _E, "text that the grammar does not allow at this place"),
     Rule("inconsistent-indentation", _E, "indentation that matches no open block, or mixes tabs and spaces"),
     Rule("unclosed-bracket", _E, "a `(` without its `)`"),
@@ -76,13 +88,13 @@ _TABLE = (
     Rule("duplicate-attribute", _E, "two values for one attribute"),
     Rule("tree-root-count", _E, "a tree without exactly one node at its top"),
     Rule("useless-ignore", _W, "a comment `btq: ignore` that cannot silence anything"),
-    # XML syntax.
+    "XML",
     Rule("xml-syntax", _E, "XML that the engine cannot read"),
     Rule("xml-root", _E, "a document element that is not `root`"),
     Rule("xml-not-well-formed", _W, "XML that the engine reads although it is not well-formed"),
     Rule("xml-ignored", _W, "text, elements or attributes in XML that the engine ignores"),
     Rule("refused-element", _E, "models, a port of a tree or an include that the engine refuses"),
-    # Nodes and their ports.
+    "Nodes and their ports",
     Rule("unknown-node", _W, "a node kind that neither the engine nor any model defines"),
     Rule("no-models", _H, "many nodes with ports, and no model for any of them"),
     Rule("not-an-engine-node", _W, "a word of the classic syntax, or of another engine, that is not a node"),
@@ -112,11 +124,11 @@ _TABLE = (
         "classic-placeholder", _H, "a ScriptAction or ScriptCondition without code, used as a placeholder for a skill"
     ),
     Rule("placeholder-clash", _E, "a placeholder whose node ID is already in use"),
-    # Nodes in C++.
+    "Nodes in C++",
     Rule("undeclared-port-in-cpp", _W, "a port that C++ code reads or writes, and its node does not provide"),
     Rule("unused-port-in-cpp", _W, "a port that a node in C++ provides, and its code never names"),
     Rule("unseen-in-cpp", _H, "C++ code from which btq cannot see which nodes or ports there are"),
-    # Trees and files.
+    "Trees and files",
     Rule("unknown-tree", _E, "a SubTree whose tree does not exist"),
     Rule("duplicate-tree", _E, "two trees with one ID"),
     Rule("recursive-tree", _E, "a tree that contains itself"),
@@ -128,12 +140,12 @@ _TABLE = (
     Rule("include-with-errors", _E, "an included file that has errors"),
     Rule("cyclic-include", _E, "a file that includes itself: the engine crashes"),
     Rule("duplicate-definition", _E, "two definitions of one name"),
-    # Scripts.
+    "Scripts",
     Rule("script-error", _E, "a script that the engine refuses"),
     Rule("empty-script", _E, "a script without any statement"),
     Rule("script-version", _W, "a script that engine versions read differently"),
     Rule("misspelt-entry", _W, "a blackboard entry that appears once, with a name very close to another one"),
-    # Requirements and qualities.
+    "Requirements and qualities",
     Rule("unknown-requirement", _E, "a reference to a requirement that is not defined"),
     Rule("conflicting-requirement", _E, "one requirement ID with two different texts"),
     Rule("unused-requirement", _W, "a requirement without any reference"),
@@ -148,7 +160,7 @@ _TABLE = (
     Rule("ambiguous-quality", _W, "a quality name that has several meanings"),
     Rule("prose-constraint", _H, "SuccessIf or FailureIf followed by prose that no tool can check"),
     Rule("subtraction-without-blanks", _H, "`a-b` read as one name where `a` and `b` exist"),
-    # What requirements demand.
+    "What requirements demand",
     Rule("unit-mismatch", _E, "two values that measure different things"),
     Rule("number-without-unit", _E, "a number without a unit where a quantity is required"),
     Rule("unknown-signal", _E, "an undeclared name in a condition or a bound"),
@@ -184,7 +196,7 @@ _TABLE = (
         _W,
         "an enforced condition (a guard) on a signal without an initial value, or on an entry that nothing writes",
     ),
-    # Traps of the engine's semantics.
+    "Traps of the engine",
     Rule("reactive-multiple-async", _W, "a reactive node with more than one asynchronous child"),
     Rule("explicit-in-reactive", _E, "an explicit form in XML where the engine requires the node's own tag"),
     Rule(
@@ -200,11 +212,13 @@ _TABLE = (
         "error-code-not-collected", _H, "an error code in an entry that neither a node nor the result of a goal reads"
     ),
     Rule("foreign-error-code", _W, "a condition that looks for the error codes of other actions than its entry has"),
-    # What logs show, in editors.
+    "What logs show, in editors",
     Rule("requirement-violated", _W, "a requirement that robots have violated, by the logs of the project"),
     Rule("never-exercised", _H, "a requirement about something that no run in the logs of the project did"),
+    "Another version",
     Rule("target-breaks", _E, "what the engine or the distribution of `--target` refuses"),
     Rule("target-differs", _W, "what means something else in the engine or the distribution of `--target`"),
+    "Parameters of Nav2",
     Rule("yaml-syntax", _E, "a parameter file that is not YAML"),
     Rule("nav2-distribution", _H, "a parameter file of Nav2 that does not tell for which distribution it is"),
     Rule("nav2-parameter", _W, "a parameter of bt_navigator that is misspelt, refused or not read"),
@@ -214,6 +228,7 @@ _TABLE = (
     Rule("missing-nav2-tree", _E, "a tree or a folder that bt_navigator does not find"),
     Rule("skipped-tree-file", _W, "a file in a search directory that bt_navigator skips"),
     Rule("refused-tree-file", _E, "a file that keeps bt_navigator from loading trees"),
+    "Traps of the engine",
     Rule("skipped-condition", _W, "a condition of IfThenElse or WhileDoElse that may be skipped: the engine throws"),
     Rule("unreachable-child", _W, "a child that can never run"),
     Rule(
@@ -223,7 +238,7 @@ _TABLE = (
     ),
 )
 
-RULES = {rule.name: rule for rule in _TABLE}
+RULES = {row.name: row for row in _TABLE if isinstance(row, Rule)}
 
 # btq cannot read a file reliably after these mistakes, so neither a selection nor a comment silences them.
 UNREADABLE = frozenset(
