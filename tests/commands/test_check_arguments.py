@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -53,18 +50,3 @@ def test_a_project_file_stands_for_its_folder(folder: Path) -> None:
     project.write_text('engin = "4.10"\n')
     errors = run_btq("check", "--output-format", "concise", "robot/btq.toml", cwd=folder)[2]
     assert errors == "btq: robot/btq.toml:1:1: unknown key `engin`; did you mean `engine`?\n"
-
-
-@pytest.mark.parametrize("encoding", ["cp1252", "ascii", "utf-8"])
-def test_signs_that_an_encoding_lacks(encoding: str, folder: Path) -> None:
-    (folder / "a.btq").write_text("BehaviorTree Main\n    Go →\n", encoding="utf-8")
-    for command, code in ((("explain",), 0), (("check", "a.btq"), 1)):
-        done = subprocess.run(
-            [sys.executable, "-m", "btq_lang", *command],
-            cwd=folder,
-            capture_output=True,
-            env={**os.environ, "PYTHONIOENCODING": encoding},
-            check=False,
-        )
-        assert (done.returncode, done.stderr) == (code, b"")
-        assert ("→" if encoding == "utf-8" else "?") in done.stdout.decode(encoding)

@@ -647,7 +647,7 @@ def test_near_names_are_of_the_kind_that_is_asked_for(btq: Run) -> None:
     def meant(name: str) -> str:
         return btq("explain", name).stderr.partition("; ")[2].strip()
 
-    assert meant("Selector") == "did you mean Fallback?"
+    assert btq("explain", "Selector").returncode == 0  # a name of other engines has a page of its own
     assert meant("Sequnce") == "did you mean Sequence?"
     assert meant("unused-nod") == "`btq explain` says what there is"
     assert meant("unused-tre") == "did you mean unused-tree?"
@@ -659,7 +659,7 @@ def test_explain_lists_the_rules_on_one_screen(btq: Run) -> None:
     assert max(map(len, lines)) <= 80
     assert len(lines) <= 55
     assert {word for line in lines for word in line.split()} > {*RULES}
-    assert lines[lines.index("# XML") + 1] == "xml-syntax  xml-root  xml-not-well-formed  xml-ignored"
+    assert lines[lines.index("# XML") + 1] == "xml-syntax  xml-root  xml-not-well-formed  xml-ignored  refused-element"
     assert lines[-1] == "Lists: btq explain rules nodes qualities words signs attributes verdicts units"
     for kind in lines[-1].removeprefix("Lists: btq explain ").split():
         assert btq("explain", kind).stdout.startswith("# ")
