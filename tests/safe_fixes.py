@@ -80,7 +80,8 @@ def _difference(before: Elements, now: Elements, finding: Diagnostic, text: str,
     if [place.count("/") for place, _, _ in before] != [place.count("/") for place, _, _ in now]:
         return "elements came or went"
     replaced = [text[change.place.span.start : change.place.span.end] for change in fix.changes]
-    words = {*replaced, *(change.text for change in fix.changes)}
+    texts = (*replaced, *(change.text for change in fix.changes))
+    words = {*texts, *(each.rpartition(".")[2] for each in texts)}  # of a quality, XML has the last name
     for one, other in zip(before, now, strict=True):
         if one != other and _without(words, one) != _without(words, other):
             return f"{one} became {other}"

@@ -592,6 +592,7 @@ def test_format_of_standard_input(process: Run) -> None:
         ("Retry", "# RetryUntilSuccessful (Decorator)"),
         ("time-behaviour", "# performance-efficiency.time-behaviour"),
         ("ManualSelector", "# ManualSelector"),
+        ("Selector", "# Selector (of other engines)"),
         ("satisfies", "# satisfies (clause of a node)"),
         ("on violation", "# on violation (clause)"),
         ("violation", "# on violation (clause)"),
