@@ -10,8 +10,6 @@ import json
 import vocabulary as words
 from textmate import _any
 
-from btq_lang.syntax.tokens import CATEGORIES
-
 
 def openers() -> tuple[str, ...]:
     """Words that a block follows: items, controls and decorators."""
@@ -45,7 +43,10 @@ def configuration() -> str:
             "folding": {"offSide": True, "markers": {"start": r"^\s*#\s*region\b", "end": r"^\s*#\s*endregion\b"}},
             "onEnterRules": [
                 {"beforeText": opening + whole_line, "action": {"indent": "indent"}},
-                {"beforeText": rf"^(?:{_any(CATEGORIES)})(?![\w-])" + whole_line, "action": {"indent": "indent"}},
+                {
+                    "beforeText": rf"^(?:{_any(words.CATEGORY_WORDS)})(?![\w-])" + whole_line,
+                    "action": {"indent": "indent"},
+                },
                 # A second Enter leaves the block.
                 {"beforeText": r"^\s+$", "action": {"indent": "outdent"}},
             ],
