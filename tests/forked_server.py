@@ -13,6 +13,7 @@ import signal
 import socket
 import subprocess
 import sys
+from contextlib import suppress
 from typing import NoReturn
 
 _LONGEST_PROGRAM = 65_536
@@ -46,7 +47,8 @@ class Forked:
 
     def kill(self) -> None:
         if self.returncode is None:
-            os.kill(self.pid, signal.SIGKILL)
+            with suppress(ProcessLookupError):  # it has ended by itself
+                os.kill(self.pid, signal.SIGKILL)
 
     def wait(self, timeout: float | None = None) -> int:
         """The exit code as soon as the process has ended, less than 0 after a signal."""
@@ -67,7 +69,8 @@ class Forked:
 
     def _close(self) -> None:
         for file in (self.stdin, self.stdout, self.stderr):
-            file.close()
+            with suppress(BrokenPipeError):  # what it has not read any more
+                file.close()
 
 
 def relay() -> list[str]:

@@ -390,5 +390,5 @@ def test_a_snippet_writes_its_construct_where_it_may_begin(code: Workbench) -> N
         'QualityReq in_time : performance-efficiency.time-behaviour "Reach the station in time"\n'
         "    takes at most 30 s\n\n"
         "BehaviorTree Mission\n    ->\n        Condition BatteryGood\n"
-        '        Action MoveBase (station = "charger") satisfies in_time\n        '
+        '        Action MoveBase (station = "charger") satisfies in_time'
     )
