@@ -34,13 +34,13 @@ def _compared(options: Namespace, store: str, sides: tuple[str, str], at_least: 
     from btq_lang.evidence.store.engine import NoEngine, asked
 
     try:
-        found = compare(asked(store, options.label), options.by, sides, at_least)
+        comparisons = compare(asked(store, options.label), options.by, sides, at_least)
     except (NoEngine, Unknown) as error:
         of = f" with the label {options.label}" if options.label is not None and isinstance(error, Unknown) else ""
         raise Refused(f"{error}{of}") from error
     form = form_of(options, FORMATS)
-    write_output(options.output, write(found, options.by, sides, form), form)
-    return int(any(each.is_worse for each in found))
+    write_output(options.output, write(comparisons, options.by, sides, form), form)
+    return int(any(each.is_worse for each in comparisons))
 
 
 @contextmanager

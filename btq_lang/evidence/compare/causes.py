@@ -32,7 +32,7 @@ def chains(durations: Mapping[Key, Measure], leaves: Collection[Key]) -> list[li
     """
     lengths = {key: sum(of.mean for of in durations[key].values()) for key in durations}
     numbers = {key: frozenset((unit, of.number) for unit, of in durations[key].items()) for key in durations}
-    found: list[list[Key]] = []
+    chained: list[list[Key]] = []
     for keys in grouped((numbers[key], key) for key in durations).values():
         joined: list[list[Key]] = []
         for key in sorted(keys, key=lambda key: (bool(key.requirement), lengths[key])):
@@ -50,8 +50,8 @@ def chains(durations: Mapping[Key, Measure], leaves: Collection[Key]) -> list[li
                 max(inner, key=lambda chain: sum(of.end for of in durations[chain[0]].values())).append(key)
             else:
                 joined.append([key])
-        found += joined
-    return found
+        chained += joined
+    return chained
 
 
 def with_causes(changes: Sequence[Change], numbers: Numbers, at_least: float) -> list[Change]:

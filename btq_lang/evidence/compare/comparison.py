@@ -153,7 +153,7 @@ class _Mission:
         numbers = self._numbers
         labels = [dict(sorted(of["labels"].items())) for of in self._runs]
         is_mixed = self._by == "robot" and len({*labels[0], *labels[1]}) > 1
-        found = [self._tested(each, changes) for each in self._turned]
+        tested = [self._tested(each, changes) for each in self._turned]
         return Comparison(
             mission=self._name,
             runs=_pair(of["runs"] for of in self._runs),
@@ -164,8 +164,8 @@ class _Mission:
             group=numbers.group,
             at_least=at_least,
             one_sided=numbers.one_sided(),
-            newly=tuple(each for each in found if each.after == VIOLATED),
-            no_longer=tuple(each for each in found if each.after != VIOLATED),
+            newly=tuple(each for each in tested if each.after == VIOLATED),
+            no_longer=tuple(each for each in tested if each.after != VIOLATED),
             only=self._only,
             unknown=self._unknown,
             edited=self._edited,

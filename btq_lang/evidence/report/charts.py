@@ -28,20 +28,20 @@ def bars(values: Values, steps: Steps, labels: Sequence[tuple[str, int]], shown:
     Args:
         shown: gives a value as people read it.
     """
-    known = [(place, value) for place, value in enumerate(values) if value is not None]
-    if not known:
+    places = [(place, value) for place, value in enumerate(values) if value is not None]
+    if not places:
         return ""
-    (first, begin), (last, end) = known[0], known[-1]
-    highest = max(value for _, value in known)
+    (first, begin), (last, end) = places[0], places[-1]
+    highest = max(value for _, value in places)
     if not highest:
         return f"<small>always {escape(shown(0.0))}</small>"
     dates = [date(steps.begin(place), steps.name) for place in range(len(values))]
-    said = f"{shown(begin)} from {dates[first]}, {shown(end)} from {dates[last]}"
+    change = f"{shown(begin)} from {dates[first]}, {shown(end)} from {dates[last]}"
     titles = tuple("" if each is None else f"{day}: {shown(each)}" for day, each in zip(dates, values, strict=True))
     began = _began([(name, date(start, steps.name)) for name, start in labels])
     chart = Chart(
         kind="trend",
-        label=f"by {steps.name}: {said}, at most {shown(highest)}{began}",
+        label=f"by {steps.name}: {change}, at most {shown(highest)}{began}",
         size=_SMALL,
         series=(Series("bars", values, titles),),
         ticks=((0.0, shown(0.0)), (highest, shown(highest))),
@@ -112,10 +112,12 @@ def _change(measured: MeasureTrend) -> str:
     """The first and the last values in words, the extreme ones, and what they are compared with."""
 
     def words(values: Values, of: str) -> str:
-        known = [each for each in values if each is not None]
-        first, last, least, most = (written(each, unit) for each in (known[0], known[-1], min(known), max(known)))
+        numbers = [each for each in values if each is not None]
+        first, last, least, most = (
+            written(each, unit) for each in (numbers[0], numbers[-1], min(numbers), max(numbers))
+        )
         between = f", between {least} and {most}" if {least, most} != {first, last} else ""
-        return f"{of} from {first} to {last}{between}" if len(known) > 1 else f"{of} {first}"
+        return f"{of} from {first} to {last}{between}" if len(numbers) > 1 else f"{of} {first}"
 
     unit = measured.unit
     parts = [words(measured.worst, f"the worst of each {measured.by}")]

@@ -53,13 +53,13 @@ def measures(ask: Ask, steps: Steps, labels: Sequence[tuple[str, int]]) -> Mappi
         grouped((of_clause(row), row) for row in ask(OVERVIEW[name].format(**words)))
         for name in ("measured_runs", "measured_steps")
     )
-    found = []
+    of_missions = []
     for row in ask(OVERVIEW["measured"]):
         if key := runs.get(of_clause(row)):
-            found.append((row["mission"], _by_run(row, key)))
+            of_missions.append((row["mission"], _by_run(row, key)))
         elif key := times.get(of_clause(row)):
-            found.append((row["mission"], _by_step(row, key, steps, labels)))
-    return grouped(found)
+            of_missions.append((row["mission"], _by_step(row, key, steps, labels)))
+    return grouped(of_missions)
 
 
 def _by_run(clause: Row, rows: Sequence[Row]) -> MeasureTrend:
