@@ -25,7 +25,7 @@ def test_workflows(node: Path, tmp_path: Path) -> None:
     for path, block in zip(shown, blocks, strict=True):
         path.write_text(block, encoding="utf-8")
     ours = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
-    assert [path.name for path in ours] == ["ci.yml", "release.yml", "scheduled.yml"]
+    assert [path.name for path in ours] == ["ci.yml", "docs.yml", "marketplace.yml", "release.yml", "scheduled.yml"]
     assert complaints(node, *ours, *shown) == []
 
 

@@ -101,7 +101,9 @@ def test_a_step_of_the_action_runs(step: str, code: int, said: str, tmp_path: Pa
 def test_the_action_is_content_with_this_repository(step: str, programs: dict[str, str]) -> None:
     """The job of our own workflow."""
     action = read("action.yml")
-    (ours,) = (each["with"] for each in read(".github/workflows/ci.yml")["jobs"]["action"]["steps"] if "with" in each)
+    (ours,) = (
+        each["with"] for each in read(".github/workflows/ci.yml")["jobs"]["action"]["steps"] if each.get("uses") == "./"
+    )
     assert ours["format"] == "true"
     (body,) = (each for each in action["runs"]["steps"] if each.get("name") == step)
     given = {name: ours.get(name, about["default"]) for name, about in action["inputs"].items()}
@@ -131,6 +133,36 @@ def test_the_action_writes_what_changed(tmp_path: Path, programs: dict[str, str]
     assert "Charge" in said
     assert (tmp_path / "GITHUB_STEP_SUMMARY").read_text(encoding="utf-8") == said
     assert (tmp_path / "GITHUB_OUTPUT").read_text() == f"file={tmp_path}/btq-diff.md\n"
+
+
+def test_workflows_are_secure() -> None:
+    """Actions pinned by hash, no credentials that stay behind, no more permissions than needed."""
+    zizmor = Path(sys.executable).with_name("zizmor" + (".exe" if os.name == "nt" else ""))
+    options = ("--offline", "--quiet", "--no-progress", "--format", "plain")
+    run = subprocess.run([zizmor, *options, ".github", "action.yml"], cwd=ROOT, capture_output=True, text=True)
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+def test_a_release_is_of_its_tag_and_for_three_systems() -> None:
+    jobs = read(".github/workflows/release.yml")["jobs"]
+    (tag,) = (step for step in jobs["build"]["steps"] if step.get("name") == "The tag is the version")
+    run = [*BASH, tag["run"]]
+    given = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    assert subprocess.run(run, cwd=ROOT, env={**given, "GITHUB_REF_NAME": "v9.9"}).returncode == 1
+    assert jobs["compiled"]["strategy"]["matrix"]["system"] == ["ubuntu-latest", "macos-latest", "windows-latest"]
+    assert jobs["publish"]["needs"] == ["build", "compiled"]
+
+
+@pytest.mark.parametrize("name", ["docs", "marketplace"])
+def test_a_maintainer_starts_what_follows_a_release(name: str) -> None:
+    assert read(f".github/workflows/{name}.yml")[True].keys() == {"workflow_dispatch"}
+
+
+def test_the_citation_names_the_article() -> None:
+    citation = read("CITATION.cff")
+    (article,) = citation["references"]
+    assert [author["family-names"] for author in article["authors"]] == ["Ghzouli", "Wohlrab", "Horkoff"]
+    assert (citation["license"], article["conference"]["name"], article["year"]) == ("MIT", "REFSQ 2025", 2025)
 
 
 def test_every_job_tests_the_versions_that_are_promised() -> None:

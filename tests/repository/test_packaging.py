@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import tarfile
@@ -36,6 +37,18 @@ def test_the_wheel_holds_every_file_of_the_package(wheel: Path) -> None:
     known = {name for name in files if "__pycache__" not in name}
     assert "btq_lang/py.typed" in known
     assert {name for name in zipfile.ZipFile(wheel).namelist() if name.startswith("btq_lang/")} == known
+
+
+def test_links_of_the_readme_work_on_pypi(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = (name for name in archive.namelist() if name.endswith("/METADATA"))
+        metadata = archive.read(name).decode()
+    repository = "https://github.com/btq-lang/btq"
+    assert f"Project-URL: Repository, {repository}\n" in metadata
+    assert f"[The tutorial]({repository}/blob/main/docs/tutorial.md)" in metadata
+    assert "](https://raw.githubusercontent.com/btq-lang/btq/main/docs/deliver.svg)" in metadata
+    targets = re.findall(r"\]\(([^)]*)\)", metadata)
+    assert [target for target in targets if not target.startswith(("https://", "#"))] == []
 
 
 def test_the_installed_commands_work_elsewhere(wheel: Path, tmp_path: Path) -> None:

@@ -53,3 +53,9 @@ def test_every_mission_in_a_document_checks_clean(block: str) -> None:
 def test_links_between_documents_lead_somewhere(document: Path) -> None:
     for target in re.findall(r"\]\(([^)#:]+)[)#]", document.read_text(encoding="utf-8")):
         assert (document.parent / target).exists(), target
+
+
+def test_the_changelog_counts_the_rules() -> None:
+    pages = list((ROOT / "btq_lang" / "diagnostics" / "rules").glob("*.md"))
+    (number,) = re.findall(r"`btq check`: (\d+) rules", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"))
+    assert int(number) == len(pages)
