@@ -38,6 +38,11 @@ def foreign_name(word: str) -> ForeignName | None:
     return ForeignName(_SPELLINGS[stem]) if known is None and stem in _SPELLINGS else known
 
 
+def is_of_leaves(word: str) -> bool:
+    """Whether programs have leaves of that name too, so that a word after it may well be a label."""
+    return _plain(word) in _OF_LEAVES
+
+
 def _plain(word: str) -> str:
     return re.sub(r"[\W_]", "", word).casefold()
 
@@ -90,6 +95,12 @@ _NAMES: Final[dict[str, ForeignName]] = {
     **dict.fromkeys(("oneshot", "once"), ForeignName("RunOnce")),
 }
 
+_OF_LEAVES: Final = frozenset(
+    (
+        *("wait", "select", "priority", "once", "succeed", "succeeder", "alwayssucceed", "returnsuccess"),
+        *("fail", "failer", "alwaysfail", "returnfailure"),
+    )
+)
 _SPELLINGS: Final = {
     _plain(spelling): kind.tag for kind in BUILTINS.values() for spelling in spellings(kind) if spelling[0].isalpha()
 }

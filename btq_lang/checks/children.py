@@ -11,6 +11,7 @@ from btq_lang.catalog.nodes import is_by_children
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.kinds import OF_SUBTREE, declared_category, model_related
 from btq_lang.checks.one_parent import sequence_above
+from btq_lang.checks.own_lines import label_as_child
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
@@ -60,6 +61,9 @@ def child_count(view: View) -> Iterator[Diagnostic]:
             related += (Related(Place(span), "first extra child"),)
         message = f"{_called(seen)} requires {_range(least, most)}, found {count or 'none'}"
         fixes = sequence_above(view, seen.node.children) if most == 1 < count else ()
+        if count == 0 and seen.behavior is not None:
+            as_child, fixes = label_as_child(view, seen)
+            notes += as_child
         yield Diagnostic("child-count", seen.node.head.span, message, related=related, notes=notes, fixes=fixes)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.catalog.foreign_names import ForeignName, foreign_name
+from btq_lang.catalog.foreign_names import ForeignName, foreign_name, is_of_leaves
 from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, model_name_problem
@@ -16,6 +16,7 @@ from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
 from btq_lang.checks import lookups
 from btq_lang.checks.engines import is_for_version_3, old_words
 from btq_lang.checks.lookups import Declaration
+from btq_lang.checks.own_lines import has_bare_label, label_as_child
 from btq_lang.checks.view import COUNTS, SECOND, View, misspelt_clause
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -87,8 +88,10 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
             yield Diagnostic("not-an-engine-node", name.span, message, notes=(note,), fixes=(fix,))
         elif (foreign := _foreign(view, seen)) is not None:
             message += did_you_mean((foreign.tag,))
-            notes = (foreign.note,) if foreign.note else ()
-            fixes = (_as_built_in(view, seen, name, foreign),)
+            as_child, fixes = label_as_child(view, seen, foreign.tag)
+            notes = (*((foreign.note,) if foreign.note else ()), *as_child)
+            if not as_child:
+                fixes = (_as_built_in(view, seen, name, foreign),)
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
 
 
@@ -256,9 +259,12 @@ def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ..
 
 
 def _foreign(view: View, seen: ResolvedNode) -> ForeignName | None:
-    """What a node means to other engines, if it has children and nothing says that there is such a node."""
+    """What a node means to other engines, if it has children, or a label that may be meant as one, and nothing says
+    that there is such a node."""
     name = seen.id
-    if name is None or seen.node.category is not None or seen.of_model is not None or not seen.node.children:
+    if name is None or seen.node.category is not None or seen.of_model is not None:
+        return None
+    if not (seen.node.children or (has_bare_label(view, seen.node) and not is_of_leaves(name.text))):
         return None
     foreign = foreign_name(name.text)
     if foreign is None or view.defines(Kind.TREE, name.text) or view.is_pooled(Kind.MODEL, name.text):

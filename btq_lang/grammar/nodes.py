@@ -219,7 +219,22 @@ class NodeParser(AttributeParser):
         else:
             is_negation = self.raw == "!" and self.kinds[self.index + 1] in (NAME, STRING)
             notes = ("to negate a node, put an `Inverter` above it, and indent the node",) if is_negation else ()
-            self.expected("a node: its kind, or a symbol: -> ? || …", notes, self.symbol_meant())
+            fixes = self.inverter() if is_negation else self.symbol_meant()
+            self.expected("a node: its kind, or a symbol: -> ? || …", notes, fixes)
+
+    def inverter(self) -> tuple[Fix, ...]:
+        """The fix for `!Dark`."""
+        sign = Span(self.here().start, self.starts[self.index + 1])
+        below = self.line_below()
+        return (replace_fix("Put an `Inverter` above it", sign, f"Inverter{below}"),) if below else ()
+
+    def line_below(self) -> str:
+        """How a line begins that is one step deeper than the current one, with the line end before it; empty if the
+        current one begins with something else.
+        """
+        margin = self.text[line_start(self.text, 0, self.starts[0]) : self.starts[0]]
+        step = "\t" if margin.startswith("\t") else "    "
+        return "" if margin.strip() else f"\n{margin}{step}"
 
     def found_xml(self) -> None:
         """Report that the current line is XML; the fix writes an element as a node."""
@@ -304,11 +319,10 @@ class NodeParser(AttributeParser):
         if self.kinds[index + 1] not in (NAME, STRING) or self.raws[index + 1] in NODE_CLAUSES:
             return False
         start, end = self.starts[index], self.starts[-2] + len(self.raws[-2])
-        margin = self.text[line_start(self.text, 0, self.starts[0]) : self.starts[0]]
         before = self.starts[index - 1] + len(self.raws[index - 1])
-        step = "\t" if margin.startswith("\t") else "    "
-        fix = replace_fix("Put it on a line of its own", Span(before, start), f"\n{margin}{step}")
-        self.complain(Span(start, end), CHILD, *(() if margin.strip() else (fix,)))
+        below = self.line_below()
+        fixes = (replace_fix("Put it on a line of its own", Span(before, start), below),) if below else ()
+        self.complain(Span(start, end), CHILD, *fixes)
         self.go_to(len(self.kinds) - 1)
         return True
 

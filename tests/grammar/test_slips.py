@@ -1,0 +1,231 @@
+"""Slips of newcomers that the parser reads as something else, each with the exact diagnostic that leads on.
+
+The form is that of test_first_mistakes.py; where a fix leaves something to do, that is said in the case.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pytest
+from check_asserts import after, show
+from test_first_mistakes import Case, mistakes, requirement, tree
+
+BELOW: Final = "a child goes on a line of its own below its parent, indented"
+CHILDREN: Final = "children go on lines of their own below their parent, indented"
+NO_TYPE: Final = (
+    "a signal has a unit, not a type | write the unit of its values: `m/s`, `s`, `%`, …; or `1` if they have none"
+)
+UNITS: Final = "a unit is `m/s`, `s`, `%`, `bool`, `text` or `1`"
+TO_PORT: Final = "a value goes after the name of its port:"
+KEEPS: Final = tree("Go satisfies r") + "QualityReq r\n    keeps "
+
+
+def label(word: str, kind: str) -> str:
+    return f"btq reads `{word}` as the label of `{kind}`; {BELOW}"
+
+
+def foreign(written: str, meant: str) -> str:
+    return f"`{written}` is not built into BehaviorTree.CPP 4.6–4.10; did you mean `{meant}`?"
+
+
+ON_ONE_LINE: Final[list[Case]] = [
+    (
+        tree("->", "    not Dark", "    Go"),
+        f"3:9 warning not-an-engine-node «not» {foreign('not', 'Inverter')} | {label('Dark', 'not')}",
+        tree("->", "    Inverter", "        Dark", "    Go"),
+    ),
+    (
+        "Action Go\n" + tree("->", "    Invert Dark", "    Go"),
+        f"4:9 warning not-an-engine-node «Invert» {foreign('Invert', 'Inverter')} | {label('Dark', 'Invert')}",
+        "Action Go\n" + tree("->", "    Inverter", "        Dark", "    Go"),
+    ),
+    (
+        tree("Selector Go"),
+        f"2:5 warning not-an-engine-node «Selector» {foreign('Selector', 'Fallback')} | {label('Go', 'Selector')}",
+        tree("Fallback", "    Go"),
+    ),
+    (
+        tree("Not Near (at = 3)"),
+        f"2:5 warning not-an-engine-node «Not» {foreign('Not', 'Inverter')} | {label('Near', 'Not')}",
+        tree("Inverter", "    Near (at = 3)"),
+    ),
+    (
+        tree("->", "    !Dark", "    Go"),
+        "3:9 error syntax-error «!» expected a node: its kind, or a symbol: -> ? || …, found `!` | "
+        "to negate a node, put an `Inverter` above it, and indent the node",
+        tree("->", "    Inverter", "        Dark", "    Go"),
+    ),
+    (
+        tree("Inverter Dark"),
+        "2:5 error child-count «Inverter» `Inverter` requires exactly 1 child, found none | "
+        f"{label('Dark', 'Inverter')}",
+        tree("Inverter", "    Dark"),
+    ),
+    (
+        "Action Greet\n" + tree("-> Greet"),
+        f"3:5 error child-count «->» `->` requires 1 or more children, found none | {label('Greet', '->')}",
+        "Action Greet\n" + tree("->", "    Greet"),
+    ),
+    (
+        tree("Repeat Go (num_cycles = 3)"),  # the brackets are those of Repeat
+        f"2:5 error child-count «Repeat» `Repeat` requires exactly 1 child, found none | {label('Go', 'Repeat')}",
+        None,
+    ),
+    (
+        tree("? Go, Turn  # or turn"),
+        f"2:9 error syntax-error «,» {CHILDREN}",
+        tree("?", "    Go", "    Turn  # or turn"),
+    ),
+    (tree("Sequence Go Turn"), f"2:17 error syntax-error «Turn» {CHILDREN}", tree("Sequence", "    Go", "    Turn")),
+    (
+        tree("Timeout (msec = 30 s) Go"),
+        f"2:27 error syntax-error «Go» {BELOW}",
+        tree("Timeout (msec = 30 s)", "    Go"),
+    ),
+    (tree("Retry (num_attempts = 3) Inverter", "    Go"), f"2:30 error syntax-error «Inverter» {BELOW}", None),
+]
+
+VALUES: Final[list[Case]] = [
+    (
+        tree("Timeout 30 s", "    Go"),
+        f"2:13 error syntax-error «30 s» expected the end of the line, found `30 s` | {TO_PORT} `(msec = 30 s)`",
+        tree("Timeout (msec = 30 s)", "    Go"),
+    ),
+    (
+        tree("Timeout 30", "    Go"),
+        "2:13 error syntax-error «30» expected the end of the line, found `30` | "
+        f"{TO_PORT} `(msec = 30)`, or with a unit, `(msec = 30 s)`",
+        None,
+    ),
+    (
+        tree("Retry {n}", "    Go"),
+        "2:11 error syntax-error «{n}» expected the end of the line, found `{n}` | "
+        f"{TO_PORT} `(num_attempts = {{n}})`",
+        tree("Retry (num_attempts = {n})", "    Go"),
+    ),
+    (
+        tree('Repeat "again" 3', "    Go"),
+        f"2:20 error syntax-error «3» expected the end of the line, found `3` | {TO_PORT} `(num_cycles = 3)`",
+        tree('Repeat "again" (num_cycles = 3)', "    Go"),
+    ),
+    (
+        tree("Sleep 500 ms"),
+        f"2:11 error syntax-error «500 ms» expected the end of the line, found `500 ms` | {TO_PORT} `(msec = 500 ms)`",
+        tree("Sleep (msec = 500 ms)"),
+    ),
+    (
+        "Action Go\n    input station\n" + tree("Go {dock}"),
+        "4:8 error syntax-error «{dock}» expected the end of the line, found `{dock}` | "
+        f"{TO_PORT} `(station = {{dock}})`",
+        "Action Go\n    input station\n" + tree("Go (station = {dock})"),
+    ),
+    (
+        tree('Precondition "x > 3"', "    Go"),
+        "2:5 error missing-port «Precondition» `Precondition` requires a value for its port `if` | "
+        '`if`: the condition | btq reads `"x > 3"` as its label; for a value, write `(if = "x > 3")`',
+        tree('Precondition (if = "x > 3")', "    Go"),
+    ),
+    (
+        tree("Precondition (x > 3)", "    Go"),
+        f'2:19 error syntax-error «x» expected an attribute: key = value, found `x` | {TO_PORT} `if = "x > 3"`',
+        tree('Precondition (if = "x > 3")', "    Go"),
+    ),
+    (
+        tree("Script (x := 3)"),
+        f'2:15 error syntax-error «:=» expected `=` between key and value, found `:=` | {TO_PORT} `code = "x := 3"`',
+        tree('Script (code = "x := 3")'),
+    ),
+]
+
+SIGNALS: Final[list[Case]] = [
+    *(
+        (
+            f"signal v : {type_} from {{v}}\n" + tree("Go"),
+            f"1:12 error unknown-unit «{type_}» unknown unit `{type_}`: {NO_TYPE}",
+            None,
+        )
+        for type_ in (
+            *("double", "float64", "int", "uint8_t", "unsigned int", "size_t", "long", "list"),
+            *("std_msgs/Float32", "std_msgs::msg::Float64", "geometry_msgs/Twist", "std::vector<double>"),
+        )
+    ),
+    (
+        "signal lit : std_msgs/Bool from {v}\n" + KEEPS + "lit\n",
+        "1:14 error unknown-unit «std_msgs/Bool» unknown unit `std_msgs/Bool`; did you mean `bool`?",
+        "signal lit : bool from {v}\n" + KEEPS + "lit\n",
+    ),
+    (
+        "signal v : velocity from {v}\n" + KEEPS + "v < 1 m/s\n",
+        "1:12 error unknown-unit «velocity» unknown unit `velocity`; did you mean `m/s`?",
+        "signal v : m/s from {v}\n" + KEEPS + "v < 1 m/s\n",
+    ),
+    (
+        requirement("takes at most 30 s").replace("QualityReq r", "QualityReq r (n : double = 3)"),
+        "3:19 error unknown-unit «double» unknown unit `double`: " + NO_TYPE.replace("signal", "parameter"),
+        None,
+    ),
+    (
+        "signal v = {v}\n" + tree("Go"),
+        "1:10 error syntax-error «=» expected `:` and the signal's unit, found `=` | "
+        f"write `signal v : <unit> from {{v}}`; {UNITS}",
+        None,
+    ),
+    (
+        "signal v from {v}\n" + tree("Go"),
+        "1:10 error syntax-error «from» expected `:` and the signal's unit, found `from` | "
+        f"write `signal v : <unit> from {{v}}`; {UNITS}",
+        None,
+    ),
+    (
+        "signal double v\n" + tree("Go"),
+        "1:15 error syntax-error «v» expected `:` and the signal's unit, found `v` | "
+        f"write `signal v : <unit> from {{v}}`; {UNITS}",
+        None,
+    ),
+    (
+        'signal from "/v"\n' + tree("Go"),
+        "1:8 error syntax-error «from» expected the signal's name, found `from` | "
+        f"write `signal battery : <unit> from {{battery}}`; {UNITS}",
+        None,
+    ),
+    (
+        "signal v : m/s = {v}\n" + KEEPS + "v < 1 m/s\n",
+        "1:16 error syntax-error «=» expected `from`, found `=`",
+        "signal v : m/s from {v}\n" + KEEPS + "v < 1 m/s\n",
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "said", "mended"), [*ON_ONE_LINE, *VALUES, *SIGNALS])
+def test_a_slip_is_one_diagnostic(text: str, said: str, mended: str | None) -> None:
+    found = mistakes(text)
+    assert [" | ".join((line, *found[0].notes)) for line in show(text, found)] == [said]
+    assert [after(text, fix) for fix in found[0].fixes] == ([mended] if mended else [])
+    assert mistakes(mended or "") == []
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        "Wait Door",  # a leaf of the program, with a label
+        "Select Target",
+        "Succeeder Done",
+        "Not",
+        'Not "yet"',
+        "Not (x = 1)",
+    ],
+)
+def test_a_leaf_with_a_label(node: str) -> None:
+    assert mistakes(tree("->", f"    {node}", "    Go")) == []
+
+
+@pytest.mark.parametrize(
+    "text", [tree("Retry (num_attempts = 5) Again", "    Go"), tree('Retry (num_attempts = 5) "Go"')]
+)
+def test_a_label_after_brackets_may_be_one(text: str) -> None:
+    assert mistakes(text)[0].message == "a node's label goes before its brackets"
+
+
+def test_the_start_of_the_next_line_is_no_value() -> None:
+    assert [found.notes for found in mistakes(tree("->", "    Go", "    3"))] == [()]
