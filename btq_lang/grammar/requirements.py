@@ -9,9 +9,10 @@ import re
 from typing import Final
 
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
-from btq_lang.grammar.claims import MEANT, MODALS, VERB_WORDS
+from btq_lang.grammar.claims import MEANT, VERB_WORDS
 from btq_lang.grammar.clauses import ENDS_CLAUSES, ClauseParser
 from btq_lang.grammar.conditions import HEADS, RELATIONS
+from btq_lang.grammar.prose import MODALS
 from btq_lang.syntax.scan import is_unit, path_end, unit_run
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING

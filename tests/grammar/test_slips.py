@@ -18,6 +18,8 @@ NO_TYPE: Final = (
 )
 UNITS: Final = "a unit is `m/s`, `s`, `%`, `bool`, `text` or `1`"
 TO_PORT: Final = "a value goes after the name of its port:"
+_CHOICE: Final = "v > 1 m/s ? 60 s : 30 s"
+_UNLESS: Final = ("unless v > 1 m/s and v < 2 m/s", "while not (v > 1 m/s and v < 2 m/s)")
 KEEPS: Final = tree("Go satisfies r") + "QualityReq r\n    keeps "
 
 
@@ -196,8 +198,88 @@ SIGNALS: Final[list[Case]] = [
     ),
 ]
 
+OF_A_SIGNAL: Final = "signal v : m/s from {v}\n" + tree("Go satisfies r") + "QualityReq r\n    "
+PROSE: Final[list[Case]] = [
+    *(
+        (
+            requirement(prose),
+            f"4:{5 + prose.index(slip)} error syntax-error «{slip}» this clause is written `{meant}`",
+            requirement(meant),
+        )
+        for prose, slip, meant in (
+            ("shall take at most 30 s", "shall take", "takes at most 30 s"),
+            ("must takes at most 30 s", "must takes", "takes at most 30 s"),
+            ("has to take at most 30 s", "has to take", "takes at most 30 s"),
+            ("needs to take at most 30 s", "needs to take", "takes at most 30 s"),
+            ("should be reached within 30 s", "should be reached within", "succeeds within 30 s"),
+            ("Go should be done within 30 s", "should be done within", "Go succeeds within 30 s"),
+            ("Go must finish in 30 s", "must finish in", "Go succeeds within 30 s"),
+            ("completes within 30 s", "completes within", "succeeds within 30 s"),
+            ("Main/Go shall not exceed 30 s", "shall not exceed", "Main/Go takes at most 30 s"),
+            ("must not take longer than 30 s", "must not take longer than", "takes at most 30 s"),
+            ("Go must not fail", "must not fail", "Go succeeds"),
+        )
+    ),
+    *(
+        (
+            OF_A_SIGNAL + prose + "\n",
+            f"5:{5 + prose.index(slip)} error syntax-error «{slip}» this clause is written `{meant}`",
+            OF_A_SIGNAL + prose.replace(slip, meant) + "\n",
+        )
+        for prose, slip, meant in (
+            ("takes at most 30 s unless v > 1 m/s", "unless v > 1 m/s", "while not v > 1 m/s"),
+            ("takes at most 30 s unless v > 1 m/s and v < 2 m/s on violation warn", *_UNLESS),
+        )
+    ),
+    *(
+        (
+            OF_A_SIGNAL + prose + "\n",
+            f"5:5 error syntax-error «{slip}» this clause is written `{meant}`",
+            OF_A_SIGNAL + meant + "\n",
+        )
+        for prose, slip, meant in (
+            ("v must stay below 1 m/s", "v must stay below", "keeps v < 1 m/s"),
+            ("v must be at least 1 m/s", "v must be at least", "keeps v >= 1 m/s"),
+            ("v shall not exceed 1 m/s", "v shall not exceed", "keeps v <= 1 m/s"),
+            ("v is below 1 m/s", "v is below", "keeps v < 1 m/s"),
+        )
+    ),
+    (
+        OF_A_SIGNAL + "takes at most 30 s\n    if v > 1 m/s\n",
+        "6:5 error syntax-error «if v > 1 m/s» a clause has no `if` | "
+        "to limit a clause to a situation, write `while v > 1 m/s` or `when v > 1 m/s`",
+        None,
+    ),
+    *(
+        (
+            OF_A_SIGNAL + f"{clause} {choice}\n",
+            f"5:{6 + len(clause)} error syntax-error «{choice}» a choice is written `{meant}`",
+            OF_A_SIGNAL + f"{clause} {meant}\n",
+        )
+        for clause, choice, meant in (
+            ("takes at most", "v > 1 m/s ? 60 s : 30 s", "60 s if v > 1 m/s else 30 s"),
+            ("takes at most", "(v > 1 m/s) ? 60 s : 30 s", "60 s if (v > 1 m/s) else 30 s"),
+            ("takes at most", "if v > 1 m/s then 60 s else 30 s", "60 s if v > 1 m/s else 30 s"),
+            ("succeeds within", "v > 1 m/s ? 60 s : 30 s", "60 s if v > 1 m/s else 30 s"),
+            ("takes at most 90 s goal", "v > 1 m/s ? 60 s : 30 s", "60 s if v > 1 m/s else 30 s"),
+        )
+    ),
+    (
+        "signal v : m/s from {v}\n" + requirement("takes at most n").replace("r\n ", f"r (n : s = {_CHOICE})\n "),
+        f"4:23 error syntax-error «{_CHOICE}» a choice is written `60 s if v > 1 m/s else 30 s`",
+        "signal v : m/s from {v}\n"
+        + requirement("takes at most n").replace("r\n ", "r (n : s = 60 s if v > 1 m/s else 30 s)\n "),
+    ),
+    (
+        requirement("takes at most Go ? (30 s) : 3 s"),
+        "4:19 error syntax-error «Go» expected a value, found `Go` | "
+        "a choice is written `60 s if battery_low else 30 s`",
+        None,
+    ),
+]
 
-@pytest.mark.parametrize(("text", "said", "mended"), [*ON_ONE_LINE, *VALUES, *SIGNALS])
+
+@pytest.mark.parametrize(("text", "said", "mended"), [*ON_ONE_LINE, *VALUES, *SIGNALS, *PROSE])
 def test_a_slip_is_one_diagnostic(text: str, said: str, mended: str | None) -> None:
     found = mistakes(text)
     assert [" | ".join((line, *found[0].notes)) for line in show(text, found)] == [said]
