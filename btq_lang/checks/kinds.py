@@ -16,6 +16,7 @@ from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
 from btq_lang.checks import lookups
 from btq_lang.checks.engines import is_for_version_3, old_words
 from btq_lang.checks.lookups import Declaration
+from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.own_lines import has_bare_label, label_as_child
 from btq_lang.checks.view import COUNTS, SECOND, View, misspelt_clause
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
@@ -24,6 +25,7 @@ from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Model, Word, quote, written
+from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean, distance, without_digits
 from btq_lang.util.text import Span
 from btq_lang.workspace.item_index import Facts
@@ -44,8 +46,9 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
         word = seen.node.category
         if word is not None and (name is None or name.text == ""):
             if not view.is_torn(seen.node.start, seen.node.end):
-                message = f"missing ID of this {word.raw}: write `{word.raw} <ID>`"
-                yield Diagnostic("unknown-node", word.span, message, severity=Severity.ERROR)
+                what, pairs = f"missing ID of this {word.raw}", seen.node.attributes
+                found = missing_id(view, "unknown-node", word.span, what, word.raw, pairs)
+                yield replace(found, severity=Severity.ERROR)
         elif name is None:
             continue
         elif view.defines(Kind.TREE, name.text):
@@ -83,9 +86,7 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
             notes = (known.why, *(way_in(view) if known.word in _TRANSLATED else ()))
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
         elif (meant := _quoted_alias(seen, name)) is not None and not _is_refused(view, seen, name):
-            note = f"a quoted kind is the XML tag, and the engine's tag is {meant.tag}"
-            fix = replace_fix("Remove the quotes", name.span, name.text)
-            yield Diagnostic("not-an-engine-node", name.span, message, notes=(note,), fixes=(fix,))
+            yield _aliased(view, seen, name, message, meant)
         elif (foreign := _foreign(view, seen)) is not None:
             message += did_you_mean((foreign.tag,))
             as_child, fixes = label_as_child(view, seen, foreign.tag)
@@ -284,6 +285,19 @@ def _as_built_in(view: View, seen: ResolvedNode, name: Word, foreign: ForeignNam
 def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:
     """The built-in that a word would mean without its quotes: `"Retry"` is not a tag of the engine."""
     return lookup(name.text) if name.quoted and seen.kind is None else None
+
+
+def _aliased(view: View, seen: ResolvedNode, name: Word, message: str, meant: NodeKind) -> Diagnostic:
+    """`<Retry>` in XML, and `"Retry"` in quotes: a word of this language that is no tag of the engine."""
+    if not view.is_xml:
+        note = f"a quoted kind is the XML tag, and the engine's tag is {meant.tag}"
+        fix = replace_fix("Remove the quotes", name.span, name.text)
+        return Diagnostic("not-an-engine-node", name.span, message, notes=(note,), fixes=(fix,))
+    tag = meant.tag
+    if meant.flow == "for-each" and not any(meant.port(pair.key.text) for pair in seen.node.attributes):
+        tag = next(kind.tag for kind in BUILTINS.values() if kind.flow == "repeat")  # `Loop` in other engines
+    fix = replace_fix(f"Replace `{name.text}` with `{tag}`", name.span, tag)
+    return Diagnostic("not-an-engine-node", name.span, f"{message}{did_you_mean((tag,))}", fixes=(fix,))
 
 
 def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]:

@@ -12,6 +12,7 @@ from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.lookups import Meaning
+from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.one_parent import sequence_above
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
@@ -37,7 +38,8 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
         word = seen.node.category
         is_nameless = seen.id is None or seen.id.text == ""
         if word is not None and is_nameless and not view.is_torn(seen.node.start, seen.node.end):
-            yield Diagnostic("unknown-tree", word.span, "missing tree of this SubTree: write `SubTree <ID>`")
+            what, pairs = "missing tree of this SubTree", seen.node.attributes
+            yield missing_id(view, "unknown-tree", word.span, what, "SubTree", pairs)
     for use in view.uses(Kind.TREE):
         if use.name == "" or view.defines(Kind.TREE, use.name) or view.is_pooled(Kind.TREE, use.name):
             continue
