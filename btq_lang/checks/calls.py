@@ -24,6 +24,11 @@ def callers(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ..
     return store.ask(_callers, viewpoint).get(tree, ())
 
 
+def runs(store: Store[Workspace], viewpoint: str, tree: str, other: str) -> bool:
+    """Whether a tree runs another one, directly or through others, or probably means to."""
+    return other in _run_from((tree,), dict(store.ask(_graph, viewpoint)))
+
+
 def is_missed(store: Store[Workspace], viewpoint: str, tree: str) -> bool:
     """Whether the mission certainly does not run a tree, neither directly nor through others."""
     return tree in store.ask(_missed, viewpoint)

@@ -13,7 +13,7 @@ from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES, ports_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
-from btq_lang.checks import lookups
+from btq_lang.checks import calls, lookups
 from btq_lang.checks.engines import is_for_version_3, old_words
 from btq_lang.checks.lookups import Declaration
 from btq_lang.checks.missing_ids import missing_id
@@ -24,7 +24,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES
-from btq_lang.syntax.tree import Model, Word, quote, written
+from btq_lang.syntax.tree import Model, Tree, Word, quote, written
 from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean, distance, without_digits
 from btq_lang.util.text import Span
@@ -383,9 +383,19 @@ def _tree_as_node(view: View, seen: ResolvedNode, name: Word) -> Diagnostic:
     category = seen.node.category
     span, text = (Span(name.start, name.start), "SubTree ") if category is None else (category.span, "SubTree")
     message = f"`{name.text}` is a tree, not a node"
-    fixes = (replace_fix(f"Write `SubTree {written(name.text)}`", span, text),)
+    fixes = (replace_fix(f"Write `SubTree {written(name.text)}`", span, text, safe=_is_plain_call(view, seen, name)),)
     related = view.declared_at(Kind.TREE, name.text, "tree definition")
     return Diagnostic("unknown-node", name.span, message, related=related, fixes=fixes, severity=Severity.ERROR)
+
+
+def _is_plain_call(view: View, seen: ResolvedNode, name: Word) -> bool:
+    """Whether a node of a tree's name is nothing but that tree, once `SubTree` is before it: it gives no ports and
+    needs none, and no circle of trees begins."""
+    node, tree = seen.node, view.definition(Kind.TREE, name.text)
+    if node.category or node.label or node.attributes or node.clauses or node.children or view.tree_name is None:
+        return False
+    needs_ports = tree is None or not isinstance(tree[1].item, Tree) or bool(tree[1].item.ports)
+    return not needs_ports and not view.ask(calls.runs, name.text, view.tree_name.text)
 
 
 def _is_refused(view: View, seen: ResolvedNode, name: Word) -> bool:

@@ -8,6 +8,7 @@ from functools import cache
 from itertools import chain
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.foreign_ports import of_other_engines
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
@@ -67,6 +68,8 @@ def unknown_port(view: View) -> Iterator[Diagnostic]:
             message = f"{seen.shown_kind} has no port `{key.text}`{did_you_mean(likely) or stale}"
             related = _declared(view, seen)
             notes = (f"it has {names}" if known else "it has no ports", *_of_version_3(view, seen, key.text))
+            if seen.kind is not None and not likely and (note := of_other_engines(seen.kind.flow, key.text)):
+                notes += (note,)
             severity = Severity.WARNING if harmless else None
             yield Diagnostic("unknown-port", key.span, message, related, notes, fixes, severity=severity)
             if not known and seen.kind is None:

@@ -114,7 +114,7 @@ class ClaimParser(ConditionParser):
             return False
         if self.kinds[self.index + 1] != NAME or self.raws[self.index + 1] in VERB_WORDS:
             return False
-        fix = replace_fix(f"Replace `{self.raw}` with `every`", self.here(), "every")
+        fix = replace_fix(f"Replace `{self.raw}` with `every`", self.here(), "every", safe=True)
         self.complain(self.here(), "all nodes of a kind are written `every …`", fix)
         self.advance()
         return True

@@ -5,6 +5,7 @@ Each function is a production of docs/grammar.md and named after it; its docstri
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
@@ -124,11 +125,26 @@ class ItemParser(NodeParser):
                 fixes = self.replaced_by((*sorted(DIRECTIONS), "metadata", "xml"))
                 if self.kind == NAME and self.raw in ("in", "out"):
                     fixes = (write_fix(f"{self.raw}put", self.here(), safe=True),)
-                self.expected("a port (input, output or inout), metadata or xml", (), fixes)
+                notes: tuple[str, ...] = ()
+                if declared := _OF_CPP.match(self.text, self.here().start):
+                    fixes = self.port_of_cpp(declared)
+                    notes = (_A_PORT,)
+                self.expected("a port (input, output or inout), metadata or xml", notes, fixes)
                 self.end_line()
                 self.skip_block(inner)
             self.no_block(inner)
         return tuple(body)
+
+    def port_of_cpp(self, declared: re.Match[str]) -> tuple[Fix, ...]:
+        """The fix for `InputPort<double> speed` and `std::string place`, in the words of C++."""
+        rest = line_end(self.text, declared.end())
+        direction = _DIRECTIONS_OF_CPP[declared["port"] or "InputPort"]
+        type_ = declared["type"] or declared["bare"]
+        if self.text[declared.end() : rest].partition("#")[0].strip():
+            return ()
+        plain = type_ is not None and _PLAIN_TYPE.fullmatch(type_) is not None
+        after = "" if type_ is None else f" : {type_ if plain else quote(type_)}"
+        return (write_fix(f"{direction} {declared['name']}{after}", Span(declared.start(), declared.end())),)
 
     def meta(self) -> Meta:
         """ "metadata" Attributes NL"""
@@ -304,6 +320,14 @@ def _a_signal(name: str, entry: str) -> str:
     return f"write `signal {name} : <unit> from {entry}`; a unit is `m/s`, `s`, `%`, `bool`, `text` or `1`"
 
 
+_A_PORT: Final = "a port is written `input name : type`"
+_DIRECTIONS_OF_CPP: Final = {"InputPort": "input", "OutputPort": "output", "BidirectionalPort": "inout"}
+_OF_CPP: Final = re.compile(
+    r"(?:(?:BT::)?(?P<port>InputPort|OutputPort|BidirectionalPort)[ \t]*(?:<(?P<type>[^()\"\r\n]*)>)?"
+    r"|(?P<bare>(?:std::)?(?:string|bool|double|float|int|unsigned|vector<[^()\"\r\n]*>)))"
+    r"[ \t(]+(?P<quote>\"?)(?P<name>[^\W\d]\w*)(?P=quote)\)?;?(?![ \t]*:)"
+)
+_PLAIN_TYPE: Final = re.compile(r"\w+(?:::\w+)*")
 _NOT_FROM: Final = frozenset(("in", "is", "of", "at", "reads", "source"))
 _BEHAVIOURS: Final = frozenset(("level", "counter", "gauge"))
 _SIGNAL_WORDS: Final = ("from", *sorted(_BEHAVIOURS), "fresh", "initially")

@@ -15,7 +15,7 @@ from btq_lang.grammar.conditions import HEADS
 from btq_lang.grammar.cursor import VALUES, shown
 from btq_lang.lexer import Lexer
 from btq_lang.syntax.scan import line_end, line_start
-from btq_lang.syntax.suggestions import ATTRIBUTES, CHILDREN, attributes_in_braces
+from btq_lang.syntax.suggestions import ATTRIBUTES, CHILDREN, are_plain_pairs, attributes_in_braces
 from btq_lang.syntax.tokens import (
     BRACED,
     CATEGORIES,
@@ -370,7 +370,8 @@ class NodeParser(AttributeParser):
         closing = [problem for problem in lexer.problems[self.known :] if self.is_stray_bracket(problem)]
         if not closing:  # else the `(` is missing
             changes += (Change(Place(Span(end, end)), ")"),)
-        fixes = (Fix("Put brackets around them", changes),) if plain or closing else ()
+        safe = plain and not closing and are_plain_pairs(self.text[start:end])
+        fixes = (Fix("Put brackets around them", changes, safe),) if plain or closing else ()
         message = "attributes go in brackets: `(key = value)`"
         self.complain_instead(closing[-1:], Diagnostic("syntax-error", Span(start, end), message, fixes=fixes))
 

@@ -9,7 +9,8 @@ from typing import Final
 
 import pytest
 from check_asserts import after, show
-from test_first_mistakes import Case, mistakes, requirement, tree
+from safe_fixes import unwanted
+from test_first_mistakes import OTHER, Case, R, S, mistakes, requirement, tree
 
 BELOW: Final = "a child goes on a line of its own below its parent, indented"
 CHILDREN: Final = "children go on lines of their own below their parent, indented"
@@ -278,8 +279,80 @@ PROSE: Final[list[Case]] = [
     ),
 ]
 
+AMONG_PORTS: Final = "expected a port (input, output or inout), metadata or xml, found"
+MEMORY: Final = (
+    "a Sequence or Fallback goes on with the child that is running; "
+    "a ReactiveSequence or ReactiveFallback begins with the first one at every tick"
+)
+OF_OTHER_LIBRARIES: Final[list[Case]] = [
+    (
+        tree("Sequence (memory = True)", "    Go"),
+        f"2:15 error unknown-port «memory» `Sequence` has no port `memory` | it has no ports | {MEMORY}",
+        None,
+    ),
+    (
+        tree("Retry (num_attempts = 3, delay = 2)", "    Go"),
+        "2:30 error unknown-port «delay» `Retry` has no port `delay` | it has `num_attempts` | "
+        "to wait before each attempt, put a Delay around its child",
+        None,
+    ),
+    (
+        tree("Parallel (policy = all)", "    Go"),
+        "2:15 error unknown-port «policy» `Parallel` has no port `policy` | it has `success_count`, `failure_count` | "
+        "`success_count` says how many children must succeed, and -1 is all of them",
+        None,
+    ),
+    (
+        tree("? (timeout = 3 s)", "    Go"),
+        "2:8 error unknown-port «timeout» `?` has no port `timeout` | it has no ports | "
+        "to limit its time, put a Timeout around it",
+        None,
+    ),
+    *(
+        (
+            f"Action Go\n    {port}\n" + tree("Go (p = {p})"),
+            f"2:5 error syntax-error «{word}» {AMONG_PORTS} `{word}` | a port is written `input name : type`",
+            mended and f"Action Go\n    {mended}\n" + tree("Go (p = {p})"),
+        )
+        for port, word, mended in (
+            ("InputPort<std::string> p", "InputPort", "input p : std::string"),
+            ('BT::OutputPort<std::vector<int>>("p")', "BT", 'output p : "std::vector<int>"'),
+            ("BidirectionalPort p  # both ways", "BidirectionalPort", "inout p  # both ways"),
+            ("std::string p", "std", "input p : std::string"),
+            ("double p", "double", "input p : double"),
+            ('InputPort<int>("p", 3, "how many")', "InputPort", None),
+        )
+    ),
+]
 
-@pytest.mark.parametrize(("text", "said", "mended"), [*ON_ONE_LINE, *VALUES, *SIGNALS, *PROSE])
+
+@pytest.mark.parametrize(
+    ("text", "fixed"),
+    [
+        (tree("Go [x = 3, y = {a}] satisfies r") + R, tree("Go (x = 3, y = {a}) satisfies r") + R),
+        (tree('Go {x = "a b", y = {a}}'), tree('Go (x = "a b", y = {a})')),
+        (tree("Go x = 3, y = {a}"), tree("Go (x = 3, y = {a})")),
+        (tree("Go satisfies [r, s]") + R + S, tree("Go satisfies r, s") + R + S),
+        (tree("Other") + OTHER, tree("SubTree Other") + OTHER),
+        (tree("Go") + "apply r to all Go\n" + R, tree("Go") + "apply r to every Go\n" + R),
+        # what may be meant otherwise is not written:
+        (tree("SubTree (Other)") + OTHER, None),  # a tree that may not exist
+        (tree("Go [x = 3; y = 4]"), None),
+        (tree("Go [x = a b]"), None),
+        (tree("Go (x = 3) [y = 4]"), None),
+        (tree("Go x = 3 s"), None),
+        (tree("Other (x = 3)") + OTHER, None),
+        (tree("Other") + "BehaviorTree Other\n    input x\n    Go (x = {x})\n", None),
+        (tree("Other") + "BehaviorTree Other\n    SubTree Main\n", None),
+    ],
+)
+def test_what_a_check_mends_by_itself(text: str, fixed: str | None) -> None:
+    safe = [fix for found in mistakes(text) for fix in found.fixes if fix.safe]
+    assert [after(text, fix) for fix in safe] == ([fixed] if fixed else [])
+    assert list(unwanted(text)) == []
+
+
+@pytest.mark.parametrize(("text", "said", "mended"), [*ON_ONE_LINE, *VALUES, *SIGNALS, *PROSE, *OF_OTHER_LIBRARIES])
 def test_a_slip_is_one_diagnostic(text: str, said: str, mended: str | None) -> None:
     found = mistakes(text)
     assert [" | ".join((line, *found[0].notes)) for line in show(text, found)] == [said]
