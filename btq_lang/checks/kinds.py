@@ -82,7 +82,7 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
         if _is_of(view, text):
             continue
         if known is not None and (not name.quoted or known.tag == name.text):
-            fixes = _of_today(seen, name, known)
+            fixes = _of_today(view, seen, name, known)
             notes = (known.why, *(way_in(view) if known.word in _TRANSLATED else ()))
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
         elif (meant := _quoted_alias(seen, name)) is not None and not _is_refused(view, seen, name):
@@ -103,6 +103,13 @@ def newer_engine_node(view: View) -> Iterator[Diagnostic]:
         for seen in tagged if missing else ():
             if seen.kind is None or seen.id is None or _is_of(view, seen.id.text):
                 continue
+            known = KNOWN_WORDS.get(seen.id.text)
+            if (
+                known is not None
+                and known.until is not None
+                and all(at_least(last_of(known.until), v) for v in missing)
+            ):
+                continue  # they have it by this name
             since = "4" if is_before_4(missing[0]) else seen.kind.since
             pin = f'if you run {view.target}, set `engine = "{view.target}"` in btq.toml'
             message = f"`{seen.kind.tag}` requires BehaviorTree.CPP {since}; {missing[0]} does not have it"
@@ -248,12 +255,13 @@ def _is_of(view: View, word: str) -> bool:
     )
 
 
-def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
+def _of_today(view: View, seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
     """The fix that replaces an older engine's node by its successor."""
     if known.replacement is not None:
         # Without quotes the old word is read as the new one already, so only this diagnostic changes.
         title = f"Replace it with `{known.replacement}`"
-        return (replace_fix(title, name.span, known.replacement, safe=not name.quoted),)
+        safe = not name.quoted and not _missing(known.replacement, view.engines)
+        return (replace_fix(title, name.span, known.replacement, safe=safe),)
     if known.category == "SubTree" and seen.node.category is None:
         return (replace_fix("Replace it with `SubTree`", name.span, "SubTree"),)
     return ()
