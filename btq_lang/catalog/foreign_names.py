@@ -66,7 +66,11 @@ _NAMES: Final[dict[str, ForeignName]] = {
     ),
     **dict.fromkeys(("activesequence", "dynamicsequence", "sequencereactive"), ForeignName("ReactiveSequence")),
     **dict.fromkeys(("simpleparallel", "parallelsequence", "concurrent"), ForeignName("Parallel")),
-    **dict.fromkeys(("if", "ifelse", "ifthen"), ForeignName("IfThenElse")),
+    **dict.fromkeys(
+        ("if", "ifelse", "ifthen"),
+        ForeignName("IfThenElse", note="its first child is the condition, a node of its own"),
+    ),
+    **dict.fromkeys(("while", "whiledo"), ForeignName("WhileDoElse", note="its first child is the condition")),
     **dict.fromkeys(("not", "negate", "negation", "negator", "invert", "inversion"), ForeignName("Inverter")),
     **dict.fromkeys(
         ("succeeder", "succeed", "alwayssucceed", "forcesucceed", "returnsuccess", "failureissuccess"),
@@ -98,7 +102,7 @@ _NAMES: Final[dict[str, ForeignName]] = {
 _OF_LEAVES: Final = frozenset(
     (
         *("wait", "select", "priority", "once", "succeed", "succeeder", "alwayssucceed", "returnsuccess"),
-        *("fail", "failer", "alwaysfail", "returnfailure"),
+        *("fail", "failer", "alwaysfail", "returnfailure", "while"),
     )
 )
 _SPELLINGS: Final = {

@@ -58,6 +58,13 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
             continue  # models that differ: whichever the program means, it is known
         elif name.text in KNOWN_WORDS or _quoted_alias(seen, name) is not None or _foreign(view, seen) is not None:
             continue  # not a node of the engine, which is reported
+        elif name.text.casefold() == "include" and (seen.name is not None or seen.node.attribute("path") is not None):
+            place = (
+                "directly below <root>: <include path=…/>"
+                if view.is_xml
+                else "outside of trees, at the start of a line"
+            )
+            yield Diagnostic("unknown-node", name.span, f"an include goes {place}")
         elif (category := _category_meant(view, seen)) is not None:
             fix = replace_fix(f"Replace `{name.text}` with `{category}`", name.span, category)
             message = f"btq reads `{name.text}` as a node here; did you mean `{category}`?"

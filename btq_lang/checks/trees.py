@@ -13,7 +13,7 @@ from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.lookups import Meaning
 from btq_lang.checks.missing_ids import missing_id
-from btq_lang.checks.one_parent import sequence_above
+from btq_lang.checks.one_parent import below, sequence_above
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -206,7 +206,19 @@ def tree_root_count(view: View) -> Iterator[Diagnostic]:
     message = f"a tree must have one node at its top, found {len(tree.children)}"
     notes = (f"put them below one node, such as a Sequence{'' if view.is_xml else ' `->`'}",)
     related = (Related(Place(first), "first one"),)
-    yield Diagnostic("tree-root-count", extra, message, related, notes, sequence_above(view, tree.children))
+    fixes = sequence_above(view, tree.children)
+    if (top := _lacks_children(view)) is not None:
+        fixes = below(view, top, tree.children[1:])
+    yield Diagnostic("tree-root-count", extra, message, related, notes, fixes)
+
+
+def _lacks_children(view: View) -> Node | None:
+    """The first node of a tree, if it takes any number of children and has none."""
+    first = next(iter(view.nodes), None)
+    if first is None or first.behavior is None or first.index > 0:
+        return None
+    is_parent = first.behavior.children[0] > 0 and first.behavior.children[1] is None
+    return first.node if is_parent and not (first.node.children or first.node.label) else None
 
 
 def tree_named_like_node(view: View) -> Iterator[Diagnostic]:

@@ -305,6 +305,8 @@ class NodeParser(AttributeParser):
             self.expected("the end of the line", ("values go in brackets, with their names: `(key = value)`",))
         elif self.at(",") or self.kind == SYMBOL:
             self.expected("the end of the line", (CHILDREN,))
+        elif self.kind == NAME and self.raw in ("if", "when", "while", "unless"):
+            self.expected("the end of the line", (_ONLY_IF,))
         else:
             return
         self.go_to(len(self.kinds) - 1)
@@ -549,6 +551,9 @@ _STATEMENTS: Final = {
     **dict.fromkeys(("if", "elif", "else"), "to choose, use a Fallback `?` with a Condition, or `_skipIf` on the node"),
     **dict.fromkeys(("while", "for"), "to repeat, use `Repeat`, `Retry` or `KeepRunningUntilFailure`"),
 }
+_ONLY_IF: Final = (
+    "a node that runs only if something holds goes below a Precondition, or after a Condition in a Sequence `->`"
+)
 _ARROW: Final = re.compile(r"[-=~]+ ?>")
 _BEFORE_TYPES: Final = frozenset(("const", "unsigned", "signed", "long", "short"))
 MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine's limit (4.9 and later)

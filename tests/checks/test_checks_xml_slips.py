@@ -56,3 +56,61 @@ def test_a_word_of_this_language(tag: str, attributes: str, meant: str) -> None:
     fixed = apply({PATH: text}, PATH, found.fixes[0])
     assert fixed == {PATH: text.replace(f"<{tag}", f"<{meant}").replace(f"</{tag}", f"</{meant}")}
     assert check(workspace_of(fixed), PATH) == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "rule", "message", "notes"),
+    [
+        (
+            xml("<Go/>").replace("<root", '<root main_tree="Main"'),
+            "xml-ignored",
+            "the engine ignores `main_tree`; did you mean `main_tree_to_execute`?",
+            (),
+        ),
+        (
+            xml("<Go/>").replace("BTCPP_format", "format"),
+            "xml-ignored",
+            "the engine ignores `format`; did you mean `BTCPP_format`?",
+            (),
+        ),
+        (
+            xml('<include path="a.xml"/>'),
+            "unknown-node",
+            "an include goes directly below <root>: <include path=…/>",
+            (),
+        ),
+        (
+            xml("<Sequence><Go/><-- to it --></Sequence>"),
+            "xml-syntax",
+            "unexpected `<`: no tag begins here",
+            ("a comment is written <!-- … -->",),
+        ),
+        (
+            xml('<If condition="x"><Go/><Turn/></If>'),
+            "not-an-engine-node",
+            "`If` is not built into BehaviorTree.CPP 4.6–4.10; did you mean `IfThenElse`?",
+            ("its first child is the condition, a node of its own",),
+        ),
+        (
+            xml('<Sequence memory="true"><Go/></Sequence>'),
+            "unknown-port",
+            "`Sequence` has no port `memory`",
+            (
+                "it has no ports",
+                "a Sequence or Fallback goes on with the child that is running; "
+                "a ReactiveSequence or ReactiveFallback begins with the first one at every tick",
+            ),
+        ),
+    ],
+)
+def test_a_word_of_another_tool(text: str, rule: str, message: str, notes: tuple[str, ...]) -> None:
+    (found,) = check(workspace_of({PATH: text}), PATH)
+    assert (found.rule, found.message, found.notes) == (rule, message, notes)
+
+
+def test_a_time_with_a_unit_is_converted() -> None:
+    text = xml('<Timeout msec="30s"><Go/></Timeout>')
+    (found,) = check(workspace_of({PATH: text}), PATH)
+    assert found.message == "the engine reads `30s` as 30 and silently drops the rest"
+    assert [fix.title for fix in found.fixes] == ["Write `30000`, which is 30 s", "Write what the engine reads: `30`"]
+    assert apply({PATH: text}, PATH, found.fixes[0]) == {PATH: text.replace("30s", "30000")}

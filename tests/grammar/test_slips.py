@@ -86,6 +86,27 @@ ON_ONE_LINE: Final[list[Case]] = [
         f"2:27 error syntax-error «Go» {BELOW}",
         tree("Timeout (msec = 30 s)", "    Go"),
     ),
+    (
+        tree("->", "    Retry (num_attempts = 3)", "    Go", "    Turn"),
+        f"3:9 error child-count «Retry» `Retry` requires exactly 1 child, found none | {BELOW}",
+        tree("->", "    Retry (num_attempts = 3)", "        Go", "    Turn"),
+    ),
+    (
+        tree("Go (a = 1) if far"),
+        "2:16 error syntax-error «if» expected the end of the line, found `if` | "
+        "a node that runs only if something holds goes below a Precondition, or after a Condition in a Sequence `->`",
+        None,
+    ),
+    (
+        tree("->", '    include "other.btq"', "    Go"),
+        "3:9 warning unknown-node «include» an include goes outside of trees, at the start of a line",
+        None,
+    ),
+    (
+        tree("while", "    Near", "    Go"),
+        f"2:5 warning not-an-engine-node «while» {foreign('while', 'WhileDoElse')} | its first child is the condition",
+        tree("WhileDoElse", "    Near", "    Go"),
+    ),
     (tree("Retry (num_attempts = 3) Inverter", "    Go"), f"2:30 error syntax-error «Inverter» {BELOW}", None),
 ]
 
@@ -251,6 +272,12 @@ PROSE: Final[list[Case]] = [
         "to limit a clause to a situation, write `while v > 1 m/s` or `when v > 1 m/s`",
         None,
     ),
+    (
+        requirement("takes at most 30 s", "on timeout retry"),
+        "5:8 error syntax-error «timeout» expected `violation`, found `timeout` | "
+        "`on violation` is followed by fail, halt, warn or log; to try again, put a Retry around the node",
+        None,
+    ),
     *(
         (
             OF_A_SIGNAL + f"{clause} {choice}\n",
@@ -384,3 +411,14 @@ def test_a_label_after_brackets_may_be_one(text: str) -> None:
 
 def test_the_start_of_the_next_line_is_no_value() -> None:
     assert [found.notes for found in mistakes(tree("->", "    Go", "    3"))] == [()]
+
+
+def test_children_beside_the_first_node_of_a_tree() -> None:
+    text = tree("Sequence", "Go", "Inverter  # or", "    Left")
+    found = mistakes(text)
+    assert [(each.rule, each.notes) for each in found] == [
+        ("child-count", (CHILDREN,)),
+        ("tree-root-count", ("put them below one node, such as a Sequence `->`",)),
+    ]
+    fixes = [(fix.title, after(text, fix)) for each in found for fix in each.fixes]
+    assert fixes == [("Indent them below `Sequence`", tree("Sequence", "    Go", "    Inverter  # or", "        Left"))]
