@@ -303,7 +303,7 @@ def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:
 
 
 def _aliased(view: View, seen: ResolvedNode, name: Word, message: str, meant: NodeKind) -> Diagnostic:
-    """`<Retry>` in XML, and `"Retry"` in quotes: a word of this language that is no tag of the engine."""
+    """`<Retry>` in XML, and `"Retry"` in quotes: a word of this language that the engine does not know as a tag."""
     if not view.is_xml:
         note = f"a quoted kind is the XML tag, and the engine's tag is {meant.tag}"
         fix = replace_fix("Remove the quotes", name.span, name.text)

@@ -55,9 +55,11 @@ def on_own_lines(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnos
 
 def _on_own_line(view: View, reported: Diagnostic) -> Diagnostic:
     text, at = view.text, reported.span.start
-    line = Span(line_start(text, 0, at), line_end(text, at))
-    seen = next((seen for seen in view.nodes if line.start <= seen.node.start < at), None)
+    seen = view.node_before(at)
     if seen is None or seen.behavior is None or seen.behavior.children[0] == 0:
+        return reported
+    end = line_end(text, seen.node.start)
+    if at > end:
         return reported
     node = seen.node
     if reported.notes == (CHILD,):
@@ -66,7 +68,7 @@ def _on_own_line(view: View, reported: Diagnostic) -> Diagnostic:
             return reported
         fixes = () if node.children else _on_lines(view, node, (at,))
         return replace(reported, message=CHILD, notes=(), fixes=fixes)
-    names = _NAMES.match(text, node.head.end, line.end)
+    names = _NAMES.match(text, node.head.end, end)
     words = [*_NAME.finditer(text, node.head.end, names.end(1))] if names is not None else []
     if node.children or not words or not NODE_CLAUSES.isdisjoint(word[0] for word in words):
         return reported
@@ -80,9 +82,11 @@ def _is_node(view: View, word: str) -> bool:
 def _on_lines(view: View, node: Node, starts: Sequence[int]) -> tuple[Fix, ...]:
     """The fix that begins lines of their own at some words after a node's kind, one step deeper."""
     text = view.text
-    margin = text[line_start(text, 0, node.start) : node.start]
+    line = line_start(text, 0, node.start)
+    margin = text[line : node.start]
     step = "\t" if margin.startswith("\t") else "    "
-    changes = [Change(Place(Span(len(text[:start].rstrip(" \t,")), start)), f"\n{margin}{step}") for start in starts]
+    gaps = [Span(line + len(text[line:start].rstrip(" \t,")), start) for start in starts]
+    changes = [Change(Place(gap), f"\n{margin}{step}") for gap in gaps]
     title = "Put it on a line of its own" if len(starts) == 1 else "Put them on lines of their own"
     return () if margin.strip() else (Fix(title, tuple(changes)),)
 

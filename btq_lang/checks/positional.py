@@ -27,23 +27,22 @@ def with_ports(view: View, reported: Iterable[Diagnostic]) -> Iterator[Diagnosti
 
 def _with_port(view: View, reported: Diagnostic) -> Diagnostic:
     text, span = view.text, reported.span
-    for seen in view.nodes if text[span.start : span.end].strip() else ():
-        after = _AFTER.match(text, (seen.node.label or seen.node.head).end)
-        if after is None or not after.end() <= span.start <= max(after.end(), seen.node.end):
-            continue
-        port = first_port(view, seen)
-        value = _value(view, reported, after, port) if port is not None else None
-        if port is None or value is None:
-            return reported
-        pair = f"{written(port.name)} = {value if value[0] in _OPENS_VALUE else quote(value)}"
-        shown = pair if after[1] else f"({pair})"
-        if port.unit and value[-1].isdecimal():
-            with_unit = "`, or with a unit, `".join((shown, shown.replace(value, f"{value} s")))
-            return replace(reported, notes=(f"a value goes after the name of its port: `{with_unit}`",))
-        note = f"a value goes after the name of its port: `{shown}`"
-        fix = write_fix(shown, Span(after.end(), after.end() + len(value)))
-        return replace(reported, notes=(note,), fixes=(fix,))
-    return reported
+    seen = view.node_before(span.start)
+    after = _AFTER.match(text, (seen.node.label or seen.node.head).end) if seen is not None else None
+    if seen is None or after is None or not after.end() <= span.start <= max(after.end(), seen.node.end):
+        return reported
+    port = first_port(view, seen)
+    value = _value(view, reported, after, port) if port is not None else None
+    if port is None or value is None:
+        return reported
+    pair = f"{written(port.name)} = {value if value[0] in _OPENS_VALUE else quote(value)}"
+    shown = pair if after[1] else f"({pair})"
+    if port.unit and value[-1].isdecimal():
+        with_unit = "`, or with a unit, `".join((shown, shown.replace(value, f"{value} s")))
+        return replace(reported, notes=(f"a value goes after the name of its port: `{with_unit}`",))
+    note = f"a value goes after the name of its port: `{shown}`"
+    fix = write_fix(shown, Span(after.end(), after.end() + len(value)))
+    return replace(reported, notes=(note,), fixes=(fix,))
 
 
 def _value(view: View, reported: Diagnostic, after: re.Match[str], port: PortKind) -> str | None:

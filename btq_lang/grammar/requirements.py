@@ -318,7 +318,7 @@ class RequirementParser(ClauseParser):
 
 def sort_of(type_: str) -> str:
     """What a type of C++ or ROS is as the unit of a signal: `bool`, `text`, or TYPE if it does not tell; empty if the
-    word is no type."""
+    word names none."""
     if type_ in UNITLESS:
         return ""
     last = _PART.split(type_)[-1].casefold()
