@@ -7,8 +7,8 @@ which caches results from one edit to the next.  Not known here: what an edit ch
 
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
-    kinds.py, names.py, ports.py, children.py, one_parent.py   what the engine would refuse
-    trees.py, includes.py, elements.py   likewise, of whole trees and files
+    kinds.py, names.py, ports.py, children.py, one_parent.py, own_lines.py   what the engine would refuse
+    trees.py, includes.py, elements.py, missing_ids.py   likewise, of whole trees and files
     positional.py, literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
     entries.py, pointers.py, writers.py, keys.py, misspelt.py, mixed_types.py   blackboard entries
     engines.py, version3.py   which versions of the engine a file is for
@@ -346,9 +346,11 @@ def _reported(
     if type(facts.item) is syntax.Include and not is_alone:
         found = [*found, *includes.include_with_errors(view, _errors_in)]
     if entry.diagnostics:
-        from btq_lang.checks.positional import with_ports  # few items have mistakes in their syntax
+        from btq_lang.checks.own_lines import on_own_lines  # few items have mistakes in their syntax
+        from btq_lang.checks.positional import with_ports
 
-        found = (*with_ports(view, entry.diagnostics), *_on_sound_lines(found, entry, view.text))
+        reported = with_ports(view, on_own_lines(view, entry.diagnostics))
+        found = (*reported, *_on_sound_lines(found, entry, view.text))
     elif not found:
         return None
     wanted = tuple(configured(view.project, viewpoint, trees.as_uncreated(view, found)))

@@ -24,6 +24,11 @@ def callers(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ..
     return store.ask(_callers, viewpoint).get(tree, ())
 
 
+def runs(store: Store[Workspace], viewpoint: str, tree: str, other: str) -> bool:
+    """Whether a tree runs another one, directly or through others, or probably means to."""
+    return other in _run_from((tree,), dict(store.ask(_graph, viewpoint)))
+
+
 def is_missed(store: Store[Workspace], viewpoint: str, tree: str) -> bool:
     """Whether the mission certainly does not run a tree, neither directly nor through others."""
     return tree in store.ask(_missed, viewpoint)
@@ -41,7 +46,7 @@ def circle(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...
 
 
 def has_gaps(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether a SubTree names an unknown tree, so that it is not known which trees are reached."""
+    """Whether a SubTree names no tree or an unknown one, so that it is not known which trees are reached."""
     view = View(store, viewpoint)
     known = dict(view.ask(_graph))
     return not view.is_complete or any(name not in known for called, _ in known.values() for name in called)
@@ -131,10 +136,12 @@ def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
         return (), ()
     uses = found[1].summary.uses
     called = dict.fromkeys([use.name for use in uses if use.kind is Kind.TREE])
-    declared = {seen.id.text for seen in view.seen_in(*found).subtrees if seen.id is not None}  # by a model, perhaps
+    subtrees = view.seen_in(*found).subtrees
+    declared = {seen.id.text for seen in subtrees if seen.id is not None}  # by a model, perhaps
     meant = [name for use in uses for name in (_meant(use), _for_goal(use)) if name and name not in declared]
     trees = {name for name in (*meant, *declared) if name not in called and view.defines(Kind.TREE, name)}
     called.update(dict.fromkeys(sorted(declared & trees)))
+    called.update(dict.fromkeys("" for seen in subtrees if seen.id is None))
     return tuple(called), tuple([name for name in meant if name in trees])
 
 

@@ -12,7 +12,8 @@ from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.lookups import Meaning
-from btq_lang.checks.one_parent import sequence_above
+from btq_lang.checks.missing_ids import missing_id
+from btq_lang.checks.one_parent import below, sequence_above
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -37,7 +38,8 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
         word = seen.node.category
         is_nameless = seen.id is None or seen.id.text == ""
         if word is not None and is_nameless and not view.is_torn(seen.node.start, seen.node.end):
-            yield Diagnostic("unknown-tree", word.span, "missing tree of this SubTree: write `SubTree <ID>`")
+            what, pairs = "missing tree of this SubTree", seen.node.attributes
+            yield missing_id(view, "unknown-tree", word.span, what, "SubTree", pairs)
     for use in view.uses(Kind.TREE):
         if use.name == "" or view.defines(Kind.TREE, use.name) or view.is_pooled(Kind.TREE, use.name):
             continue
@@ -204,7 +206,19 @@ def tree_root_count(view: View) -> Iterator[Diagnostic]:
     message = f"a tree must have one node at its top, found {len(tree.children)}"
     notes = (f"put them below one node, such as a Sequence{'' if view.is_xml else ' `->`'}",)
     related = (Related(Place(first), "first one"),)
-    yield Diagnostic("tree-root-count", extra, message, related, notes, sequence_above(view, tree.children))
+    fixes = sequence_above(view, tree.children)
+    if (top := _lacks_children(view)) is not None:
+        fixes = below(view, top, tree.children[1:])
+    yield Diagnostic("tree-root-count", extra, message, related, notes, fixes)
+
+
+def _lacks_children(view: View) -> Node | None:
+    """The first node of a tree, if it takes any number of children and has none."""
+    first = next(iter(view.nodes), None)
+    if first is None or first.behavior is None or first.index > 0:
+        return None
+    is_parent = first.behavior.children[0] > 0 and first.behavior.children[1] is None
+    return first.node if is_parent and not (first.node.children or first.node.label) else None
 
 
 def tree_named_like_node(view: View) -> Iterator[Diagnostic]:

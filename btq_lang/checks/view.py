@@ -159,6 +159,11 @@ class View:
         at = bisect_left(starts, start)
         return at < len(starts) and starts[at] <= end
 
+    def node_before(self, offset: int) -> ResolvedNode | None:
+        """The last node that begins before an offset of the item."""
+        at = bisect_left(self.nodes, offset, key=lambda seen: seen.node.start)
+        return self.nodes[at - 1] if at else None
+
     @property
     def is_first_tree(self) -> bool:
         """Whether no other tree of the file is before this one."""
