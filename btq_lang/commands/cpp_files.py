@@ -15,6 +15,7 @@ from btq_lang.commands.factory_files import cpp_in_folder
 from btq_lang.commands.node_writers import models_in_btq
 from btq_lang.cpp.findings import findings
 from btq_lang.cpp.grammar import GrammarMissing
+from btq_lang.cpp.macros import Macro, Macros, macros_in
 from btq_lang.cpp.model import CppNode, CppNodes
 from btq_lang.cpp.nodes import nodes_of
 from btq_lang.cpp.source import Source
@@ -105,7 +106,8 @@ class CppFiles:
         state = self._store.state
         changed = [path for path, text in texts.items() if state.get(path) != text]
         self._store.advance({**state, **texts}, changed)
-        nodes = self._store.ask(_nodes, *texts)
+        macros = Macros(macro for path in texts for macro in self._store.ask(_macros, path))
+        nodes = self._store.ask(_nodes, *((path, macros.needed_by(text)) for path, text in texts.items()))
         wrong, home = findings(nodes, texts), f"{root.rstrip('/')}/"
         of_path: dict[str, dict[str, CppNode]] = {path: {} for path in texts}
         for node in nodes.nodes:
@@ -150,12 +152,16 @@ def cpp_file(
     return File(path, models, origin) if before is None else before.edited(models, origin)
 
 
-def _nodes(store: Store[dict[str, str]], *paths: str) -> CppNodes:
-    return nodes_of(store.ask(_source, path) for path in paths)
+def _nodes(store: Store[dict[str, str]], *files: tuple[str, tuple[Macro, ...]]) -> CppNodes:
+    return nodes_of(store.ask(_source, path, macros) for path, macros in files)
 
 
-def _source(store: Store[dict[str, str]], path: str) -> Source:
-    return Source(path, store.read(path, _text, path))
+def _source(store: Store[dict[str, str]], path: str, macros: tuple[Macro, ...]) -> Source:
+    return Source(path, store.read(path, _text, path), macros)
+
+
+def _macros(store: Store[dict[str, str]], path: str) -> tuple[Macro, ...]:
+    return macros_in(path, store.read(path, _text, path))
 
 
 def _text(texts: dict[str, str], path: str) -> str:

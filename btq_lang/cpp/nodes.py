@@ -6,11 +6,12 @@ One invariant: a node whose ID or category cannot be seen is left out and report
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.kinds import Category
-from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, place_of, text_of, walk
+from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, text_of, walk
+from btq_lang.cpp.macros import Macros, macros_in
 from btq_lang.cpp.model import CppNode, CppNodes
 from btq_lang.cpp.ports import Body, PortsReader, Provided
 from btq_lang.cpp.source import Call, Source
@@ -28,7 +29,8 @@ def read_nodes(files: Mapping[str, str]) -> CppNodes:
     Raises:
         GrammarMissing: tree-sitter is not installed.
     """
-    return nodes_of(Source(path, text) for path, text in files.items())
+    macros = Macros(macro for path, text in files.items() for macro in macros_in(path, text))
+    return nodes_of(Source(path, text, macros.needed_by(text)) for path, text in files.items())
 
 
 def nodes_of(sources: Iterable[Source]) -> CppNodes:
@@ -43,6 +45,7 @@ def nodes_of(sources: Iterable[Source]) -> CppNodes:
             first = nodes.setdefault(node.name, node)
             if (first.class_name, first.ports) != (node.class_name, node.ports):
                 reader.sources.report(f"`{node.name}` is also registered at {first.place}, as another node", node.place)
+    reader.report_hidden({node.class_name for node in nodes.values()})
     unseen = sorted(reader.sources.unseen, key=lambda each: (each.place.path, each.place.line, each.message))
     return CppNodes(tuple(nodes[name] for name in sorted(nodes)), tuple(unseen))
 
@@ -72,11 +75,22 @@ class _Reader:
         named = next((each for each in given if string(self.sources, each, body.frame) is not None), None)
         return self._class(call, body, call.types[0], named, None) if named is not None else None
 
+    def report_hidden(self, registered: Container[str]) -> None:
+        """Report what looks like a macro that registers a class which nothing else is seen to register."""
+        for source in self.sources.files.values():
+            for each in source.registering:
+                bounds = (self.sources.find(argument, (), source.path, each.place) for argument in each.arguments)
+                for bound in bounds:
+                    if bound.class_ is None or bound.class_.name in registered or not self.sources.category(bound):
+                        continue
+                    message = f"it cannot be seen how `{each.name}` registers `{bound.name}`: {_OF_MACRO}"
+                    self.sources.report(message, each.place, hides_node=True)
+
     def _simple(self, call: Call, body: Body, given: list[Node]) -> CppNode | None:
         """`registerSimpleAction("Name", function, ports)`"""
         if (name := self._name(call, body, given[0])) is None:
             return None
-        place = place_of(call.path, call.node)
+        place = self.sources.place_of(call.path, call.node)
         provided = self._ports.of_argument(given[2], body) if len(given) > 2 else Provided((), True)
         if provided is None:
             self.sources.report(f"it cannot be seen which ports `{name}` has: `{text_of(given[2])}`", place)
@@ -97,7 +111,7 @@ class _Reader:
         """A class under a name; given: the argument that may be its ports."""
         if (name := self._name(call, body, named)) is None:
             return None
-        place = place_of(call.path, call.node)
+        place = self.sources.place_of(call.path, call.node)
         bound = self.sources.find(type_, call.scope, call.path, place)
         if bound.class_ is None and library_ports(bound, place) is None:
             self._report(call, f"the class `{type_}` of the node `{name}` is not in the sources")
@@ -120,7 +134,7 @@ class _Reader:
             category,
             bound.class_.name,
             place,
-            place_of(bound.class_.path, field(bound.class_.node, "name") or bound.class_.node),
+            self.sources.place_of(bound.class_.path, field(bound.class_.node, "name") or bound.class_.node),
             ports,
             complete,
             uses.unread(ports),
@@ -136,7 +150,7 @@ class _Reader:
         return name
 
     def _report(self, call: Call, message: str) -> None:
-        self.sources.report(message, place_of(call.path, call.node), hides_node=True)
+        self.sources.report(message, self.sources.place_of(call.path, call.node), hides_node=True)
 
 
 def _may_be_ports(node: Node, body: Body) -> bool:
@@ -193,6 +207,7 @@ _SIMPLE: Final[dict[str, Category]] = {
     "registerSimpleCondition": "Condition",
     "registerSimpleDecorator": "Decorator",
 }
+_OF_MACRO: Final = "name the file that defines it, too, or register the node by registerNodeType"
 _ENGINES: Final = ("registerNodeType", "registerBuilder")
 _OTHERS: Final = re.compile(
     r"register(BehaviorTreeFrom\w+|From\w*Plugins?|ScriptingEnums?|PolymorphicCast)|RegisterJsonDefinition"

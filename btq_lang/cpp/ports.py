@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.kinds import Direction
-from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, named, place_of, text_of, walk
+from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, named, text_of, walk
 from btq_lang.cpp.model import CppPort, Place
 from btq_lang.cpp.source import REGISTERS, substituted
 from btq_lang.cpp.sources import Bound, Sources, library_ports
@@ -82,7 +82,8 @@ class PortsReader:
 
     def helper(self, name: str, scope: str, frame: Frame, call: Node) -> tuple[Node, Frame] | None:
         """The function that a call means, a method of the class or of a base or any, and the frame of its body."""
-        sources, place = self.sources, place_of(frame.path, call)
+        sources = self.sources
+        place = sources.place_of(frame.path, call)
         for each in self._owners(scope, frame, place):
             for node, path in sources.methods(each, name)[:1]:
                 return node, Frame(each, each.scope, path, frame.depth + 1)
@@ -92,13 +93,13 @@ class PortsReader:
 
     def basic_ports(self, scope: str, frame: Frame, call: Node) -> Ports | None:
         """What `providedBasicPorts` of a library's class adds; None: unknown."""
-        place = place_of(frame.path, call)
+        place = self.sources.place_of(frame.path, call)
         libraries = [each for each in self._owners(scope, frame, place) if each.class_ is None]
         return next(filter(None, (library_ports(each, place) for each in libraries)), None)
 
     def class_ports(self, scope: str, frame: Frame, call: Node) -> Ports:
         """The ports of the class before `::providedPorts()`."""
-        place = place_of(frame.path, call)
+        place = self.sources.place_of(frame.path, call)
         found = self.sources.find(substituted(scope, frame.meanings), frame.scope, frame.path, place)
         if frame.depth > _DEEPEST:
             self.incomplete("this calls itself", place)
@@ -283,7 +284,7 @@ class Body:
             if not known and name not in ("providedPorts", "providedBasicPorts"):
                 return None
             message = f"`{name}` is not in the sources, and may add ports"
-            self.reader.incomplete(message, place_of(self.frame.path, node))
+            self.reader.incomplete(message, self.reader.sources.place_of(self.frame.path, node))
             return {key: port for each in known for key, port in each.items()}
         function, frame = helper
         if named(field(function, "type"))[1] != "PortsList":
@@ -301,7 +302,8 @@ class Body:
 
     def _port(self, node: Node, direction: Direction, types: list[str], given: list[Node]) -> Ports | None:
         """`InputPort<T>(name)`, `(name, text)` or `(name, default, text)`."""
-        sources, place = self.reader.sources, place_of(self.frame.path, node)
+        sources = self.reader.sources
+        place = sources.place_of(self.frame.path, node)
         name = string(sources, given[0], self.frame) if given else None
         if name is None:
             self.reader.incomplete(f"the name of this port is an expression: `{_short(node)}`", place)
@@ -317,7 +319,7 @@ class Body:
     def incomplete(self, node: Node) -> None:
         """Report that a node is not understood."""
         message = f"it cannot be seen which ports this provides: `{_short(node)}`"
-        self.reader.incomplete(message, place_of(self.frame.path, node))
+        self.reader.incomplete(message, self.reader.sources.place_of(self.frame.path, node))
 
 
 def _united(ports: Ports, others: Ports) -> Ports:

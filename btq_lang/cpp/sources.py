@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Final, TypeVar
 from btq_lang.catalog.cpp_classes import ENGINE, LIBRARIES, NUMBERED_TAGS, ROS_PORTS, TAGS
 from btq_lang.catalog.kinds import Category
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.cpp.grammar import place_of
 from btq_lang.cpp.model import CppPort, Place, Unseen
 from btq_lang.cpp.source import Class, Function, Source, parts, substituted
 from btq_lang.util.grouping import grouped
@@ -56,6 +55,10 @@ class Sources:
         self._classes: Final = grouped((_last(each.name), each) for source in every for each in source.classes)
         self._methods: Final = grouped((_last(each.name), each) for source in every for each in source.functions)
 
+    def place_of(self, path: str, node: Node) -> Place:
+        """Where a node of a file is on the disk."""
+        return self.files[path].place_of(node)
+
     def report(self, message: str, place: Place, hides_node: bool = False) -> None:
         """Report once what cannot be read."""
         unseen = Unseen(message, place, hides_node)
@@ -85,7 +88,7 @@ class Sources:
                 continue
             for base in each.class_.bases:
                 type_ = substituted(base, each.meanings)
-                place = place_of(each.class_.path, each.class_.node)
+                place = self.place_of(each.class_.path, each.class_.node)
                 found = self.find(type_, each.scope, each.class_.path, place)
                 if found.name not in seen:
                     seen.add(found.name)
@@ -156,7 +159,7 @@ class Sources:
             owner = function.name.rpartition("::")[0]
             if not owner or _last(owner) != _last(class_.name):
                 continue
-            place = place_of(function.path, function.node)
+            place = self.place_of(function.path, function.node)
             meant = self._nearest(self._classes[_last(owner)], owner, function.scope, function.path, place)
             if meant is class_:
                 found.append(function)

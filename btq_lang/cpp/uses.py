@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.cpp_classes import ENGINE
-from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, enclosing, field, literal, place_of, text_of, walk
+from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, enclosing, field, literal, text_of, walk
 from btq_lang.cpp.model import CppPort, Use
 from btq_lang.cpp.source import ACCESSES
 from btq_lang.cpp.sources import Bound, Sources
@@ -81,12 +81,12 @@ class Uses:
             if port is not None:
                 writes = name == "setOutput"
                 without = "" if writes else _without(call)
-                self.all.append(Use(port, writes, without, place_of(frame.path, call)))
+                self.all.append(Use(port, writes, without, self._sources.place_of(frame.path, call)))
             elif not _is_parameter(given[0]):  # else the name is in a string of the code that calls this
                 self.complete = False
         elif _FALLS_BACK(name):
             for port in filter(None, map(literal, given)):
-                self.all.append(Use(port, False, "goes on", place_of(frame.path, call), falls_back=True))
+                self.all.append(Use(port, False, "goes on", self._sources.place_of(frame.path, call), falls_back=True))
 
 
 def _is_parameter(name: Node) -> bool:
