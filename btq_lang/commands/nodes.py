@@ -11,7 +11,7 @@ from typing import Final, TypeAlias
 from btq_lang.btcpp import reader
 from btq_lang.btcpp.document import Element
 from btq_lang.catalog.cpp_classes import ENGINE
-from btq_lang.commands.cpp_files import MISSING
+from btq_lang.commands.cpp_files import MISSING, distributions_of
 from btq_lang.commands.options import Refused
 from btq_lang.commands.output import write_output
 from btq_lang.cpp.findings import UNSEEN, findings
@@ -22,7 +22,7 @@ from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.util.text import LineIndex, Span, counted
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import CPP_SUFFIXES
-from btq_lang.workspace.loader import LoadProblem, absolute, collect, head, read, shown
+from btq_lang.workspace.loader import LoadProblem, absolute, collect, find_project, head, read, shown
 
 Exported: TypeAlias = tuple[str, tuple[Diagnostic, ...]]  # the text, and what its nodes leave unseen
 
@@ -44,7 +44,8 @@ def run(options: Namespace) -> int:
     if problems:
         return 2
     try:
-        found = read_nodes(files)
+        project = find_project(options.paths[0]).project
+        found = read_nodes(files, distributions_of(project))
     except GrammarMissing as error:
         raise Refused(MISSING) from error
     sources = " ".join(options.paths)

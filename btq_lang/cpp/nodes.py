@@ -10,12 +10,13 @@ from collections.abc import Container, Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.kinds import Category
+from btq_lang.catalog.nav2 import DISTRIBUTIONS
 from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, text_of, walk
 from btq_lang.cpp.macros import Macros, macros_in
 from btq_lang.cpp.model import CppNode, CppNodes
 from btq_lang.cpp.ports import Body, PortsReader, Provided
 from btq_lang.cpp.source import Call, Source
-from btq_lang.cpp.sources import Bound, Sources, library_ports
+from btq_lang.cpp.sources import Bound, Sources
 from btq_lang.cpp.uses import Uses
 from btq_lang.cpp.values import string
 
@@ -23,19 +24,23 @@ if TYPE_CHECKING:
     from tree_sitter import Node
 
 
-def read_nodes(files: Mapping[str, str]) -> CppNodes:
-    """The nodes that some files register; files: texts by path.
+def read_nodes(files: Mapping[str, str], distributions: tuple[str, ...] = DISTRIBUTIONS) -> CppNodes:
+    """The nodes that some files register.
+
+    Args:
+        files: texts by path.
+        distributions: those of Nav2 whose base classes may be meant.
 
     Raises:
         GrammarMissing: tree-sitter is not installed.
     """
     macros = Macros(macro for path, text in files.items() for macro in macros_in(path, text))
-    return nodes_of(Source(path, text, macros.needed_by(text)) for path, text in files.items())
+    return nodes_of((Source(path, text, macros.needed_by(text)) for path, text in files.items()), distributions)
 
 
-def nodes_of(sources: Iterable[Source]) -> CppNodes:
-    """The nodes that parsed files register."""
-    reader = _Reader(Sources(sources))
+def nodes_of(sources: Iterable[Source], distributions: tuple[str, ...] = DISTRIBUTIONS) -> CppNodes:
+    """The nodes that parsed files register; distributions: as above."""
+    reader = _Reader(Sources(sources, distributions))
     nodes: dict[str, CppNode] = {}
     for source in reader.sources.files.values():
         for call in source.calls:
@@ -113,7 +118,7 @@ class _Reader:
             return None
         place = self.sources.place_of(call.path, call.node)
         bound = self.sources.find(type_, call.scope, call.path, place)
-        if bound.class_ is None and library_ports(bound, place) is None:
+        if bound.class_ is None and self.sources.library_ports(bound, place) is None:
             self._report(call, f"the class `{type_}` of the node `{name}` is not in the sources")
             return None
         category = self.sources.category(bound)

@@ -12,7 +12,7 @@ from btq_lang.catalog.kinds import Direction
 from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, named, text_of, walk
 from btq_lang.cpp.model import CppPort, Place
 from btq_lang.cpp.source import REGISTERS, substituted
-from btq_lang.cpp.sources import Bound, Sources, library_ports
+from btq_lang.cpp.sources import Bound, Sources
 from btq_lang.cpp.values import Frame, default, string, type_of
 from btq_lang.util.record import Record
 
@@ -65,7 +65,7 @@ class PortsReader:
                 node, path = bodies[0]
                 return Body(self, Frame(each, each.scope, path, depth)).result(node)
             if each.class_ is None:
-                if (ports := library_ports(each, place)) is not None:
+                if (ports := self._of_library(each, place)) is not None:
                     if ports:
                         return ports
                     continue
@@ -74,6 +74,18 @@ class PortsReader:
                 self.incomplete(f"the body of `{each.name}::providedPorts` is not in the sources", place)
                 return {}
         return {}
+
+    def _of_library(self, bound: Bound, place: Place) -> Ports | None:
+        """The ports of a class of a known library; None for any other."""
+        known = self.sources.library_ports(bound, place)
+        if known is None:
+            return None
+        ports, others = known
+        if others:
+            name = bound.name.rpartition("::")[2]
+            what_to_do = 'name the distribution of Nav2 in the project file: `nodes = ["nav2-jazzy", …]`'
+            self.incomplete(f"whether `{name}` provides {others} depends on the distribution; {what_to_do}", place)
+        return ports
 
     def incomplete(self, message: str, place: Place) -> None:
         """Report what is not understood."""
@@ -95,7 +107,7 @@ class PortsReader:
         """What `providedBasicPorts` of a library's class adds; None: unknown."""
         place = self.sources.place_of(frame.path, call)
         libraries = [each for each in self._owners(scope, frame, place) if each.class_ is None]
-        return next(filter(None, (library_ports(each, place) for each in libraries)), None)
+        return next(filter(None, (self._of_library(each, place) for each in libraries)), None)
 
     def class_ports(self, scope: str, frame: Frame, call: Node) -> Ports:
         """The ports of the class before `::providedPorts()`."""

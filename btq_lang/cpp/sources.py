@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 from btq_lang.catalog.cpp_classes import ENGINE, LIBRARIES, NUMBERED_TAGS, ROS_PORTS, TAGS
 from btq_lang.catalog.kinds import Category
+from btq_lang.catalog.nav2 import DISTRIBUTIONS
+from btq_lang.catalog.nav2.bases import BASES, NAMESPACE, BasePort
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.cpp.model import CppPort, Place, Unseen
 from btq_lang.cpp.source import Class, Function, Source, parts, substituted
@@ -40,11 +42,15 @@ class Bound(Record):
 class Sources:
     """The files, by path.
 
+    Args:
+        distributions: those of Nav2 that may be meant.
+
     Attributes:
         accessed: the ports that code reads or writes of another object.
     """
 
-    def __init__(self, sources: Iterable[Source]) -> None:
+    def __init__(self, sources: Iterable[Source], distributions: tuple[str, ...] = DISTRIBUTIONS) -> None:
+        self._distributions: Final = distributions
         self.files: Final = {source.path: source for source in sources}
         self.unseen: Final = [each for source in self.files.values() for each in source.unseen]
         self.accessed: Final = frozenset().union(*(source.accessed for source in self.files.values()))
@@ -152,6 +158,20 @@ class Sources:
                     return source.aliases[whole]
         return None
 
+    def library_ports(self, bound: Bound, place: Place) -> tuple[dict[str, CppPort], str] | None:
+        """The ports of a class of a known library, by name, each at a place, and those that it may have, too; None for
+        any other class, which may provide any port."""
+        if (of_nav2 := _of_nav2(bound)) is None:
+            ports = _library_ports(bound, place)
+            return None if ports is None else (ports, "")
+        in_all = [each for each in of_nav2 if all(map(each.is_in, self._distributions))]
+        in_some = [each for each in of_nav2 if each not in in_all and any(map(each.is_in, self._distributions))]
+        ports = {
+            each.name: CppPort(each.name, each.direction, each.type, _default(each), "", each.text, place)
+            for each in in_all
+        }
+        return ports, ", ".join(f"`{each.name}`" for each in in_some)
+
     def _outside(self, class_: Class, name: str) -> list[Function]:
         """The methods of a class whose body is outside of it."""
         found = []
@@ -223,9 +243,18 @@ def _last(name: str) -> str:
     return name.rpartition("::")[2]
 
 
-def library_ports(bound: Bound, place: Place) -> dict[str, CppPort] | None:
-    """The ports of a class of the engine or of behaviortree_ros2, by name, each at a place; None for any other class,
-    which may provide any port."""
+def _of_nav2(bound: Bound) -> tuple[BasePort, ...] | None:
+    """The ports of a base class of Nav2's nodes in its distributions; None for any other class."""
+    scope, _, name = bound.name.rpartition("::")
+    return BASES.get(name) if bound.class_ is None and scope in ("", NAMESPACE) else None
+
+
+def _default(port: BasePort) -> str | None:
+    return "" if port.direction == "input" else None
+
+
+def _library_ports(bound: Bound, place: Place) -> dict[str, CppPort] | None:
+    """The ports of a class of the engine or of behaviortree_ros2, by name, each at a place."""
     name = bound.name.rpartition("::")[2]
     if name in ROS_PORTS:
         key, text = ROS_PORTS[name]

@@ -437,3 +437,44 @@ def test_a_factory_holds_models_against_its_own_sources(robot: Path) -> None:
         "trees/m.btq:3:11: warning[stale-model] the C++ of `Drive` has no port `old`",
         "trees/m.btq:6:23: error[unknown-port] `Drive` has no port `old`",
     ]
+
+
+OF_NAV2 = """\
+struct Scan : nav2_behavior_tree::BtActionNode<M> {
+  static BT::PortsList providedPorts() { return providedBasicPorts({ BT::InputPort<int>("area") }); }
+};
+BT_REGISTER_NODES(factory) { factory.registerNodeType<Scan>("Scan"); }
+"""
+
+
+@pytest.mark.parametrize(
+    ("project", "found"),
+    [
+        ('nodes = ["nav2-humble", "src/*.cpp"]\n', ["error[unknown-port] `Scan` has no port `error_msg`"]),
+        ('nodes = ["nav2-lyrical", "src/*.cpp"]\n', []),
+        ('engine = "3.8"\nnodes = ["src/*.cpp"]\n', ["error[unknown-port] `Scan` has no port `error_msg`"]),
+        ('engine = "4.6"\nnodes = ["src/*.cpp"]\n', []),  # it may be Lyrical's
+        (
+            '[[factory]]\nname = "a"\nload = ["trees/*"]\nnodes = ["nav2-jazzy", "src/*.cpp"]\n',
+            ["error[unknown-port] `Scan` has no port `error_msg`"],
+        ),
+    ],
+)
+def test_base_classes_of_nav2_are_known_by_the_distribution_of_the_project(
+    robot: Path, project: str, found: list[str]
+) -> None:
+    (robot / "src/drive.cpp").unlink()
+    write(robot, "src/scan.cpp", OF_NAV2)
+    write(robot, "btq.toml", project)
+    write(robot, "trees/m.btq", "BehaviorTree M\n    Scan (area = 1 server_name = a error_msg = {e})\n")
+    assert [each.partition(": ")[2] for each in check(robot, "trees")] == found
+    code, out, err = run_btq("nodes", "src", cwd=robot)
+    assert (code, "error_msg" in out) == ((1, False) if "4.6" in project else (0, "lyrical" in project))
+    assert err.splitlines()[:-1] == (
+        [
+            "src/scan.cpp:2:49: hint[unseen-in-cpp] whether `BtActionNode` provides `error_code_id`, `error_msg` depends "
+            'on the distribution; name the distribution of Nav2 in the project file: `nodes = ["nav2-jazzy", …]`'
+        ]
+        if code
+        else []
+    )

@@ -6,6 +6,7 @@ from textwrap import dedent
 
 import pytest
 
+from btq_lang.catalog.nav2 import DISTRIBUTIONS
 from btq_lang.cpp.model import CppNode, CppNodes
 from btq_lang.cpp.nodes import read_nodes
 
@@ -244,12 +245,58 @@ def test_a_base_class_of_behaviortree_ros2_adds_its_port(base: str, category: st
     assert [each.name for each in moved("", f"BT::{base}<M>").ports] == [port]
 
 
-def test_a_base_class_of_nav2_gives_the_category_and_its_ports_are_unseen() -> None:
-    body = 'static PortsList providedPorts() { return providedBasicPorts({ InputPort<int>("a") }); }'
-    found = read(move(body, "nav2_behavior_tree::BtActionNode<M>"))
-    (node,) = found.nodes
-    assert (node.category, ports(node), node.complete) == ("Action", ["input a : int"], False)
-    assert unseen(found) == ["a.cpp:5:43: `providedBasicPorts` is not in the sources, and may add ports"]
+TIMEOUT = "input server_timeout : std::chrono::milliseconds = ''"
+SERVER = ["input server_name : std::string = '' # Action server name", TIMEOUT]
+ERRORS = [
+    "output error_code_id : uint16_t # The action error code",
+    "output error_msg : std::string # The action error message",
+]
+
+
+@pytest.mark.parametrize(
+    ("base", "distributions", "of_base"),
+    [
+        ("BtActionNode", ("humble",), SERVER),
+        ("BtActionNode", ("iron", "jazzy", "kilted"), SERVER),
+        ("BtActionNode", ("lyrical",), [*SERVER, *ERRORS]),
+        ("BtCancelActionNode", DISTRIBUTIONS, SERVER),
+        (
+            "BtServiceNode",
+            DISTRIBUTIONS,
+            ["input service_name : std::string = '' # please_set_service_name_in_BT_Node", TIMEOUT],
+        ),
+    ],
+)
+def test_a_base_class_of_nav2_adds_the_ports_of_its_distribution(
+    base: str, distributions: tuple[str, ...], of_base: list[str]
+) -> None:
+    body = """
+        using Base = nav2_behavior_tree::{0}<M>;
+        static PortsList providedPorts() {{ return {1}providedBasicPorts({{ InputPort<int>("a") }}); }}
+    """
+    of_nav2 = f"nav2_behavior_tree::{base}"
+    for text, own in (
+        (move(body.format(base, ""), f"{of_nav2}<M>"), ["input a : int"]),
+        (move(body.format(base, "Base::"), f"{of_nav2}<M>"), ["input a : int"]),
+        (move(body.format(base, f"{of_nav2}<M>::"), f"{base}<M>"), ["input a : int"]),
+        (move("", f"{of_nav2}<M>"), []),
+    ):
+        found = read_nodes({"a.cpp": text}, distributions)
+        assert found.unseen == ()
+        assert [(node.category, ports(node), node.complete) for node in found.nodes] == [
+            ("Action", of_base + own, True)
+        ]
+
+
+def test_ports_that_a_base_class_of_nav2_has_in_some_distributions_are_unseen() -> None:
+    found = read(move("", "nav2_behavior_tree::BtActionNode<M>"))
+    assert [(ports(node), node.complete) for node in found.nodes] == [(SERVER, False)]
+    assert unseen(found) == [
+        "a.cpp:11:3: whether `BtActionNode` provides `error_code_id`, `error_msg` depends on the distribution; "
+        'name the distribution of Nav2 in the project file: `nodes = ["nav2-jazzy", …]`'
+    ]
+    other = read(move("", "elsewhere::BtActionNode<M>"))
+    assert unseen(other) == ["a.cpp:11:3: `elsewhere::BtActionNode` is not in the sources, and may provide ports"]
 
 
 @pytest.mark.parametrize(
