@@ -100,7 +100,11 @@ class _Reader:
         if provided is None:
             self.sources.report(f"it cannot be seen which ports `{name}` has: `{text_of(given[2])}`", place)
             provided = Provided((), False)
-        return CppNode(name, _SIMPLE[call.name], "", place, place, provided.ports, provided.complete)
+        ports, complete = provided.ports, provided.complete
+        uses = Uses.of_function(self.sources, given[1], body.frame) if len(given) > 1 else Uses(self.sources)
+        undeclared = uses.undeclared(ports) if complete else ()
+        category, without = _SIMPLE[call.name], uses.without_each(ports)
+        return CppNode(name, category, "", place, place, ports, complete, uses.unread(ports), undeclared, without)
 
     def _manifest(self, call: Call, body: Body, manifest: Node) -> CppNode | None:
         """`registerBuilder(CreateManifest<T>("Name", ports), builder)`"""
@@ -132,8 +136,7 @@ class _Reader:
         ports, complete = provided.ports, provided.complete
         if bound.class_ is None:
             return CppNode(name, category, bound.name, place, place, ports, complete)
-        uses = Uses(self.sources, bound)
-        inputs = [each for each in ports if each.direction != "output" and each.default is None]
+        uses = Uses.of_class(self.sources, bound)
         return CppNode(
             name,
             category,
@@ -144,7 +147,7 @@ class _Reader:
             complete,
             uses.unread(ports),
             uses.undeclared(ports) if complete else (),
-            tuple((each.name, uses.without(each)) for each in inputs),
+            uses.without_each(ports),
             ends_within_tick(self.sources, bound),
         )
 

@@ -76,6 +76,7 @@ class Source:
 
     Attributes:
         strings: constants by their whole name.
+        lists: constants that may be ports, likewise, each with the scope that it is in.
         aliases: of types, likewise.
         accessed: the ports that code reads or writes of another object, as tests do.
         registering: what may register a node, and does not show how.
@@ -87,6 +88,7 @@ class Source:
         self.functions: Final[list[Function]] = []
         self.calls: Final[list[Call]] = []
         self.strings: Final[dict[str, str]] = {}
+        self.lists: Final[dict[str, tuple[Node, tuple[str, ...]]]] = {}
         self.aliases: Final[dict[str, str]] = {}
         self.accessed: Final[set[str]] = set()
         self.includes: Final[list[str]] = []
@@ -178,6 +180,8 @@ class Source:
                 value = contents(value)[0]
             if (string := literal(value)) is not None:
                 self.strings["::".join((*scope, text_of(inner)))] = string
+            elif value is not None and "Port" in text_of(node):
+                self.lists["::".join((*scope, text_of(inner)))] = value, scope
         self._inside(node, scope)
 
     def _inside(self, node: Node, scope: tuple[str, ...]) -> None:

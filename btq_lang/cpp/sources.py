@@ -127,12 +127,9 @@ class Sources:
 
     def string(self, name: str, bound: Bound | None, scope: tuple[str, ...], path: str) -> str | None:
         """The string that a constant means."""
-        scopes = [each.scope for each in self.ancestry(bound)] if bound is not None else []
-        for around in (scope, *scopes):
-            for whole in _in_scopes(name, around):
-                for source in self._near(path):
-                    if whole in source.strings:
-                        return source.strings[whole]
+        for whole, source in self._meant(name, bound, scope, path):
+            if whole in source.strings:
+                return source.strings[whole]
         found = {
             string
             for source in self.files.values()
@@ -140,6 +137,22 @@ class Sources:
             if whole.endswith(f"::{name}") or whole == name
         }
         return found.pop() if len(found) == 1 else None
+
+    def constant(
+        self, name: str, bound: Bound | None, scope: tuple[str, ...], path: str
+    ) -> tuple[Node, tuple[str, ...], str] | None:
+        """The value of a constant that may be ports, with its scope and file."""
+        for whole, source in self._meant(name, bound, scope, path):
+            if whole in source.lists:
+                return *source.lists[whole], source.path
+        return None
+
+    def _meant(self, name: str, bound: Bound | None, scope: tuple[str, ...], path: str) -> Iterator[tuple[str, Source]]:
+        """The whole names that a name may mean, each in each file, the nearest first."""
+        scopes = [each.scope for each in self.ancestry(bound)] if bound is not None else []
+        for around in (scope, *scopes):
+            for whole in _in_scopes(name, around):
+                yield from ((whole, source) for source in self._near(path))
 
     def strings_of(self, names: set[str]) -> set[str]:
         """The strings of all constants that have one of some names."""

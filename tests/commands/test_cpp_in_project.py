@@ -472,8 +472,9 @@ def test_base_classes_of_nav2_are_known_by_the_distribution_of_the_project(
     assert (code, "error_msg" in out) == ((1, False) if "4.6" in project else (0, "lyrical" in project))
     assert err.splitlines()[:-1] == (
         [
-            "src/scan.cpp:2:49: hint[unseen-in-cpp] whether `BtActionNode` provides `error_code_id`, `error_msg` depends "
-            'on the distribution; name the distribution of Nav2 in the project file: `nodes = ["nav2-jazzy", …]`'
+            "src/scan.cpp:2:49: hint[unseen-in-cpp] whether `BtActionNode` provides `error_code_id`, `error_msg` "
+            "depends on the distribution; name the distribution of Nav2 in the project file: "
+            '`nodes = ["nav2-jazzy", …]`'
         ]
         if code
         else []

@@ -199,6 +199,75 @@ def test_ports_of_a_base_are_named_by_its_function() -> None:
     assert (node.category, ports(node)) == ("Condition", ["input a : int", "output b : int"])
 
 
+BASES = """
+    struct Base : BT::SyncActionNode {
+      static PortsList providedPorts() { return { InputPort<int>("a") }; }
+    };
+    PortsList joined(const PortsList& one, const PortsList& other) {
+      PortsList all;
+      for (const auto& port : one) all.insert(port);
+      for (const auto& port : other) all.insert(port);
+      return all;
+    }
+    auto made() -> BT::PortsList { return { BT::InputPort<int>("b") }; }
+    void add(BT::PortsList& ports) { ports.insert(BT::InputPort<int>("b")); }
+    using List = BT::PortsList;
+    const List kList = { BT::InputPort<int>("a"), BT::InputPort<int>("b") };
+    const auto kB = BT::InputPort<int>("b");
+"""
+
+
+@pytest.mark.parametrize(
+    "statements",
+    [
+        'auto ports = Base::providedPorts(); ports.insert(BT::InputPort<int>("b"));',
+        'auto ports = Base::providedPorts(); ports.insert({ BT::InputPort<int>("b") });',
+        'auto ports = Base::providedPorts(); ports.merge(BT::PortsList{ BT::InputPort<int>("b") });',
+        'auto ports = Base::providedPorts(); ports["b"] = BT::InputPort<int>("b").second;',
+        'auto ports = Base::providedPorts(); ports.emplace("b", BT::InputPort<int>("").second);',
+        'auto ports = Base::providedPorts(); ports.insert_or_assign("b", BT::InputPort<int>("").second);',
+        'auto ports = Base::providedPorts(); ports.insert(std::make_pair("b", BT::InputPort<int>("").second));',
+        'auto ports = Super::providedPorts(); ports.reserve(2); { ports.insert(BT::InputPort<int>("b")); }',
+        "auto ports = Base::providedPorts(); ports.insert(kB);",
+        "auto ports = Base::providedPorts(); add(ports);",
+        "auto ports = Base::providedPorts(); auto own = made();"
+        " std::copy(own.begin(), own.end(), std::inserter(ports, ports.end()));",
+        "auto ports = Base::providedPorts(); std::ranges::copy(made(), std::inserter(ports, ports.end()));",
+        "auto ports = Base::providedPorts(); auto own = made(); ports.insert(std::begin(own), std::end(own));",
+        'auto ports = Base::providedPorts(); for (auto port : { BT::InputPort<int>("b") }) ports.insert(port);',
+        "List ports = Base::providedPorts(); for (const auto& [name, port] : made()) { ports[name] = port; }",
+        'BT::PortsList ports(Base::providedPorts()); ports.insert(BT::InputPort<int>("b"));',
+        "std::unordered_map<std::string, BT::PortInfo> ports = Base::providedPorts(); ports.insert(kB);",
+        'return joined(Base::providedPorts(), { BT::InputPort<int>("b") });',
+        "static const BT::PortsList ports = [] { auto all = Base::providedPorts(); all.insert(kB); return all; }();",
+        "return kList;",
+        "return Move::kOwn;",
+    ],
+)
+def test_a_list_is_joined_with_that_of_a_base_class(statements: str) -> None:
+    body = f"""
+        using Super = Base;
+        inline static const BT::PortsList kOwn = {{ BT::InputPort<int>("a"), BT::InputPort<int>("b") }};
+        static BT::PortsList providedPorts() {{ {statements} return ports; }}
+    """
+    assert ports(moved(body, "Base", BASES)) == ["input a : int", "input b : int"]
+
+
+def test_what_is_no_list_is_not_taken_for_one() -> None:
+    found = read(
+        """
+        auto makeNode() { return std::make_shared<Node>(); }
+        struct A : BT::SyncActionNode { static PortsList providedPorts() { return {}; } };
+        void f() {
+          auto node = makeNode();
+          static const auto done = [] { return true; }();
+          registerNodeType<A>("A", node);
+        }
+        """
+    )
+    assert (unseen(found), [node.complete for node in found.nodes]) == ([], [True])
+
+
 def test_an_alias_stands_for_its_type() -> None:
     body = """
         typedef std::vector<Pose> Goals;
@@ -619,3 +688,64 @@ def test_a_port_is_not_unread_if_other_code_reads_it_or_a_name_is_made() -> None
     helper = "\n template <class T> T get(const std::string& port) {{ T value; getInput(port, value); return value; }}"
     class_ += helper
     assert unread('auto x = get<int>("near");') == ["far"]
+
+
+SIMPLE = """
+    BT::NodeStatus speak(BT::TreeNode& self) {
+      if (!self.getInput("text", text)) { return BT::NodeStatus::FAILURE; }
+      self.setOutput("lenght", 1);
+      return BT::NodeStatus::SUCCESS;
+    }
+    void f(BT::BehaviorTreeFactory& factory) {
+      BT::PortsList ports{ BT::InputPort<std::string>("text"), BT::OutputPort<int>("length") };
+      auto listen = [&](BT::TreeNode& self) { self.getInput("text", text); return hear(text); };
+      factory.registerSimpleAction("Speak", speak, ports);
+      factory.registerSimpleCondition("Hears", listen, { BT::InputPort<std::string>("text") });
+      factory.registerSimpleDecorator("Mute", [](BT::NodeStatus status, BT::TreeNode& node) {
+        const auto level = node.getInput<int>("level").value();
+        return level > 3 ? status : BT::NodeStatus::SKIPPED;
+      }, { BT::BidirectionalPort<int>("level"), BT::InputPort<double>("gain", 1.0, "of the microphone") });
+      factory.registerSimpleAction("Whole", [](BT::TreeNode& self) { return other(self); },
+                                   { BT::InputPort<int>("a") });
+      factory.registerSimpleAction("Bound", std::bind(&Robot::go, &robot), { BT::InputPort<int>("b") });
+    }
+"""
+
+
+def test_the_function_of_a_simple_node_is_held_against_its_ports() -> None:
+    found = read(SIMPLE)
+    assert found.unseen == ()
+    assert [
+        (
+            node.name,
+            ports(node),
+            [port.name for port in node.unread],
+            [use.port for use in node.undeclared],
+            [what for _, what in node.without],
+        )
+        for node in found.nodes
+    ] == [
+        ("Bound", ["input b : int"], [], [], [""]),
+        ("Hears", ["input text : std::string"], [], [], ["ignores"]),
+        (
+            "Mute",
+            ["inout level : int", "input gain : double = '1.0' # of the microphone"],
+            ["gain"],
+            [],
+            ["fails"],
+        ),
+        ("Speak", ["input text : std::string", "output length : int"], ["length"], ["lenght"], ["fails"]),
+        ("Whole", ["input a : int"], [], [], [""]),
+    ]
+
+
+def test_ports_are_in_declared_order_those_of_a_base_first() -> None:
+    more = """
+        struct Base : BT::StatefulActionNode {
+          static PortsList providedPorts() { return { InputPort<int>("z"), OutputPort<int>("m") }; }
+        };
+    """
+    own = 'auto ports = Base::providedPorts(); ports.insert({ InputPort<A>("k"), InputPort<B>("a") }); return ports;'
+    assert provided(own, more, "Base") == ["input z : int", "output m : int", "input k : A", "input a : B"]
+    own = 'PortsList ports{ InputPort<A>("k"), InputPort<B>("a") }; ports.merge(Base::providedPorts()); return ports;'
+    assert provided(own, more, "Base") == ["input k : A", "input a : B", "input z : int", "output m : int"]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class BasePort(Record):
     """A port that a base class provides; since: the first distribution that has it.
 
-    None of them has a default or needs a value: names come from the constructor, too, and the timeout from bt_navigator.
+    None of them has a default or needs a value: names may come from the constructor, and the timeout from bt_navigator.
     """
 
     direction: Direction
