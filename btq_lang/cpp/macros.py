@@ -163,13 +163,14 @@ class Expanded:
         choice = [each for each in every if each.path == self._path and row in each.rows]
         if not choice:
             others = [each for each in every if each.path != self._path]
-            choice = [each for each in others if f'{each.path.rpartition("/")[2]}"' in self._original] or others
+            included = [each for each in others if each.path.rpartition("/")[2] in self._original]
+            choice = included or [each for each in others if not each.path.endswith(_OF_ONE_FILE)]
         choice = [each for each in choice if MATTERS(each.body)] or choice
         first = {each.path: each for each in reversed(choice)}
         if len({(each.parameters, each.body) for each in first.values()}) > 1:
             places = ", ".join(sorted(f"{each.path}:{each.rows[0] + 1}" for each in first.values()))
             message = f"`{name}` may be any of several macros: {places}; include the file that defines it"
-            self.failed.append(Failed(message, self._place(start, end)))
+            self._fail(message, self._place(start, end), *choice)
             return None
         return choice[0] if choice else None
 
@@ -182,13 +183,13 @@ class Expanded:
             least = len(parameters) - is_variadic
             if len(given) < least or (len(given) > least and not is_variadic):
                 message = f"`{macro.name}` takes {least} arguments, and is given {len(given)}; it cannot be expanded"
-                self.failed.append(Failed(message, place))
+                self._fail(message, place, macro)
                 return None
         values = dict(zip(parameters, given, strict=False))
         if is_variadic:
             rest = ", ".join(given[len(parameters) - 1 :])
             values[parameters[-1].removesuffix("...").strip() or "__VA_ARGS__"] = rest
-        inside = "".join(self._substituted(macro.body, values, within, place))
+        inside = _VISIBILITY.sub("", "".join(self._substituted(macro.body, values, within, place)))
         return self._rescanned(inside, within | {macro.name}, place)
 
     def _substituted(self, body: str, values: Mapping[str, str], within: frozenset[str], place: Place) -> Iterator[str]:
@@ -226,6 +227,11 @@ class Expanded:
                 pieces += (text[copied : match.start()], expansion)
                 copied = end if macro.parameters is not None else match.end()
         return "".join((*pieces, text[copied:]))
+
+    def _fail(self, message: str, place: Place, *macros: Macro) -> None:
+        """Report what cannot be expanded, if that may hide a node or a port."""
+        if any(MATTERS(each.body) for each in macros):
+            self.failed.append(Failed(message, place))
 
     def _point(self, offset: int) -> Point:
         start = self._original.rfind("\n", 0, offset) + 1
@@ -308,5 +314,7 @@ _WORD: Final = re.compile(r"[A-Za-z_]\w*").findall
 MATTERS: Final = re.compile(
     r"providedPorts|Port\s*[<(]|[rR]egister[A-Z]\w*\s*[<(]|getInput|setOutput|\b(?:class|struct)\s[^;{]*[^:]:[^:]"
 ).search
-_MAY_REGISTER: Final = re.compile(r"\b[A-Z0-9_]*(?:REGISTER|EXPORT|PLUGIN)[A-Z0-9_]*(?=\s*\()")
+_MAY_REGISTER: Final = re.compile(r"\b(?:[A-Z0-9_]*(?:REGISTER|EXPORT|PLUGIN)[A-Z0-9_]*|\w*[rR]egister\w*)(?=\s*\()")
+_OF_ONE_FILE: Final = (".cpp", ".cc", ".cxx")  # others do not see what these define
+_VISIBILITY: Final = re.compile(r"\b[A-Z0-9_]+_(?:EXPORTS?|PUBLIC|API|VISIBLE)\b(?!\s*\()")  # before a type
 _OF_ENGINE: Final = "BT_REGISTER_NODES"  # the head of a function, which the grammar can read as it is

@@ -88,7 +88,7 @@ class _Reader:
                 for bound in bounds:
                     if bound.class_ is None or bound.class_.name in registered or not self.sources.category(bound):
                         continue
-                    message = f"it cannot be seen how `{each.name}` registers `{bound.name}`: {_OF_MACRO}"
+                    message = f"it cannot be seen under which ID `{each.name}` registers `{bound.name}`; {_OF_MACRO}"
                     self.sources.report(message, each.place, hides_node=True)
 
     def _simple(self, call: Call, body: Body, given: list[Node]) -> CppNode | None:
@@ -215,7 +215,7 @@ _SIMPLE: Final[dict[str, Category]] = {
     "registerSimpleCondition": "Condition",
     "registerSimpleDecorator": "Decorator",
 }
-_OF_MACRO: Final = "name the file that defines it, too, or register the node by registerNodeType"
+_OF_MACRO: Final = "name the file that defines it, too, or declare the node in a model"
 _ENGINES: Final = ("registerNodeType", "registerBuilder")
 _OTHERS: Final = re.compile(
     r"register(BehaviorTreeFrom\w+|From\w*Plugins?|ScriptingEnums?|PolymorphicCast)|RegisterJsonDefinition"

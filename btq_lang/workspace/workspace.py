@@ -352,8 +352,9 @@ class Scope:
         self.node_paths = node_paths
         self._files = [workspace.files[path] for path in paths]
         of_models = [*self._files, *(workspace.files[path] for path in node_paths)]
-        self._of_models = sorted(of_models, key=lambda file: not file.is_cpp)  # what registers a node counts first
-        self._cpp = frozenset([file.path for file in of_models if file.is_cpp])
+        cpp = [file for file in of_models if file.is_cpp]  # what registers a node counts first
+        self._of_models = [*cpp, *(file for file in of_models if not file.is_cpp)] if cpp else of_models
+        self._cpp = frozenset([file.path for file in cpp])
         self.complete = (
             is_known
             and all(

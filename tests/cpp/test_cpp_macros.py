@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 from shutil import copytree
+from textwrap import dedent
 
 import pytest
 from in_process import run_btq
-from test_cpp_nodes import ports, read, unseen
+from test_cpp_nodes import ports, unseen
+
+from btq_lang.cpp.model import CppNodes
+from btq_lang.cpp.nodes import read_nodes
 
 pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
 
@@ -17,6 +21,12 @@ struct Dock : BT::SyncActionNode { static PortsList providedPorts() { return { I
 struct IsDocked : BT::ConditionNode { static PortsList providedPorts() { return {}; } };
 }
 """
+
+
+def read(*texts: str) -> CppNodes:
+    """The nodes of some headers and of the source after them: a.hpp, b.hpp, c.cpp and so on."""
+    names = (*(f"{name}.hpp" for name in "abcde"[: len(texts) - 1]), f"{'abcdef'[len(texts) - 1]}.cpp")
+    return read_nodes({name: dedent(text) for name, text in zip(names, texts, strict=True)})
 
 
 def test_btq_nodes_of_the_shared_file(shared: Path, tmp_path: Path) -> None:
@@ -82,6 +92,10 @@ def test_btq_nodes_of_the_shared_file(shared: Path, tmp_path: Path) -> None:
             "#define ID(x) #x\n#define REG(t) factory.registerNodeType<robot::t>(#t);\n"
             "void f() { REG(Dock) }\n#undef REG\n#define REG(t) factory.registerNodeType<t>(ID(IsDocked));",
             "void g() { REG(robot::IsDocked) }",
+        ),
+        (
+            "#define REG(type) ROBOT_EXPORT void add_##type(F& f) { f.registerNodeType<robot::type>(#type); }",
+            "REG(Dock);\nREG(IsDocked);",
         ),
         (
             "#define register_node(type) g.registerNodeType<robot::type>(#type)",
@@ -151,13 +165,18 @@ def test_places_are_those_of_the_use() -> None:
         ),
         (
             "REGISTER_NODE(Dock)\nREGISTER_NODE(Other)\nRCLCPP_COMPONENTS_REGISTER_NODE(Other)",
-            "6:1: it cannot be seen how `REGISTER_NODE` registers `robot::Dock`: "
-            "name the file that defines it, too, or register the node by registerNodeType",
+            "6:1: it cannot be seen under which ID `REGISTER_NODE` registers `robot::Dock`; "
+            "name the file that defines it, too, or declare the node in a model",
         ),
         (
             "#define BT_EXPORT(name) Registry::get().add(#name, make<name>)\nvoid f() { BT_EXPORT(robot::Dock); }",
-            "7:12: it cannot be seen how `BT_EXPORT` registers `robot::Dock`: "
-            "name the file that defines it, too, or register the node by registerNodeType",
+            "7:12: it cannot be seen under which ID `BT_EXPORT` registers `robot::Dock`; "
+            "name the file that defines it, too, or declare the node in a model",
+        ),
+        (
+            'RegisterRosNode(robot::Dock, "Dock");\nregisterTool("Dock");',
+            "6:1: it cannot be seen under which ID `RegisterRosNode` registers `robot::Dock`; "
+            "name the file that defines it, too, or declare the node in a model",
         ),
         (
             "#define REG(x) REG(x); f.registerNodeType<Lost>(#x)\nvoid f() { REG(Dock); }",
@@ -177,12 +196,28 @@ def test_a_macro_that_two_headers_define_otherwise_is_told() -> None:
     use = CLASSES + "void f() { REG(Dock); }\n"
     found = read(define.format("#t"), define.format('"my_" #t'), use)
     assert unseen(found) == [
-        "c.cpp:6:12: `REG` may be any of several macros: a.cpp:1, b.cpp:1; include the file that defines it"
+        "c.cpp:6:12: `REG` may be any of several macros: a.hpp:1, b.hpp:1; include the file that defines it"
     ]
     assert [node.name for node in read(define.format("#t"), define.format("#t"), use).nodes] == ["Dock"]
     assert [node.name for node in read(define.format("#t"), define.format('"my_" #t') + use).nodes] == ["my_Dock"]
+    including = read(define.format("#t"), define.format('"my_" #t'), f'#include "b.hpp"\n{use}')
+    assert [node.name for node in including.nodes] == ["my_Dock"]
 
 
 def test_a_macro_whose_class_is_registered_otherwise_hides_nothing() -> None:
     text = 'REGISTER_FOR_DOCUMENTATION(Dock)\nvoid f() { f.registerNodeType<robot::Dock>("Dock"); }'
     assert unseen(read(CLASSES + text)) == []
+
+
+def test_a_macro_of_a_source_file_is_none_of_another_file() -> None:
+    define = "#define add(f, type) f.registerNodeType<robot::type>(#type)\n"
+    use = 'void g() { list.add(1); list.add(Dock, "x"); f.registerNodeType<robot::Dock>("Dock"); }\n'
+    found = read_nodes({"a.cpp": define, "b.cpp": CLASSES + use})
+    assert ([node.name for node in found.nodes], unseen(found)) == (["Dock"], [])
+    of_header = read_nodes({"a.hpp": define, "b.cpp": f'#include "a.hpp"\n{CLASSES}void g() {{ add(f, Dock); }}\n'})
+    assert ([node.name for node in of_header.nodes], unseen(of_header)) == (["Dock"], [])
+
+
+def test_a_macro_that_has_nothing_to_do_with_nodes_is_no_finding() -> None:
+    text = "#define APPLY(f, x) f(x)\nvoid g() { APPLY(h); }\n" + CLASSES
+    assert unseen(read(text)) == []
