@@ -107,7 +107,7 @@ class Expanded:
         self._original: Final = text
         self._macros: Final = grouped((each.name, each) for each in macros)
         text = _WITH_BRACKETS.sub(_blank, text)  # the grammar cannot read all that a definition may have
-        may_register = _MAY_REGISTER.search(text) is not None
+        may_register = _MAY_REGISTER_SOMEWHERE.search(text.replace(_OF_ENGINE, "")) is not None
         self.text: Final = self._expanded(text) if macros or may_register else text
 
     def original(self, row: int, column: int, at_end: bool = False) -> Point:
@@ -129,7 +129,7 @@ class Expanded:
                 continue
             name = match["name"]
             is_macro = name in self._macros
-            if not is_macro and _MAY_REGISTER.match(text, match.start()) is None:
+            if not is_macro and (name == _OF_ENGINE or _MAY_REGISTER.match(text, match.start()) is None):
                 continue
             row += text.count("\n", line_start, match.start())
             line_start = text.rfind("\n", 0, match.start()) + 1
@@ -244,8 +244,11 @@ class Expanded:
 
 def _is_wanted(macro: Macro) -> bool:
     """Whether a macro matters by itself, or does with what it is given: `#define NODES(X) X(Dock) X(Move)`."""
-    calls = rf"\b(?:{'|'.join(map(re.escape, macro.parameters))})\s*\(" if macro.parameters else "$^"
-    return macro.name != _OF_ENGINE and (MATTERS(macro.body) or re.search(calls, macro.body)) is not None
+    if _IS_KNOWN(macro.name):
+        return False
+    names = "|".join(map(re.escape, filter(str.isidentifier, macro.parameters or ())))
+    calls_one = names and re.search(rf"\b(?:{names})\s*\(", macro.body)
+    return MATTERS(macro.body) is not None or bool(calls_one)
 
 
 def _arguments(text: str, at: int) -> tuple[list[str] | None, int]:
@@ -314,7 +317,10 @@ _WORD: Final = re.compile(r"[A-Za-z_]\w*").findall
 MATTERS: Final = re.compile(
     r"providedPorts|Port\s*[<(]|[rR]egister[A-Z]\w*\s*[<(]|getInput|setOutput|\b(?:class|struct)\s[^;{]*[^:]:[^:]"
 ).search
-_MAY_REGISTER: Final = re.compile(r"\b(?:[A-Z0-9_]*(?:REGISTER|EXPORT|PLUGIN)[A-Z0-9_]*|\w*[rR]egister\w*)(?=\s*\()")
+_MAY_REGISTER: Final = re.compile(r"(?:[A-Z0-9_]*(?:REGISTER|EXPORT|PLUGIN)[A-Z0-9_]*|\w*[rR]egister\w*)(?=\s*\()")
+_MAY_REGISTER_SOMEWHERE: Final = re.compile(r"(?:REGISTER|EXPORT|PLUGIN|[rR]egister)\w*\s*\(")
 _OF_ONE_FILE: Final = (".cpp", ".cc", ".cxx")  # others do not see what these define
 _VISIBILITY: Final = re.compile(r"\b[A-Z0-9_]+_(?:EXPORTS?|PUBLIC|API|VISIBLE)\b(?!\s*\()")  # before a type
-_OF_ENGINE: Final = "BT_REGISTER_NODES"  # the head of a function, which the grammar can read as it is
+# What is understood as it is written: the head of a function, and a read with something to take instead.
+_IS_KNOWN: Final = re.compile(r"BT_REGISTER_NODES|get\w*Or[A-Z]\w*").fullmatch
+_OF_ENGINE: Final = "BT_REGISTER_NODES"

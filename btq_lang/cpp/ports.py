@@ -36,6 +36,12 @@ class PortsReader:
     def __init__(self, sources: Sources) -> None:
         self.sources: Final = sources
         self._complete = True
+        aliases = (alias for source in sources.files.values() for alias in source.aliases.items())
+        self._aliases: Final = frozenset(name.rpartition("::")[2] for name, type_ in aliases if _is_list(type_))
+
+    def is_list(self, type_: Node | None) -> bool:
+        """Whether a type is that of a list of ports, or an alias of it."""
+        return _is_list(text_of(type_)) or named(type_)[1] in self._aliases
 
     def of_class(self, bound: Bound, place: Place) -> Provided:
         """The ports that a class provides; place: where it is used."""
@@ -174,8 +180,7 @@ class Body:
             self.incomplete(statement)
 
     def _declare(self, node: Node) -> None:
-        type_ = type_of(self.reader.sources, text_of(field(node, "type")), self.frame)
-        is_list = _is_list(type_)
+        is_list = self.reader.is_list(field(node, "type"))
         for each in node.children_by_field_name("declarator"):
             name, value = each, field(each, "value")
             while name.type in ("init_declarator", "pointer_declarator", "reference_declarator"):
@@ -325,7 +330,7 @@ class Body:
             return self.lists[name] if name in self.lists else self.reader.constant(name, self.frame)
         if node.type == "compound_literal_expression":
             value = field(node, "value")
-            is_list = _is_list(type_of(self.reader.sources, text_of(field(node, "type")), self.frame))
+            is_list = self.reader.is_list(field(node, "type"))
             return self.evaluated(value) if is_list and value is not None else None
         return self._called(node) if node.type == "call_expression" else None
 
