@@ -39,21 +39,21 @@ def _of_port(view: View, model: Model, port: Port, other: lookups.Declaration) -
     assert isinstance(of_code, Model), "the caller has looked"
     assert port.id is not None, "the caller has looked"
     ports = {each.id.text: each for each in of_code.ports if each.id is not None}
-    known, name = ports.get(port.id.text), f"`{port.id.text}`"
-    if known is None:
+    in_code, name = ports.get(port.id.text), f"`{port.id.text}`"
+    if in_code is None:
         if not view.look_up(lookups.is_torn, Kind.MODEL, other.symbol.name):
             yield _unknown(view, model, port, other, ports)
         return
-    assert known.id is not None, "it has been found by its name"
-    related = (Related(Place(known.id.span, other.path, other.owner.item), _IN_CPP),)
-    here, there = port.direction, known.direction
+    assert in_code.id is not None, "it was looked up by its name"
+    related = (Related(Place(in_code.id.span, other.path, other.owner.item), _IN_CPP),)
+    here, there = port.direction, in_code.direction
     if here.raw != there.raw:
         fix = replace_fix(f"Replace `{here.raw}` with `{there.raw}`", here.span, there.raw)
         message = f"the port {name} is an {_DIRECTIONS[here.raw]} in this model, and an {_DIRECTIONS[there.raw]} in C++"
         yield Diagnostic(_RULE, here.span, message, related, fixes=(fix,))
-    if port.type is not None and known.type is not None and not may_be_one_type(known.type, port.type):
-        fix = replace_fix(f"Replace `{port.type.text}` with `{known.type.text}`", port.type.span, known.type.raw)
-        message = f"the type of the port {name} is `{port.type.text}` in this model, and `{known.type.text}` in C++"
+    if port.type is not None and in_code.type is not None and not may_be_one_type(in_code.type, port.type):
+        fix = replace_fix(f"Replace `{port.type.text}` with `{in_code.type.text}`", port.type.span, in_code.type.raw)
+        message = f"the type of the port {name} is `{port.type.text}` in this model, and `{in_code.type.text}` in C++"
         yield Diagnostic(_RULE, port.type.span, message, related, fixes=(fix,))
 
 

@@ -8,6 +8,7 @@ that several `#if` branches define, the first one that may is taken.
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final, TypeAlias
 
@@ -50,20 +51,21 @@ class Registering(Record):
 
 def macros_in(path: str, text: str) -> tuple[Macro, ...]:
     """The macros that a file defines."""
-    found: list[Macro] = []
-    end_of_file = text.count("\n") + 1
+    macros: list[Macro] = []
     for match in _DIRECTIVE.finditer(text) if "#" in text else ():
         row = text.count("\n", 0, match.end())
         if match["undefined"]:
-            ended = [each for each in found if each.name == match["undefined"] and each.rows.stop == end_of_file]
+            ended = [each for each in macros if each.name == match["undefined"] and each.rows.stop == _END]
             for each in ended:
-                found[found.index(each)] = Macro(path, each.name, each.parameters, each.body, range(each.rows[0], row))
+                macros[macros.index(each)] = Macro(
+                    path, each.name, each.parameters, each.body, range(each.rows[0], row)
+                )
         elif match["name"]:
             listed = match["parameters"]
             parameters = None if listed is None else tuple(filter(None, map(str.strip, _plain(listed).split(","))))
             body = _plain(match["body"])
-            found.append(Macro(path, match["name"], parameters, body, range(row, end_of_file)))
-    return tuple(found)
+            macros.append(Macro(path, match["name"], parameters, body, range(row, _END)))
+    return tuple(macros)
 
 
 class Macros:
@@ -162,7 +164,7 @@ class Expanded:
         every = self._macros[name]
         choice = [each for each in every if each.path == self._path and row in each.rows]
         if not choice:
-            others = [each for each in every if each.path != self._path]
+            others = [each for each in every if each.path != self._path and each.rows.stop == _END]
             included = [each for each in others if each.path.rpartition("/")[2] in self._original]
             choice = included or [each for each in others if not each.path.endswith(_OF_ONE_FILE)]
         choice = [each for each in choice if MATTERS(each.body)] or choice
@@ -202,7 +204,7 @@ class Expanded:
                 yield _quoted(values[after])
                 at += 1
             elif (token, after) == (",", "##") and not values.get(next_but_one, "?"):
-                at += 2  # `, ##__VA_ARGS__` with nothing behind it
+                at += 2  # `, ##__VA_ARGS__` without arguments
             elif token in values:
                 is_pasted = "##" in (before, after)
                 yield values[token] if is_pasted else self._rescanned(values[token], within, place)
@@ -253,7 +255,7 @@ def _is_wanted(macro: Macro) -> bool:
 
 def _arguments(text: str, at: int) -> tuple[list[str] | None, int]:
     """What is given in the brackets at an offset, and where they end; None if there are none."""
-    found: list[str] = []
+    given: list[str] = []
     depth, begin = 0, at
     for match in _TOKEN.finditer(text, at):
         sign = match[0]
@@ -267,10 +269,10 @@ def _arguments(text: str, at: int) -> tuple[list[str] | None, int]:
         elif sign in (")", "]", "}"):
             depth -= 1
         if (sign == "," and depth == 1) or depth == 0:
-            found.append(_plain(text[begin : match.start()]))
+            given.append(_plain(text[begin : match.start()]))
             begin = match.end()
         if depth == 0:
-            return found, match.end()
+            return given, match.end()
     return None, at
 
 
@@ -296,6 +298,7 @@ def _quoted(text: str) -> str:
     return f'"{escaped}"'
 
 
+_END: Final = sys.maxsize  # of a file
 _STRING: Final = r'R"(?P<mark>[^()\s"]*)\(.*?\)(?P=mark)"|"(?:\\.|[^"\\\n])*"'
 _TOKENS: Final = (
     rf"//[^\n]*|/\*.*?\*/|{_STRING}|'(?:\\.|[^'\\\n])+'"

@@ -84,10 +84,10 @@ class PortsReader:
 
     def _of_library(self, bound: Bound, place: Place) -> Ports | None:
         """The ports of a class of a known library; None for any other."""
-        known = self.sources.library_ports(bound, place)
-        if known is None:
+        provided = self.sources.library_ports(bound, place)
+        if provided is None:
             return None
-        ports, others = known
+        ports, others = provided
         if others:
             name = bound.name.rpartition("::")[2]
             what_to_do = 'name the distribution of Nav2 in the project file: `nodes = ["nav2-jazzy", …]`'
@@ -118,10 +118,10 @@ class PortsReader:
 
     def constant(self, name: str, frame: Frame) -> Ports | None:
         """The ports that a constant outside of a function is; None if it is anything else."""
-        found = self.sources.constant(substituted(name, frame.meanings), frame.bound, frame.scope, frame.path)
-        if found is None or frame.depth > _DEEPEST:
+        constant = self.sources.constant(substituted(name, frame.meanings), frame.bound, frame.scope, frame.path)
+        if constant is None or frame.depth > _DEEPEST:
             return None
-        value, scope, path = found
+        value, scope, path = constant
         return Body(self, Frame(frame.bound, scope, path, frame.depth + 1)).evaluated(value)
 
     def class_ports(self, scope: str, frame: Frame, call: Node) -> Ports:

@@ -56,10 +56,10 @@ class Uses:
     def of_function(cls, sources: Sources, given: Node, frame: Frame) -> Uses:
         """What a function does that a node is made of: a lambda, or the name of one or of a function."""
         uses = cls(sources)
-        found = _function(sources, given, frame)
-        uses.complete = found is not None and not _is_handed_on(found[0])
-        if found is not None:
-            uses._read(*found)
+        function = _function(sources, given, frame)
+        uses.complete = function is not None and not _is_handed_on(function[0])
+        if function is not None:
+            uses._read(*function)
         return uses
 
     def unread(self, ports: Iterable[CppPort]) -> tuple[CppPort, ...]:

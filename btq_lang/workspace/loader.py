@@ -221,16 +221,16 @@ def without_tests(paths: Iterable[str], top: str, named: Container[str] = ()) ->
         named: the names of folders that are not left out.
     """
     top = top.rstrip("/")
-    known = {top: False}
+    left_out = {top: False}
 
     def is_left_out(folder: str) -> bool:
-        if folder not in known:
+        if folder not in left_out:
             above, _, name = folder.rpartition("/")
             is_of_colcon = name in _OF_COLCON and all(os.path.isdir(f"{above}/{each}") for each in _OF_COLCON)
             is_skipped = is_of_colcon or name in _SKIPPED_FOLDERS or name in _FOLDERS_OF_TESTS
             is_ignored = (is_skipped and name not in named) or os.path.exists(f"{folder}/COLCON_IGNORE")
-            known[folder] = is_left_out(above) or is_ignored
-        return known[folder]
+            left_out[folder] = is_left_out(above) or is_ignored
+        return left_out[folder]
 
     return tuple(path for path in paths if not is_left_out(os.path.dirname(path)))
 
