@@ -7,7 +7,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
 
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
-    kinds.py, names.py, ports.py, children.py, one_parent.py, own_lines.py   what the engine would refuse
+    kinds.py, names.py, ports.py, stale_models.py, children.py, one_parent.py, own_lines.py   what the engine would refuse
     trees.py, includes.py, elements.py, missing_ids.py   likewise, of whole trees and files
     positional.py, literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
     entries.py, pointers.py, writers.py, keys.py, misspelt.py, mixed_types.py   blackboard entries
@@ -56,6 +56,7 @@ from btq_lang.checks import (
     requirements,
     resets,
     scripts,
+    stale_models,
     trees,
     unreachable,
     unread,
@@ -83,6 +84,7 @@ _OF_MODELS: tuple[Check, ...] = (
     elements.refused_element,
     elements.ignored_element,
     kinds.duplicate_definition,
+    stale_models.stale_model,
     ports.duplicate_attribute,
     *_OF_PORTS,
     literals.number_for_text,

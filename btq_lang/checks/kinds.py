@@ -214,7 +214,11 @@ def duplicate_definition(view: View) -> Iterator[Diagnostic]:
             both = Related(first.place, COUNTS), Related(second.place, SECOND)
             yield _second(second.symbol, view.head, both, "this file includes a second definition of")
     for symbol, other, counts in view.repeated(*_DEFINED_ONCE):
-        if _is_same_model(other.symbol, symbol) or _is_of_node(view, other, symbol):
+        if (
+            _is_same_model(other.symbol, symbol)
+            or _is_of_node(view, other, symbol)
+            or lookups.is_cpp(view.store, other.path)
+        ):
             continue
         only_one = f"Nav2 registers a node `{symbol.name}`, and a program can register only one"
         differing = ", ".join(differences(other.symbol, symbol))

@@ -104,8 +104,12 @@ def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Mean
 
 @of_name
 def ports_of_models(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> tuple[tuple[Port, ...], ...]:
-    """The ports of each model of a node in scope, else of the one that it has in the pool."""
+    """The ports of each model of a node in scope, of the first alone if it is C++ whose ports are all seen, else of the
+    one that it has in the pool."""
     found = workspace.scope(viewpoint).all(kind, name) or (workspace.find(viewpoint, kind, name),)
+    first = workspace.files[found[0].path].origin if found[0] is not None else None
+    if first is not None and first.nodes is not None and first.nodes[name].complete:
+        found = found[:1]
     targets = [each.symbol.target for each in found if each is not None]
     return tuple([target.ports for target in targets if isinstance(target, Model)])
 
@@ -448,6 +452,12 @@ def has_torn_tree(workspace: Workspace, viewpoint: str) -> bool:
 def origin(workspace: Workspace, viewpoint: str) -> Origin | None:
     """The file on the disk, if it is written in another language."""
     return workspace.files[viewpoint].origin
+
+
+@of_viewpoint
+def is_cpp(workspace: Workspace, viewpoint: str) -> bool:
+    """Whether the file is C++, which registers the nodes that it has models of."""
+    return workspace.files[viewpoint].is_cpp
 
 
 @of_viewpoint

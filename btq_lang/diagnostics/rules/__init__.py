@@ -127,6 +127,7 @@ _TABLE: tuple[str | Rule, ...] = (  # a string is the subject of the rules below
     "Nodes in C++",
     Rule("undeclared-port-in-cpp", _W, "a port that C++ code reads or writes, and its node does not provide"),
     Rule("unused-port-in-cpp", _W, "a port that a node in C++ provides, and its code never names"),
+    Rule("stale-model", _W, "a model that says otherwise of a node than the C++ that registers it"),
     Rule("unseen-in-cpp", _H, "C++ code from which btq cannot see which nodes or ports there are"),
     "Trees and files",
     Rule("unknown-tree", _E, "a SubTree whose tree does not exist"),
