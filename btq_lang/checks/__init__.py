@@ -14,7 +14,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
-    resets.py, unread.py   nodes of Nav2: trees for goals, and traps
+    nav2_nodes.py, isolated.py, shared_servers.py, resets.py, unread.py   nodes of Nav2: trees for goals, and traps
     measures.py, clauses.py, bounds.py, limits.py   requirements by themselves
     requirements.py, qualities.py, repeated.py, prose.py   names of requirements and qualities
     demanded.py, demands.py, budgets.py, signals.py, renewals.py, unenforced.py   requirements at their nodes
@@ -36,6 +36,7 @@ from btq_lang.checks import (
     elements,
     empty,
     includes,
+    isolated,
     keys,
     kinds,
     literals,
@@ -56,6 +57,7 @@ from btq_lang.checks import (
     requirements,
     resets,
     scripts,
+    shared_servers,
     trees,
     unreachable,
     unread,
@@ -170,6 +172,8 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         preconditions.skipped_condition,
         unreachable.unreachable_child,
         unread.tree_of_goal,
+        isolated.isolated_node,
+        shared_servers.shared_server,
         resets.memory_lost,
         resets.last_success_lost,
         unread.default_instead,

@@ -26,6 +26,17 @@ EXPECTED = {
         "p.yaml:3:33: warning[missing-nav2-tree] cannot find the tree `follow_point.xml`: a relative path counts "
         "from the folder in which bt_navigator runs",
     ],
+    "sub_noremap": [
+        "t.xml:9:20: error[isolated-node] `DriveOnHeading` cannot be created in the tree `Sub`: this SubTree does not "
+        "pass `node`, `wait_for_service_timeout`, `bt_loop_duration`",
+    ],
+    "persistent-sequence": [
+        "t.xml:3:6: error[missing-port] `PersistentSequence` requires a value for its port `current_child_idx`",
+    ],
+    "two-follow-path": [
+        "t.xml:7:10: warning[shared-server] `FollowPath` calls the server `follow_path`, as another child of "
+        "`Parallel` does",
+    ],
     "emptyxml": ["p.yaml:4:33: hint[missing-nav2-tree] cannot find the tree ``: it is empty"],
 }
 

@@ -207,6 +207,8 @@ _TABLE: tuple[str | Rule, ...] = (  # a string is the subject of the rules below
     Rule("while-skip-is-success", _W, "`_while` halts the node and the parent continues as if it had succeeded"),
     Rule("memory-lost", _W, "a node that needs its memory, below one that resets it before it ticks it again"),
     Rule("last-success-lost", _W, "a node that fails after its last child, even if that succeeds"),
+    Rule("isolated-node", _E, "a SubTree that does not pass the entries that nodes of Nav2 need to be created"),
+    Rule("shared-server", _W, "two nodes of Nav2 that may call one action server at the same time"),
     Rule("default-instead", _W, "a value that a node never reads, so that its default counts"),
     Rule(
         "error-code-not-collected", _H, "an error code in an entry that neither a node nor the result of a goal reads"
