@@ -63,6 +63,7 @@ from btq_lang.checks import (
     unread,
     version3,
 )
+from btq_lang.checks.engines import is_newer_than_engine
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.diagnostics.rules import Severity
@@ -333,7 +334,19 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
         )
         for facts in lookups.items(store, viewpoint)
     ]
-    return tuple([each for each in found if each is not None])
+    wrong = tuple([each for each in found if each is not None])
+    is_refused = version3.refuses([one for each in wrong for one in each.diagnostics])
+    return (_newer(store, viewpoint) if is_refused and store.ask(is_newer_than_engine, viewpoint) else ()) or wrong
+
+
+def _newer(store: Store[Workspace], viewpoint: str) -> tuple[Reported, ...]:
+    """The only finding of a file for version 4 that version 3 refuses; none if the project does not select it."""
+    root = next((facts for facts in lookups.items(store, viewpoint) if type(facts.item) is syntax.Root), None)
+    if root is None:
+        return ()
+    view = View(store, viewpoint, root)
+    wanted = tuple(configured(view.project, viewpoint, (version3.version_4_file(view),)))
+    return (Reported(wanted, (viewpoint, root.item)),) if wanted else ()
 
 
 def _reported(

@@ -106,6 +106,7 @@ _TABLE: tuple[str | Rule, ...] = (  # a string is the subject of the rules below
     Rule("invalid-literal", _E, "a value that the port's type does not accept"),
     Rule("trailing-text-in-number", _W, "text after a number that the engine drops silently"),
     Rule("version-3-file", _W, "XML for version 3 of the engine in a project that does not say so"),
+    Rule("version-4-file", _E, "XML for version 4 of the engine in a project whose engine is version 3"),
     Rule("old-entry", _W, "`${key}`, which is an entry only to version 3 of the engine"),
     Rule("json-in-braces", _W, "JSON in braces, which the engine reads as the name of an entry"),
     Rule("key-in-braces", _W, "the name of an entry in braces, where the node reads the name from that entry"),
