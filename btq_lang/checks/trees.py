@@ -41,6 +41,8 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
     for use in view.uses(Kind.TREE):
         if use.name == "" or view.defines(Kind.TREE, use.name) or view.is_pooled(Kind.TREE, use.name):
             continue
+        if use.name in view.project.external:
+            continue
         if not view.is_complete or view.look_up(lookups.has_torn_tree):
             return
         if view.is_xml and view.look_up(lookups.is_tree_of_mission, use.name):
@@ -54,6 +56,11 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
         if use.node is not None and (use.name in BUILTINS or (model is not None and not _is_subtree_model(model))):
             message = f"`{use.name}` is a node, not a tree"
             fixes = _as_node(use)
+        elif view.project.product:
+            if likely:
+                notes = (f"unless {view.project.product} provides a tree of this name",)
+                yield Diagnostic("unknown-tree", use.span, message, notes=notes, fixes=fixes, severity=Severity.HINT)
+            continue
         yield Diagnostic("unknown-tree", use.span, message, fixes=fixes)
 
 
