@@ -6,6 +6,7 @@ Sources: `catalog/nav2/creation.py`; what BehaviorTree.CPP 3.8.7 and 4.10.0 do w
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.versions import is_before_4
@@ -15,9 +16,11 @@ from btq_lang.checks.pointers import passed_on
 from btq_lang.checks.ports import adding_fix
 from btq_lang.checks.view import View, ports_beside
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.workspace.queries import Store, on_circle
+from btq_lang.workspace.queries import Store, hub, on_circle
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
+
+_InTree: TypeAlias = "tuple[tuple[tuple[str, str], ...], tuple[tuple[str, tuple[tuple[str, str], ...]], ...]]"
 
 
 def isolated_node(view: View) -> Iterator[Diagnostic]:
@@ -44,13 +47,25 @@ def isolated_node(view: View) -> Iterator[Diagnostic]:
 @on_circle(())
 def _needed(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[tuple[str, str], ...]:
     """The entries that a tree must have to be created, each with the first node that takes it."""
+    own, below = store.ask(_in_tree, viewpoint, tree)
+    needed = dict(own)
+    for called, passed in below:
+        names = dict(passed)
+        for entry, name in store.ask(_needed, viewpoint, called):
+            needed.setdefault(names.get(entry, entry), name)  # what it does not pass, it is to pass
+    return tuple(needed.items())
+
+
+@hub
+def _in_tree(store: Store[Workspace], viewpoint: str, tree: str) -> _InTree:
+    """What the nodes of a tree itself take, and the trees that it runs, each with the entries that it renames."""
     from btq_lang.catalog.nav2.creation import created_with  # only for Nav2
 
     view = View(store, viewpoint)
     distribution = view.look_up(lookups.distribution)
     definition = view.definition(Kind.TREE, tree)
     if distribution is None or definition is None:
-        return ()
+        return (), ()
     nodes = view.seen_in(*definition)
     needed: dict[str, str] = {}
     for seen, name, _ in of_nav2(view, distribution, nodes.all):
@@ -58,10 +73,15 @@ def _needed(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[tuple[s
         for entry in created_with(distribution, name, ports):
             needed.setdefault(entry, name)
     is_old = is_before_4(view.target)
-    for seen in nodes.subtrees:
-        for entry, name in view.ask(_needed, seen.node.id.text) if seen.node.id is not None else ():
-            needed.setdefault(_passed(seen, entry, is_old) or entry, name)  # what it does not pass, it is to pass
-    return tuple(needed.items())
+    below = [(seen.node.id.text, tuple(_renamed(seen, is_old))) for seen in nodes.subtrees if seen.node.id is not None]
+    return tuple(needed.items()), tuple(below)
+
+
+def _renamed(seen: ResolvedNode, is_old: bool) -> Iterator[tuple[str, str]]:
+    """The entries that a SubTree passes under another name."""
+    for pair in seen.node.attributes:
+        if passed := _passed(seen, pair.key.text, is_old):
+            yield pair.key.text, passed
 
 
 def _passed(seen: ResolvedNode, entry: str, is_old: bool) -> str | None:

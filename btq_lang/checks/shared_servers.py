@@ -11,10 +11,11 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.nav2_nodes import of_distribution
+from btq_lang.checks.sorted_nodes import NO_NODES
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.util.reach import reached
-from btq_lang.workspace.queries import Store, on_circle
+from btq_lang.workspace.queries import Store, hub, on_circle
 from btq_lang.workspace.resolved import ResolvedNode
 from btq_lang.workspace.workspace import Workspace
 
@@ -68,7 +69,17 @@ def _calls(view: View, seen: ResolvedNode) -> tuple[tuple[str, str], ...]:
 @on_circle(())
 def _called(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[tuple[str, str], ...]:
     """The servers that the nodes of a tree and of those that it runs call."""
+    calls, trees = store.ask(_in_tree, viewpoint, tree)
+    below = (call for each in trees for call in store.ask(_called, viewpoint, each))
+    return tuple(dict.fromkeys((*calls, *below)))
+
+
+@hub
+def _in_tree(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[tuple[tuple[str, str], ...], tuple[str, ...]]:
+    """The servers that the nodes of a tree itself call, and the trees that it runs."""
     view = View(store, viewpoint)
     definition = view.definition(Kind.TREE, tree)
-    nodes = view.seen_in(*definition).all if definition is not None else ()
-    return tuple(dict.fromkeys(call for seen in nodes for call in _calls(view, seen)))
+    nodes = view.seen_in(*definition) if definition is not None else NO_NODES
+    calls = dict.fromkeys(call for seen in nodes.all if not seen.is_subtree for call in _calls(view, seen))
+    trees = dict.fromkeys(seen.node.id.text for seen in nodes.subtrees if seen.node.id is not None)
+    return tuple(calls), tuple(trees)
