@@ -14,7 +14,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
-    resets.py, unread.py   nodes of Nav2: trees for goals, and traps
+    nav2_nodes.py, isolated.py, shared_servers.py, resets.py, unread.py   nodes of Nav2: trees for goals, and traps
     measures.py, clauses.py, bounds.py, limits.py   requirements by themselves
     requirements.py, qualities.py, repeated.py, prose.py   names of requirements and qualities
     demanded.py, demands.py, budgets.py, signals.py, renewals.py, unenforced.py   requirements at their nodes
@@ -36,6 +36,7 @@ from btq_lang.checks import (
     elements,
     empty,
     includes,
+    isolated,
     keys,
     kinds,
     literals,
@@ -56,12 +57,14 @@ from btq_lang.checks import (
     requirements,
     resets,
     scripts,
+    shared_servers,
     stale_models,
     trees,
     unreachable,
     unread,
     version3,
 )
+from btq_lang.checks.engines import is_newer_than_engine
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.diagnostics.rules import Severity
@@ -172,6 +175,8 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         preconditions.skipped_condition,
         unreachable.unreachable_child,
         unread.tree_of_goal,
+        isolated.isolated_node,
+        shared_servers.shared_server,
         resets.memory_lost,
         resets.last_success_lost,
         unread.default_instead,
@@ -331,7 +336,19 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
         )
         for facts in lookups.items(store, viewpoint)
     ]
-    return tuple([each for each in found if each is not None])
+    wrong = tuple([each for each in found if each is not None])
+    is_refused = version3.refuses([one for each in wrong for one in each.diagnostics])
+    return (_newer(store, viewpoint) if is_refused and store.ask(is_newer_than_engine, viewpoint) else ()) or wrong
+
+
+def _newer(store: Store[Workspace], viewpoint: str) -> tuple[Reported, ...]:
+    """The only finding of a file for version 4 that version 3 refuses; none if the project does not select it."""
+    root = next((facts for facts in lookups.items(store, viewpoint) if type(facts.item) is syntax.Root), None)
+    if root is None:
+        return ()
+    view = View(store, viewpoint, root)
+    wanted = tuple(configured(view.project, viewpoint, (version3.version_4_file(view),)))
+    return (Reported(wanted, (viewpoint, root.item)),) if wanted else ()
 
 
 def _reported(

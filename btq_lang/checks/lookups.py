@@ -379,6 +379,13 @@ def main_trees(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
 
 
 @of_viewpoint
+def is_in_cpp(workspace: Workspace, viewpoint: str, name: str) -> bool:
+    """Whether C++ that the project names has a string with this text: its program may create a tree of the name, or
+    replace it."""
+    return any(file.is_cpp and f'"{name}"' in file.source for file in workspace.files.values())
+
+
+@of_viewpoint
 def is_first_registered(workspace: Workspace, viewpoint: str) -> bool:
     """Whether this file is the first one in scope that has trees."""
     paths = workspace.scope(viewpoint).paths

@@ -114,8 +114,8 @@ def missing_port(view: View) -> Iterator[Diagnostic]:
                 *as_value,
             ),
             fixes=(*to_port, *_passing_on(view, seen, missing)),
-            # Only the robot's program knows whether it requires an input.
-            severity=None if seen.kind or seen.is_subtree else Severity.WARNING,
+            # Only the robot's program knows whether it requires an input, except for what is known of Nav2.
+            severity=None if seen.kind or seen.is_subtree or _throwing(seen) else Severity.WARNING,
         )
 
 
@@ -268,7 +268,16 @@ def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
         return KnownPorts(tuple(ports)) if ports else None
     if seen.kind is not None:
         return _builtin_ports(seen.kind.tag, is_before_4(view.target))
-    return view.ask(_model_ports, seen.id.text) if seen.is_defined and seen.id is not None else None
+    known = view.ask(_model_ports, seen.id.text) if seen.is_defined and seen.id is not None else None
+    if known is None or not (throws := _throwing(seen)):
+        return known
+    return KnownPorts(tuple([replace(port, required=port.required or port.name in throws) for port in known.all]))
+
+
+def _throwing(seen: ResolvedNode) -> tuple[str, ...]:
+    """The ports without which a node of Nav2 is known to throw."""
+    behavior = seen.behavior if seen.kind is None else None
+    return tuple([port.name for port in behavior.ports if port.required]) if behavior is not None else ()
 
 
 def _may_have_more(view: View, seen: ResolvedNode) -> bool:

@@ -43,6 +43,8 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
     for use in view.uses(Kind.TREE):
         if use.name == "" or view.defines(Kind.TREE, use.name) or view.is_pooled(Kind.TREE, use.name):
             continue
+        if use.name in view.project.external:
+            continue
         if not view.is_complete or view.look_up(lookups.has_torn_tree):
             return
         if view.is_xml and view.look_up(lookups.is_tree_of_mission, use.name):
@@ -56,6 +58,11 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
         if use.node is not None and (use.name in BUILTINS or (model is not None and not _is_subtree_model(model))):
             message = f"`{use.name}` is a node, not a tree"
             fixes = _as_node(use)
+        elif view.project.product:
+            if likely:
+                notes = (f"unless {view.project.product} provides a tree of this name",)
+                yield Diagnostic("unknown-tree", use.span, message, notes=notes, fixes=fixes, severity=Severity.HINT)
+            continue
         yield Diagnostic("unknown-tree", use.span, message, fixes=fixes)
 
 
@@ -154,10 +161,14 @@ def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
     names = f"{', '.join(shown[:-1])} or {shown[-1]}" if len(tops) <= _MOST_NAMES else f"{', '.join(shown)}, …"
     way = '`main_tree_to_execute="…"` of <root>' if view.is_xml else "a line `Root <tree>`"
     message = f"ambiguous main tree: no other tree refers to {names}"
-    notes = (f"name the main tree with {way}",)
+    notes: tuple[str, ...] = (f"name the main tree with {way}",)
+    created = [name for name in tops if view.look_up(lookups.is_in_cpp, name)]
+    if created:
+        notes = (*notes, f"C++ of the project has the name `{created[0]}`, and may create that tree")
     others = [view.declared_at(Kind.TREE, name, "another tree without a reference") for name in tops[1:_MOST_NAMES]]
     fixes = tuple(_main_tree_fix(view, name) for name in tops[:3])
-    yield Diagnostic("unknown-main-tree", view.head, message, tuple(chain(*others)), notes, fixes)
+    severity = Severity.HINT if created else None
+    yield Diagnostic("unknown-main-tree", view.head, message, tuple(chain(*others)), notes, fixes, severity=severity)
 
 
 def _missing_main_trees(view: View, factory: Factory) -> Iterator[Diagnostic]:

@@ -28,7 +28,7 @@ MAIN = """\
       <ComputePathToPose goal="{target}" path="{path}"/>
       <FollowPath path="{path}"/>
       <DockRobot dock_pose="{targt}"/>
-      <SubTree ID="Dock"/>
+      <SubTree ID="Dock" _autoremap="true"/>
     </Sequence>
   </BehaviorTree>
 </root>

@@ -106,6 +106,7 @@ _TABLE: tuple[str | Rule, ...] = (  # a string is the subject of the rules below
     Rule("invalid-literal", _E, "a value that the port's type does not accept"),
     Rule("trailing-text-in-number", _W, "text after a number that the engine drops silently"),
     Rule("version-3-file", _W, "XML for version 3 of the engine in a project that does not say so"),
+    Rule("version-4-file", _E, "XML for version 4 of the engine in a project whose engine is version 3"),
     Rule("old-entry", _W, "`${key}`, which is an entry only to version 3 of the engine"),
     Rule("json-in-braces", _W, "JSON in braces, which the engine reads as the name of an entry"),
     Rule("key-in-braces", _W, "the name of an entry in braces, where the node reads the name from that entry"),
@@ -208,6 +209,8 @@ _TABLE: tuple[str | Rule, ...] = (  # a string is the subject of the rules below
     Rule("while-skip-is-success", _W, "`_while` halts the node and the parent continues as if it had succeeded"),
     Rule("memory-lost", _W, "a node that needs its memory, below one that resets it before it ticks it again"),
     Rule("last-success-lost", _W, "a node that fails after its last child, even if that succeeds"),
+    Rule("isolated-node", _E, "a SubTree that does not pass the entries that nodes of Nav2 need to be created"),
+    Rule("shared-server", _W, "two nodes of Nav2 that may call one action server at the same time"),
     Rule("default-instead", _W, "a value that a node never reads, so that its default counts"),
     Rule(
         "error-code-not-collected", _H, "an error code in an entry that neither a node nor the result of a goal reads"
