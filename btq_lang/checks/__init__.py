@@ -7,8 +7,8 @@ which caches results from one edit to the next.  Not known here: what an edit ch
 
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
-    kinds.py, names.py, ports.py, stale_models.py, children.py, one_parent.py, own_lines.py   what the engine would refuse
-    trees.py, includes.py, elements.py, missing_ids.py   likewise, of whole trees and files
+    kinds.py, names.py, ports.py, children.py, one_parent.py, own_lines.py   what the engine would refuse
+    trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
     positional.py, literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
     entries.py, pointers.py, writers.py, keys.py, misspelt.py, mixed_types.py   blackboard entries
     engines.py, version3.py   which versions of the engine a file is for
