@@ -46,8 +46,8 @@ def _input(
 
     def declare(read: Callable[Concatenate[Workspace, P], T]) -> Callable[Concatenate[Store[Workspace], P], T]:
         @wraps(read)
-        def ask(store: Store[Workspace], /, *key: P.args, **_: P.kwargs) -> T:
-            return store.read(topic(*key), read, *key)
+        def ask(store: Store[Workspace], /, *key: P.args, **named: P.kwargs) -> T:
+            return store.read(topic(*key), read, *key, **named)
 
         return ask
 
