@@ -257,7 +257,8 @@ def check_each(workspace: Workspace, paths: Iterable[str]) -> Iterator[tuple[Dia
     store = Store(workspace)
     for path in paths:
         yield findings(store, path).diagnostics
-        store.sweep()
+        if workspace.factory is None:  # else other files need most of the same
+            store.sweep()
     store.sweep(always=True)  # cached results refer to each other, and so to the workspace
 
 

@@ -20,6 +20,7 @@ from btq_lang.checks.view import View, port_of
 from btq_lang.syntax.tree import Pair, Signal, Tree, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
+from btq_lang.workspace.inputs import of_scope
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
@@ -49,11 +50,13 @@ class Mention(Record):
     in_script: bool
 
 
+@of_scope
 def mentions(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> tuple[Mention, ...]:
     """Every name of an entry in a tree, in document order."""
     return tuple(_mentions(View(store, viewpoint), path, tree))
 
 
+@of_scope
 def blackboards(store: Store[Workspace], viewpoint: str) -> Blackboards:
     """The entries of the trees in scope."""
     return Blackboards(View(store, viewpoint))
@@ -176,6 +179,7 @@ class Blackboards:
         return name
 
 
+@of_scope
 def _handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
     view = View(store, viewpoint)
     found = view.definition(Kind.TREE, tree)
