@@ -11,6 +11,7 @@ which caches results from one edit to the next.  Not known here: what an edit ch
     trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
     positional.py, literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
     entries.py, pointers.py, writers.py, keys.py, misspelt.py, mixed_types.py   blackboard entries
+    flow.py, unset.py, arguments.py   entries across trees: what is read that nothing sets, given that nothing reads
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
@@ -28,6 +29,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
 from btq_lang.checks import (
+    arguments,
     bounds,
     children,
     clauses,
@@ -62,6 +64,7 @@ from btq_lang.checks import (
     trees,
     unreachable,
     unread,
+    unset,
     version3,
 )
 from btq_lang.checks.engines import is_newer_than_engine
@@ -84,6 +87,7 @@ _OF_PORTS: tuple[Check, ...] = (
     literals.invalid_literal,
 )
 _OF_MODELS: tuple[Check, ...] = (
+    arguments.unread_port,
     elements.refused_element,
     elements.ignored_element,
     kinds.duplicate_definition,
@@ -160,6 +164,9 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         placeholders.placeholder_clash,
         scripts.script_error,
         misspelt.misspelt_entry,
+        unset.unset_entry,
+        arguments.unread_argument,
+        arguments.unread_port,
         requirements.unknown_requirement,
         requirements.conflicting_requirement,
         *_OF_CLAUSES,
@@ -264,7 +271,8 @@ def check_each(workspace: Workspace, paths: Iterable[str]) -> Iterator[tuple[Dia
     store = Store(workspace)
     for path in paths:
         yield findings(store, path).diagnostics
-        store.sweep()
+        if workspace.factory is None:  # else other files need most of the same
+            store.sweep()
     store.sweep(always=True)  # cached results refer to each other, and so to the workspace
 
 

@@ -233,6 +233,15 @@ def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tu
 
 
 @of_viewpoint
+def is_run_elsewhere(workspace: Workspace, viewpoint: str, tree: str) -> bool:
+    """Whether XML outside of an XML file's scope, which may be registered with it, runs a tree."""
+    if workspace.project.pool_of(viewpoint) is None or viewpoint not in workspace.xml:
+        return False
+    scope = workspace.scope(viewpoint).paths
+    return any(path not in scope and tree in workspace.files[path].said(Kind.TREE) for path in workspace.xml)
+
+
+@of_viewpoint
 def uses_of_tree(workspace: Workspace, viewpoint: str, name: str) -> tuple[Place, ...]:
     """Where the tree of a name is referred to, in whatever file."""
     meant = workspace.scope(viewpoint).find(Kind.TREE, name)

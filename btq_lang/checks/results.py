@@ -55,6 +55,7 @@ def results(view: View) -> Mapping[int, Results]:
 
 
 @on_circle(UNKNOWN)
+@inputs.of_scope
 def _of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> Results:
     """The possible results of a tree by its name; all, if it runs itself."""
     found = inputs.definition(store, viewpoint, Kind.TREE, tree)

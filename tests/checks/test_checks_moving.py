@@ -271,7 +271,7 @@ def test_what_a_file_for_version_3_meets_on_the_way_to_4_10() -> None:
       <Sequence ID="x"><Find/></Sequence>
     </SequenceStar>
   </BehaviorTree>
-  <BehaviorTree ID="Go on"><Find/></BehaviorTree>
+  <BehaviorTree ID="Go on"><Find at="{to}"/></BehaviorTree>
   <BehaviorTree ID="Go on"><Find/></BehaviorTree>
   <TreeNodesModel>
     <Action ID="Find"><output_port name="dock"/><input_port name="at" default="0"/></Action>

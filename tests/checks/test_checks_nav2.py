@@ -83,9 +83,11 @@ def test_a_failure_that_a_recovery_swallows() -> None:
 
 
 def test_only_what_may_run_on_restarts_what_runs_beside_it() -> None:
-    text = tree("R->", "    TruncatePathLocal (input_path = {p} output_path = {q})", "    FollowPath (path = {q})")
+    text = tree(
+        "R->", "    TruncatePathLocal (input_path = {goal} output_path = {goals})", "    FollowPath (path = {goals})"
+    )
     assert found(text, "jazzy") == []
-    text = text.replace("TruncatePathLocal (input_path = {p} output_path = {q})", "Spin")
+    text = text.replace("TruncatePathLocal (input_path = {goal} output_path = {goals})", "Spin")
     assert found(text, "jazzy") == [
         "4:9 hint reactive-multiple-async «FollowPath» if `Spin` takes longer than one tick, it restarts whenever "
         "`FollowPath` is RUNNING, and halts it"
@@ -454,7 +456,7 @@ def test_how_long_a_recovery_may_take() -> None:
     text = tree(
         "RecoveryNode (number_of_retries = 2)",
         "    satisfies QualityReq a takes at most 20 s",
-        "    FollowPath (path = {path}) satisfies QualityReq b takes at most 5 s",
+        "    FollowPath (path = {goal}) satisfies QualityReq b takes at most 5 s",
         "    Spin satisfies QualityReq c takes at most 3 s",
     )
     assert found(text, "jazzy") == [

@@ -26,7 +26,7 @@ IDIOMS = """\
       <Sequence ID="x"><Find/></Sequence>
     </SequenceStar>
   </BehaviorTree>
-  <BehaviorTree ID="Go on"><Find/></BehaviorTree>
+  <BehaviorTree ID="Go on"><Find at="{to}"/></BehaviorTree>
   <TreeNodesModel>
     <Action ID="Find"><output_port name="dock"/><input_port name="at" default="0"/></Action>
     <SubTree ID="Go on"><input_port name="to"/></SubTree>
