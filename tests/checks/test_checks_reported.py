@@ -218,7 +218,10 @@ def test_the_value_that_keeps_the_meaning_is_named(tmp_path: Path, spelling: str
         ("trees/03-assign-unknown-with-equals/t2.xml", ["4:21 warning uncreated-entry"]),
         ("trees/18-shared-blackboard-literal/t.xml", ["2:2 warning version-3-file", "17:102 warning unread-argument"]),
         ("trees/18-shared-blackboard-literal/t4.xml", ["17:46 warning unread-argument"]),
-        ("trees/27-subtree-does-not-share", ["5:25 warning unset-entry", "10:32 warning unset-entry"]),
+        (
+            "trees/27-subtree-does-not-share",
+            ["4:20 error isolated-node", "5:25 warning unset-entry", "10:32 warning unset-entry"],
+        ),
         ("trees/28-read-before-write/t.xml", ["4:22 hint unset-entry"]),
         (
             "trees/35-misspelt-subtree-argument/t.xml",
