@@ -91,10 +91,11 @@ def _unset(view: View, tree: str, named: Sequence[Mention], but: set[str]) -> It
             is_usual = mention.in_script and not view.look_up(lookups.outside_entries)  # programs set what scripts read
             if not (use & Use.STRANGE or is_usual or view.ask(_is_passed, tree, name)):
                 outside.append(mention)
-        elif not use & Use.STRANGE:
+        elif not use & Use.STRANGE and view.ask(_needs, tree, name):
             yield _not_given(view, tree, mention)
+    outside = [each for each in outside if view.ask(_needs, tree, each.name)]
     if outside and _is_known_root(view, tree):
-        yield from _never_set(view, tree, outside)
+        yield from _never_set(view, outside)
 
 
 def _lost(view: View, mention: Mention, writers: Sequence[ResolvedNode], use: Use) -> Diagnostic:
@@ -122,14 +123,12 @@ def _runs_without(store: Store[Workspace], viewpoint: str, tree: str, name: str)
     return view.declared_at(Kind.TREE, caller, f"runs `{tree}`") if caller is not None else ()
 
 
-def _never_set(view: View, tree: str, named: Sequence[Mention]) -> Iterator[Diagnostic]:
-    """Entries of the root blackboard: a warning each if it is known what the program sets and the node needs it; else a
-    hint for all."""
+def _never_set(view: View, named: Sequence[Mention]) -> Iterator[Diagnostic]:
+    """Entries of the root blackboard: a warning each if it is known what the program sets; else a hint for all."""
     if view.look_up(lookups.outside_entries):
         for each in named:
-            if view.ask(_needs, tree, each.name):
-                message = f"nothing writes `{each.name}` before it is read here, and bt_navigator does not set it"
-                yield Diagnostic("unset-entry", each.span, message)
+            message = f"nothing writes `{each.name}` before it is read here, and bt_navigator does not set it"
+            yield Diagnostic("unset-entry", each.span, message)
         return
     names = ", ".join(f"`{each.name}`" for each in named[:_MOST]) + (" …" if len(named) > _MOST else "")
     them = "it is" if len(named) == 1 else "they are"
