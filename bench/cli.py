@@ -23,11 +23,14 @@ from pathlib import Path
 
 import missions
 from btcpp_xml import built
+from factories import write_factory
 from report import ENVIRONMENT, Goal, as_data, machine, options, shown
 
 from btq_lang.btcpp.document import write
 
 FILES, NODES_A_FILE = 1_000, 50
+# Of two factories, files and bytes: what takes five times the text may take eight times the time.
+FACTORIES = {"36 XML files of 107 kB": (36, 107_000), "43 XML files of 537 kB": (43, 537_000)}
 OTHERS = 5_000  # XML files that are not the engine's
 PACKAGE = """<?xml version="1.0"?>
 <package format="3">
@@ -93,6 +96,10 @@ def commands(folder: Path, btq: tuple[str, ...]) -> list[Command]:
         Command("btq check, 1 000 XML files, 1 job", (*btq, "check", "--jobs", "1", str(folder / "xml")), many=True),
         Command("btq check, 1 file", (*btq, "check", str(folder / "alone")), many=True),
         Command("btq check, 1 file and 5 000 of other XML", (*btq, "check", str(folder / "others")), many=True),
+        *(
+            Command(f"btq check, a factory of {name}", (*btq, "check", "--jobs", "1", str(folder / name)), many=True)
+            for name in FACTORIES
+        ),
         Command("btq trace, 10 000 nodes, HTML", (*btq, "trace", "--format", "html", large), many=True),
         Command("btq graph, 10 000 nodes, SVG", (*btq, "graph", "--qualities", large), many=True),
     ]
@@ -174,6 +181,8 @@ def _write_missions(folder: Path, spelling: missions.Spelling) -> None:
     for name in ("alone", "others"):
         (folder / name).mkdir()
         (folder / name / "mission.btq").write_text(text, encoding="utf-8")
+    for name, (files, size) in FACTORIES.items():
+        write_factory(folder / name, files, size)
     for number in range(OTHERS):
         package = folder / "others" / f"package{number // 50}"
         package.mkdir(exist_ok=True)
@@ -223,6 +232,9 @@ def compare(measured: Sequence[Command]) -> list[Goal]:
     if alone is not None and others is not None:
         rate = OTHERS / (others - alone)
         goals.append(Goal("other XML passed over: files a second of processor >= 5 000", rate, rate >= 5_000))
+    few, many = (cpu.get(f"btq check, a factory of {name}") for name in FACTORIES)
+    if few is not None and many is not None:
+        goals.append(Goal("five times the XML of a factory, in times of it <= 8", many / few, many / few <= 8))
     if one is not None and two is not None:
         goals.append(Goal("the same, 2 jobs, in times of one <= 0.6", two / one, two / one <= 0.6))
     return goals

@@ -203,7 +203,8 @@ def workspace_of(files: Mapping[str, str], project: Project | None = None) -> Wo
     cpp = {path: text for path, text in files.items() if path.endswith(CPP_SUFFIXES)}
     read = CppFiles().files(cpp)[1] if cpp else {}
     known = {path: read[path] if path in read else file_of(path, text) for path, text in files.items()}
-    return Workspace(known, project or Project())
+    project = project or Project()
+    return Workspace(known, replace(project, node_files=tuple(dict.fromkeys((*project.node_files, *read)))))
 
 
 def split_files(text: str, name: str = "main.btq") -> dict[str, str]:

@@ -36,6 +36,9 @@ def exact_edits(file: File, edit: Edit) -> tuple[Edit, ...] | None:
         replaced = Span(replaced.start + 1, replaced.end - 1)
     for start, end, begin, stop in origin.places.containing(replaced):
         old = file.text[start:end]
+        if is_string and old == said and xml[begin - 1 : stop] == f"<{said[1:-1]}":  # in quotes here alone
+            ends = [Span(begin, stop), *closing_name(xml, begin, said[1:-1])] if _is_tag(edit.text, edit.text) else []
+            return tuple(Edit(span, edit.text) for span in ends) or None
         if replaced.start < replaced.end and old == xml[begin:stop]:
             new = file.text[start : replaced.start] + edit.text + file.text[replaced.end : end]
             if not new or _SPECIAL.search(new):

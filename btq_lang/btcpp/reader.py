@@ -287,7 +287,10 @@ class _Reader:
         text, size = self.text, len(self.text)
         name = _NAME(text, start + (2 if text.startswith("</", start) else 1))
         if name is None:
-            self.broken(Span(start, start + 1), "unexpected `<`: no tag begins here", "write the character as &lt;")
+            note = "write the character as &lt;"
+            if self.text.startswith("--", start + 1) or self.text.startswith("!-", start + 1):
+                note = "a comment is written <!-- … -->"
+            self.broken(Span(start, start + 1), "unexpected `<`: no tag begins here", note)
         at = name.end()
         while True:
             at = _SPACE(text, at).end()  # type: ignore[union-attr]  # it matches nothing at least

@@ -40,7 +40,7 @@ ROS_PORTS: Final = {
     "RosTopicPubNode": ("topic_name", "Topic name"),
     "RosTopicSubNode": ("topic_name", "Topic name"),
 }
-# Of behaviortree_ros2 and nav2_behavior_tree; the latter have ports, which differ from version to version.
+# Of behaviortree_ros2 and nav2_behavior_tree; the ports of the latter are in nav2/bases.py.
 LIBRARIES: Final[dict[str, Category]] = {
     **dict.fromkeys(
         ("RosActionNode", "RosServiceNode", "BtActionNode", "BtCancelActionNode", "BtServiceNode"), "Action"

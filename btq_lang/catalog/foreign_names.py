@@ -38,6 +38,11 @@ def foreign_name(word: str) -> ForeignName | None:
     return ForeignName(_SPELLINGS[stem]) if known is None and stem in _SPELLINGS else known
 
 
+def is_of_leaves(word: str) -> bool:
+    """Whether programs have leaves of that name too, so that a word after it may well be a label."""
+    return _plain(word) in _OF_LEAVES
+
+
 def _plain(word: str) -> str:
     return re.sub(r"[\W_]", "", word).casefold()
 
@@ -61,7 +66,11 @@ _NAMES: Final[dict[str, ForeignName]] = {
     ),
     **dict.fromkeys(("activesequence", "dynamicsequence", "sequencereactive"), ForeignName("ReactiveSequence")),
     **dict.fromkeys(("simpleparallel", "parallelsequence", "concurrent"), ForeignName("Parallel")),
-    **dict.fromkeys(("if", "ifelse", "ifthen"), ForeignName("IfThenElse")),
+    **dict.fromkeys(
+        ("if", "ifelse", "ifthen"),
+        ForeignName("IfThenElse", note="its first child is the condition, a node of its own"),
+    ),
+    **dict.fromkeys(("while", "whiledo"), ForeignName("WhileDoElse", note="its first child is the condition")),
     **dict.fromkeys(("not", "negate", "negation", "negator", "invert", "inversion"), ForeignName("Inverter")),
     **dict.fromkeys(
         ("succeeder", "succeed", "alwayssucceed", "forcesucceed", "returnsuccess", "failureissuccess"),
@@ -90,6 +99,12 @@ _NAMES: Final[dict[str, ForeignName]] = {
     **dict.fromkeys(("oneshot", "once"), ForeignName("RunOnce")),
 }
 
+_OF_LEAVES: Final = frozenset(
+    (
+        *("wait", "select", "priority", "once", "succeed", "succeeder", "alwayssucceed", "returnsuccess"),
+        *("fail", "failer", "alwaysfail", "returnfailure", "while"),
+    )
+)
 _SPELLINGS: Final = {
     _plain(spelling): kind.tag for kind in BUILTINS.values() for spelling in spellings(kind) if spelling[0].isalpha()
 }

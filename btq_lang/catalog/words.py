@@ -64,7 +64,10 @@ _WORDS: Final = (
     _custom("SyncAction", "Action", "SyncAction is a C++ base class, not a node: write the name of your own action"),
     # Older engines'.
     _old(
-        "SequenceStar", "Control", "SequenceStar is the name of SequenceWithMemory in version 3", "SequenceWithMemory"
+        "SequenceStar",
+        "Control",
+        "SequenceStar is the name of SequenceWithMemory in version 3, where it begins again after a halt",
+        "SequenceWithMemory",
     ),
     _old("FallbackStar", "Control", "FallbackStar is the name of Fallback in version 2", "Fallback", "2.5"),
     _old(

@@ -7,14 +7,15 @@ which caches results from one edit to the next.  Not known here: what an edit ch
 
     view.py, sorted_nodes.py   what a check sees: its item, and the nodes of a tree, sorted by what checks look for
     lookups.py   what only checks look up in the files, beside workspace/inputs.py
-    kinds.py, names.py, ports.py, children.py, one_parent.py   what the engine would refuse
-    trees.py, includes.py, elements.py   likewise, of whole trees and files
+    kinds.py, names.py, ports.py, children.py, one_parent.py, own_lines.py   what the engine would refuse
+    trees.py, includes.py, elements.py, missing_ids.py, stale_models.py   likewise, of whole trees, models and files
     positional.py, literals.py, outputs.py, scripts.py, counts.py, empty.py   values, of ports too
     entries.py, pointers.py, writers.py, keys.py, misspelt.py, mixed_types.py   blackboard entries
+    flow.py, unset.py, arguments.py   entries across trees: what is read that nothing sets, given that nothing reads
     engines.py, version3.py   which versions of the engine a file is for
     moving.py, moved_engine.py, moved_nodes.py   what another version of the engine or distribution of Nav2 changes
     statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
-    resets.py, unread.py   nodes of Nav2: trees for goals, and traps
+    nav2_nodes.py, isolated.py, shared_servers.py, resets.py, unread.py   nodes of Nav2: trees for goals, and traps
     measures.py, clauses.py, bounds.py, limits.py   requirements by themselves
     requirements.py, qualities.py, repeated.py, prose.py   names of requirements and qualities
     demanded.py, demands.py, budgets.py, signals.py, renewals.py, unenforced.py   requirements at their nodes
@@ -28,6 +29,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
 from btq_lang.checks import (
+    arguments,
     bounds,
     children,
     clauses,
@@ -36,6 +38,7 @@ from btq_lang.checks import (
     elements,
     empty,
     includes,
+    isolated,
     keys,
     kinds,
     literals,
@@ -56,11 +59,15 @@ from btq_lang.checks import (
     requirements,
     resets,
     scripts,
+    shared_servers,
+    stale_models,
     trees,
     unreachable,
     unread,
+    unset,
     version3,
 )
+from btq_lang.checks.engines import is_newer_than_engine
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.diagnostics.rules import Severity
@@ -80,9 +87,11 @@ _OF_PORTS: tuple[Check, ...] = (
     literals.invalid_literal,
 )
 _OF_MODELS: tuple[Check, ...] = (
+    arguments.unread_port,
     elements.refused_element,
     elements.ignored_element,
     kinds.duplicate_definition,
+    stale_models.stale_model,
     ports.duplicate_attribute,
     *_OF_PORTS,
     literals.number_for_text,
@@ -155,6 +164,9 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         placeholders.placeholder_clash,
         scripts.script_error,
         misspelt.misspelt_entry,
+        unset.unset_entry,
+        arguments.unread_argument,
+        arguments.unread_port,
         requirements.unknown_requirement,
         requirements.conflicting_requirement,
         *_OF_CLAUSES,
@@ -170,6 +182,8 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         preconditions.skipped_condition,
         unreachable.unreachable_child,
         unread.tree_of_goal,
+        isolated.isolated_node,
+        shared_servers.shared_server,
         resets.memory_lost,
         resets.last_success_lost,
         unread.default_instead,
@@ -257,7 +271,8 @@ def check_each(workspace: Workspace, paths: Iterable[str]) -> Iterator[tuple[Dia
     store = Store(workspace)
     for path in paths:
         yield findings(store, path).diagnostics
-        store.sweep()
+        if workspace.factory is None:  # else other files need most of the same
+            store.sweep()
     store.sweep(always=True)  # cached results refer to each other, and so to the workspace
 
 
@@ -329,7 +344,19 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
         )
         for facts in lookups.items(store, viewpoint)
     ]
-    return tuple([each for each in found if each is not None])
+    wrong = tuple([each for each in found if each is not None])
+    is_refused = version3.refuses([one for each in wrong for one in each.diagnostics])
+    return (_newer(store, viewpoint) if is_refused and store.ask(is_newer_than_engine, viewpoint) else ()) or wrong
+
+
+def _newer(store: Store[Workspace], viewpoint: str) -> tuple[Reported, ...]:
+    """The only finding of a file for version 4 that version 3 refuses; none if the project does not select it."""
+    root = next((facts for facts in lookups.items(store, viewpoint) if type(facts.item) is syntax.Root), None)
+    if root is None:
+        return ()
+    view = View(store, viewpoint, root)
+    wanted = tuple(configured(view.project, viewpoint, (version3.version_4_file(view),)))
+    return (Reported(wanted, (viewpoint, root.item)),) if wanted else ()
 
 
 def _reported(
@@ -346,9 +373,11 @@ def _reported(
     if type(facts.item) is syntax.Include and not is_alone:
         found = [*found, *includes.include_with_errors(view, _errors_in)]
     if entry.diagnostics:
-        from btq_lang.checks.positional import with_ports  # few items have mistakes in their syntax
+        from btq_lang.checks.own_lines import on_own_lines  # few items have mistakes in their syntax
+        from btq_lang.checks.positional import with_ports
 
-        found = (*with_ports(view, entry.diagnostics), *_on_sound_lines(found, entry, view.text))
+        reported = with_ports(view, on_own_lines(view, entry.diagnostics))
+        found = (*reported, *_on_sound_lines(found, entry, view.text))
     elif not found:
         return None
     wanted = tuple(configured(view.project, viewpoint, trees.as_uncreated(view, found)))

@@ -11,6 +11,7 @@ from btq_lang.catalog.nav2 import TREE_OF_GOAL
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.util.reach import knots, reached
+from btq_lang.workspace.inputs import of_scope
 from btq_lang.workspace.queries import Store, hub
 from btq_lang.workspace.symbols import Use
 from btq_lang.workspace.workspace import Workspace
@@ -19,9 +20,15 @@ from btq_lang.workspace.workspace import Workspace
 Runs: TypeAlias = "tuple[tuple[str, ...], tuple[str, ...]]"
 
 
+@of_scope
 def callers(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...]:
     """The other trees that run a tree, or probably mean to."""
     return store.ask(_callers, viewpoint).get(tree, ())
+
+
+def runs(store: Store[Workspace], viewpoint: str, tree: str, other: str) -> bool:
+    """Whether a tree runs another one, directly or through others, or probably means to."""
+    return other in _run_from((tree,), dict(store.ask(_graph, viewpoint)))
 
 
 def is_missed(store: Store[Workspace], viewpoint: str, tree: str) -> bool:
@@ -41,20 +48,20 @@ def circle(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...
 
 
 def has_gaps(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether a SubTree names an unknown tree, so that it is not known which trees are reached."""
+    """Whether a SubTree names no tree or an unknown one, so that it is not known which trees are reached."""
     view = View(store, viewpoint)
     known = dict(view.ask(_graph))
     return not view.is_complete or any(name not in known for called, _ in known.values() for name in called)
 
 
+@of_scope
 def _graph(store: Store[Workspace], viewpoint: str) -> tuple[tuple[str, Runs], ...]:
-    """All trees in scope; those of the file come first, for a circle is reported at its first tree, and included XML
-    may not know that it is in one."""
+    """All trees in scope."""
     view = View(store, viewpoint)
-    names = dict.fromkeys((*view.look_up(lookups.own_trees), *view.names(Kind.TREE)))
-    return tuple([(name, view.ask(_runs, name)) for name in names])
+    return tuple([(name, view.ask(_runs, name)) for name in view.names(Kind.TREE)])
 
 
+@of_scope
 def _callers(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ...]]:
     graph = store.ask(_graph, viewpoint)
     meant = [(name, names) for name, (_, names) in graph]
@@ -63,9 +70,13 @@ def _callers(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ..
 
 @hub
 def _circles(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ...]]:
-    """All circles: hardly any mission has one, so that after an edit no tree looks for its own again."""
+    """All circles: hardly any mission has one, so that after an edit no tree looks for its own again.
+
+    The trees of the file come first: included XML may not know that it is in one.
+    """
     graph = {name: called for name, (called, _) in store.ask(_graph, viewpoint)}
-    places = {name: place for place, name in enumerate(graph)}
+    names = dict.fromkeys((*lookups.own_trees(store, viewpoint), *graph))
+    places = {name: place for place, name in enumerate(names)}
     found: dict[str, tuple[str, ...]] = {}
     for knot in knots(graph):
         first = min(knot, key=places.__getitem__)
@@ -124,6 +135,7 @@ def _turned(graph: Iterable[tuple[str, Iterable[str]]]) -> dict[str, tuple[str, 
     return {tree: tuple(names) for tree, names in turned.items()}
 
 
+@of_scope
 def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
     view = View(store, viewpoint)
     found = view.definition(Kind.TREE, tree)
@@ -131,10 +143,12 @@ def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
         return (), ()
     uses = found[1].summary.uses
     called = dict.fromkeys([use.name for use in uses if use.kind is Kind.TREE])
-    declared = {seen.id.text for seen in view.seen_in(*found).subtrees if seen.id is not None}  # by a model, perhaps
+    subtrees = view.seen_in(*found).subtrees
+    declared = {seen.id.text for seen in subtrees if seen.id is not None}  # by a model, perhaps
     meant = [name for use in uses for name in (_meant(use), _for_goal(use)) if name and name not in declared]
     trees = {name for name in (*meant, *declared) if name not in called and view.defines(Kind.TREE, name)}
     called.update(dict.fromkeys(sorted(declared & trees)))
+    called.update(dict.fromkeys("" for seen in subtrees if seen.id is None))
     return tuple(called), tuple([name for name in meant if name in trees])
 
 

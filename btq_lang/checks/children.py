@@ -10,12 +10,15 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.nodes import is_by_children
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks.kinds import OF_SUBTREE, declared_category, model_related
-from btq_lang.checks.one_parent import sequence_above
+from btq_lang.checks.one_parent import below, sequence_above
+from btq_lang.checks.own_lines import label_as_child
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
-from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax.tree import Node, is_name, written
+from btq_lang.grammar.nodes import CHILD
+from btq_lang.syntax.suggestions import CHILDREN as BELOW
+from btq_lang.syntax.tree import Node, Tree, is_name, written
 from btq_lang.util.text import Span
 from btq_lang.workspace.resolved import ResolvedNode
 
@@ -60,7 +63,22 @@ def child_count(view: View) -> Iterator[Diagnostic]:
             related += (Related(Place(span), "first extra child"),)
         message = f"{_called(seen)} requires {_range(least, most)}, found {count or 'none'}"
         fixes = sequence_above(view, seen.node.children) if most == 1 < count else ()
+        if count == 0 and seen.behavior is not None:
+            as_child, fixes = label_as_child(view, seen)
+            beside, below_it = ((), ()) if as_child else _beside(view, seen, most)
+            notes, fixes = notes + as_child + beside, fixes + below_it
         yield Diagnostic("child-count", seen.node.head.span, message, related=related, notes=notes, fixes=fixes)
+
+
+def _beside(view: View, seen: ResolvedNode, most: int | None) -> tuple[tuple[str, ...], tuple[Fix, ...]]:
+    """The note and the fix for a node whose children are not indented below it, but beside it."""
+    owner = seen.parent.node if seen.parent is not None else view.item
+    siblings = owner.children[seen.index + 1 :] if isinstance(owner, Node | Tree) else ()
+    if not siblings or view.is_xml:
+        return (), ()
+    if most == 1:
+        return (CHILD,), below(view, seen.node, siblings[:1])
+    return (BELOW,), ()  # at the top of a tree, tree_root_count indents them
 
 
 def switch_cases(view: View) -> Iterator[Diagnostic]:

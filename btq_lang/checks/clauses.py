@@ -73,8 +73,8 @@ def _duplicate(view: View, counts: syntax.Clause, clause: syntax.Clause, is_alon
     return Diagnostic("duplicate-clause", Span(clause.start, clause.end), message, related=related, fixes=fixes)
 
 
-def with_blanks(text: str, clause: syntax.Clause | syntax.NodeClause) -> Span:
-    """A clause with the blanks that would remain, and with its line if nothing else is on it."""
+def with_blanks(text: str, clause: syntax.Clause | syntax.NodeClause | syntax.Port) -> Span:
+    """A clause or port with the blanks that would remain, and with its line if nothing else is on it."""
     start, end = clause.start, clause.end
     while start and text[start - 1] in " \t":
         start -= 1

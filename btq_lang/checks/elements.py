@@ -162,7 +162,10 @@ def _attributes(view: View) -> Iterator[Diagnostic]:
         for pair in pairs:
             key = pair.key.text
             is_other = key not in keys and key not in _TOOL_ATTRIBUTES
-            meant = near(key, keys.difference(given), 1) if is_other else ()
+            free = keys.difference(given)
+            meant = (
+                (near(key, free, 1) or tuple(free.intersection(_CALLED.get(key.casefold(), ())))) if is_other else ()
+            )
             if meant:
                 yield _ignored(pair.key, f"the engine ignores `{key}`{did_you_mean(meant)}")
 
@@ -201,4 +204,12 @@ _OF_TOOLS: Final = frozenset(("MetadataFields", "Metadata", "description"))  # o
 _OF_PORT: Final = frozenset(("name", "type", "default", "description"))
 _OF_ROOT_TAG: Final = frozenset(("BTCPP_format", "main_tree_to_execute"))
 _OF_INCLUDE: Final = frozenset(("path", "ros_pkg"))
+# Other words for them, which no tool is known to write.
+_CALLED: Final = {
+    **dict.fromkeys(
+        ("main_tree", "maintree", "main_tree_id", "main", "main_tree_name", "entry_point"), ("main_tree_to_execute",)
+    ),
+    **dict.fromkeys(("format", "btcpp_version", "btcpp"), ("BTCPP_format",)),
+    **dict.fromkeys(("file", "filename", "src", "href"), ("path",)),
+}
 _TOOL_ATTRIBUTES: Final = frozenset(("required", "editable", "project_name"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btq_lang.catalog.versions import VERSIONS, is_before_4
+from btq_lang.catalog.versions import VERSION_3, VERSIONS, is_before_4
 from btq_lang.checks import lookups
 from btq_lang.workspace import inputs
 from btq_lang.workspace.engine_version import written_for
@@ -42,3 +42,11 @@ def old_words(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
     project = inputs.project(store)
     of_project = written_for(project, lookups.distribution(store, viewpoint), None)
     return () if is_before_4(of_project[-1]) else signs.old
+
+
+def is_newer_than_engine(store: Store[Workspace], viewpoint: str) -> bool:
+    """Whether an XML file says that it is for version 4, and its project that the engine is version 3."""
+    signs = lookups.signs(store, viewpoint)
+    if signs is None or not (signs.is_new or signs.format not in ("", VERSION_3[:1])):
+        return False
+    return is_before_4(store.ask(engines_of, viewpoint)[-1])

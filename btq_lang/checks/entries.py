@@ -6,20 +6,27 @@ does with entries, and whether a name is right, is not known here.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
+from itertools import chain
 from typing import TypeAlias
 
+from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.names import is_port_name
+from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
-from btq_lang.checks.pointers import pointed_at, remaps_all
+from btq_lang.checks.engines import is_for_version_4
+from btq_lang.checks.pointers import is_on, pointed_at, remaps_all
 from btq_lang.checks.scripts import is_script
 from btq_lang.checks.strings import in_source
-from btq_lang.checks.view import View, port_of
-from btq_lang.syntax.tree import Pair, Signal, Tree, Word
+from btq_lang.checks.view import View, port_of, ports_beside
+from btq_lang.syntax.tree import Pair, Signal, Tree, Verbatim, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
+from btq_lang.workspace.inputs import of_scope
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode
@@ -49,14 +56,41 @@ class Mention(Record):
     in_script: bool
 
 
+@of_scope
 def mentions(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> tuple[Mention, ...]:
     """Every name of an entry in a tree, in document order."""
     return tuple(_mentions(View(store, viewpoint), path, tree))
 
 
+@of_scope
 def blackboards(store: Store[Workspace], viewpoint: str) -> Blackboards:
     """The entries of the trees in scope."""
     return Blackboards(View(store, viewpoint))
+
+
+@of_scope
+def handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
+    """What a tree does with entries."""
+    view = View(store, viewpoint)
+    found = view.definition(Kind.TREE, tree)
+    item = found[1].item if found is not None else None
+    if found is None or not isinstance(item, Tree):
+        return Handling((), (), frozenset(), (), True, False)
+    model = view.find(Kind.MODEL, tree)
+    declared = model.ports if model is not None else ()
+    nodes = view.seen_in(*found)
+    touches = [Touch(each.name, each.reads, each.writes, each.creates) for each in view.ask(mentions, *found)]
+    return Handling(
+        tuple([port.name.text for port in (*item.ports, *declared) if port.name is not None]),
+        tuple(touches),
+        frozenset(_bare_values(nodes.given)),
+        tuple([call for seen in nodes.all if (call := _call(view, seen)) is not None]),
+        _has_verbatim(item, nodes.all)
+        or bool(inputs.entry(store, *found).diagnostics)
+        or any(map(_names_by_value, nodes.given))
+        or any(not touch.name.removeprefix("@").isidentifier() for touch in touches),
+        any(_is_stranger(view, seen) for seen in nodes.all),
+    )
 
 
 def _mentions(view: View, path: str, tree: Facts) -> Iterator[Mention]:
@@ -77,14 +111,45 @@ class Handling(Record):
     Attributes:
         ports: names of its own ports.
         touches: one for each mention.
-        gives: the trees it runs, with their ports and the entries that it passes to these.
-        shares: the trees to which it passes all entries under their own names, with exceptions.
+        named: values of custom nodes that may be names of entries: programs read them so, of outputs above all.
+        calls: the SubTrees in it.
+        is_open: whether something in it may read and write any entry: verbatim XML, what could not be read, a name
+            that only another language than the engine's understands, as `{a}_{b}`; or it is not here.
+        has_strangers: whether a node in it may: one without a model, or with ports that its model lacks.
     """
 
     ports: tuple[str, ...]
     touches: tuple[Touch, ...]
-    gives: tuple[tuple[str, str, str], ...]
-    shares: tuple[tuple[str, frozenset[str]], ...]
+    named: frozenset[str]
+    calls: tuple[Call, ...]
+    is_open: bool
+    has_strangers: bool
+
+
+class Call(Record):
+    """A SubTree, as it passes entries.
+
+    Attributes:
+        tree: that it runs.
+        given: the entries that it passes, by the names that they have in that tree.
+        values: the names of the entries that get a value instead.
+        shares: whether that tree gets all other entries under their own names, but for private ones.
+        is_one: whether both trees have one blackboard, as in version 3.
+    """
+
+    tree: str
+    given: Mapping[str, str]
+    values: frozenset[str]
+    shares: bool
+    is_one: bool
+
+    def passed(self, name: str) -> str | None:
+        """The entry that has a name in the tree below; None: that tree's own."""
+        if self.is_one:
+            return name
+        if name in self.given or name in self.values:
+            return self.given.get(name)
+        return name if self.shares and name[:1] not in ("_", "@") else None
 
 
 class Touch(Record):
@@ -107,15 +172,15 @@ class Blackboards:
         self._same: dict[Name, Name] = {}
         self._uses: dict[Name, list[Touch]] = {}
         self._ports: set[Name] = set()
-        self._signals = view.ask(_signal_entries)
+        self._signals = view.ask(signal_entries)
         self.root_names: dict[str, int] = {}
         for name, direction in view.look_up(lookups.outside_entries):
             touch = Touch(name, direction != "output", direction != "input", direction != "input")
             self._uses.setdefault(("", name), []).append(touch)
-        trees = {tree: view.ask(_handling, tree) for tree in view.names(Kind.TREE)}
+        trees = {tree: view.ask(handling, tree) for tree in view.names(Kind.TREE)}
         self._roots = frozenset([tree for tree in trees if not view.ask(callers, tree)])
-        for tree, handling in trees.items():
-            self._add(tree, handling, trees)
+        for tree, handled in trees.items():
+            self._add(tree, handled, trees)
 
     def of(self, tree: str, name: str) -> list[Touch]:
         """All uses of an entry, wherever it is passed."""
@@ -151,19 +216,19 @@ class Blackboards:
             merged.setdefault(self._first(key), []).extend(uses)
         return merged
 
-    def _add(self, tree: str, handling: Handling, trees: Mapping[str, Handling]) -> None:
-        self._ports.update(self.place(tree, port) for port in handling.ports)
-        for touch in handling.touches:
+    def _add(self, tree: str, handled: Handling, trees: Mapping[str, Handling]) -> None:
+        self._ports.update(self.place(tree, port) for port in handled.ports)
+        for touch in handled.touches:
             place = self.place(tree, touch.name)
             self._uses.setdefault(place, []).append(touch)
             if not place[0]:
                 self.root_names[place[1]] = self.root_names.get(place[1], 0) + 1
-        for below, port, name in handling.gives:
-            self._join(self.place(tree, name), (below, port))
-        for below, given in handling.shares:
-            for name in [touch.name for touch in trees[below].touches] if below in trees else ():
-                if name not in given and name[:1] not in ("_", "@"):
-                    self._join(self.place(tree, name), (below, name))
+        for call in handled.calls:
+            for port, name in call.given.items():
+                self._join(self.place(tree, name), (call.tree, port))
+            for name in [touch.name for touch in trees[call.tree].touches] if call.tree in trees else ():
+                if name not in call.given and call.passed(name) == name:
+                    self._join(self.place(tree, name), (call.tree, name))
 
     def _join(self, one: Name, other: Name) -> None:
         first, second = self._first(one), self._first(other)
@@ -176,35 +241,66 @@ class Blackboards:
         return name
 
 
-def _handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
-    view = View(store, viewpoint)
-    found = view.definition(Kind.TREE, tree)
-    item = found[1].item if found is not None else None
-    if found is None or not isinstance(item, Tree):
-        return Handling((), (), (), ())
-    model = view.find(Kind.MODEL, tree)
-    declared = model.ports if model is not None else ()
-    gives: list[tuple[str, str, str]] = []
-    shares: list[tuple[str, frozenset[str]]] = []
-    for seen in view.seen_in(*found).subtrees:
-        if seen.id is None:
+def _call(view: View, seen: ResolvedNode) -> Call | None:
+    """How a node passes entries to the tree that it runs; None if it runs none."""
+    is_plus = seen.node.kind is not None and seen.node.kind.raw == "SubTreePlus"
+    named = seen.node.attribute("ID") if is_plus else seen.id if seen.is_subtree else None
+    if named is None:
+        return None
+    is_old = is_before_4(view.target)
+    is_new = not view.is_xml or view.ask(is_for_version_4)
+    given: dict[str, str] = {}
+    values: list[str] = []
+    for pair in seen.node.attributes:
+        port, text = pair.key.text, pair.value.text if pair.value is not None else ""
+        if not is_port_name(port):
             continue
-        below = seen.id.text
-        for pair in seen.node.attributes:
-            name = pointed_at(pair.key.text, pair.value.text) if pair.value is not None else None
-            if name is not None:
-                gives.append((below, pair.key.text, name))
-        if remaps_all(seen):
-            shares.append((below, frozenset([pair.key.text for pair in seen.node.attributes])))
-    return Handling(
-        tuple([port.name.text for port in (*item.ports, *declared) if port.name is not None]),
-        tuple([Touch(each.name, each.reads, each.writes, each.creates) for each in view.ask(mentions, *found)]),
-        tuple(gives),
-        tuple(shares),
-    )
+        # In version 3 a SubTree maps names to names; a file that does not say its version may be for that one.
+        is_name = text.isidentifier() and not (is_new or is_plus)
+        name = pointed_at(port, text) or (text if is_name else None)
+        if name is not None:
+            given.setdefault(port, name)
+        if name is None or (is_name and not is_old):
+            values.append(port)
+    is_one = not is_new and is_on(seen, "__shared_blackboard")
+    shares = is_one or remaps_all(seen) or (is_plus and is_on(seen, "__autoremap"))
+    return Call(named.text, given, frozenset(values), shares, is_one)
 
 
-def _signal_entries(store: Store[Workspace], viewpoint: str) -> frozenset[Name]:
+def _bare_values(nodes: Iterable[ResolvedNode]) -> Iterator[str]:
+    """The values of custom nodes, and of built-in ones that remove entries, which look like names."""
+    for seen in nodes:
+        for pair in seen.node.attributes if not seen.is_subtree else ():
+            port = seen.kind.port(pair.key.text) if seen.kind is not None else None
+            text = pair.value.text.removeprefix("@") if pair.value is not None else ""
+            if text.isidentifier() and (seen.kind is None or (port is not None and port.removes)):
+                yield text
+
+
+def _names_by_value(seen: ResolvedNode) -> bool:
+    """Whether an entry of a built-in node says which other entry it writes."""
+    for pair in seen.node.attributes if seen.kind is not None else ():
+        port = seen.kind.port(pair.key.text) if seen.kind is not None else None
+        if port is not None and port.content == "key" and pair.value is not None and is_pointer(pair.value.text):
+            return True
+    return False
+
+
+def _is_stranger(view: View, seen: ResolvedNode) -> bool:
+    """Whether it is not known which ports a node has: nothing declares it, or it has more than are declared."""
+    if seen.kind is not None or seen.is_subtree or seen.is_placeholder:
+        return False
+    names = {port.id.text for port in ports_beside(view, seen) if port.id is not None}
+    given = [pair.key.text for pair in seen.node.attributes]
+    return seen.of_model is None or any(is_port_name(name) and name not in names for name in given)
+
+
+def _has_verbatim(tree: Tree, seen: Iterable[ResolvedNode]) -> bool:
+    nodes = chain([tree.children], (each.node.children for each in seen))
+    return any(isinstance(child, Verbatim) for children in nodes for child in children)
+
+
+def signal_entries(store: Store[Workspace], viewpoint: str) -> frozenset[Name]:
     """The entries that signals are read from."""
     view = View(store, viewpoint)
     found = [view.find(Kind.SIGNAL, name) for name in view.names(Kind.SIGNAL)]

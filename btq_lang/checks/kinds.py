@@ -6,23 +6,26 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.catalog.foreign_names import ForeignName, foreign_name
+from btq_lang.catalog.foreign_names import ForeignName, foreign_name, is_of_leaves
 from btq_lang.catalog.kinds import CHILDREN
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nav2 import FILES, ports_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.catalog.versions import VERSIONS, at_least, is_before_4, last_of
-from btq_lang.checks import lookups
+from btq_lang.checks import calls, lookups
 from btq_lang.checks.engines import is_for_version_3, old_words
 from btq_lang.checks.lookups import Declaration
+from btq_lang.checks.missing_ids import missing_id
+from btq_lang.checks.own_lines import has_bare_label, label_as_child
 from btq_lang.checks.view import COUNTS, SECOND, View, misspelt_clause
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES
-from btq_lang.syntax.tree import Model, Word, quote, written
+from btq_lang.syntax.tree import Model, Tree, Word, quote, written
+from btq_lang.util.record import replace
 from btq_lang.util.spelling import did_you_mean, distance, without_digits
 from btq_lang.util.text import Span
 from btq_lang.workspace.item_index import Facts
@@ -43,8 +46,9 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
         word = seen.node.category
         if word is not None and (name is None or name.text == ""):
             if not view.is_torn(seen.node.start, seen.node.end):
-                message = f"missing ID of this {word.raw}: write `{word.raw} <ID>`"
-                yield Diagnostic("unknown-node", word.span, message, severity=Severity.ERROR)
+                what, pairs = f"missing ID of this {word.raw}", seen.node.attributes
+                found = missing_id(view, "unknown-node", word.span, what, word.raw, pairs)
+                yield replace(found, severity=Severity.ERROR)
         elif name is None:
             continue
         elif view.defines(Kind.TREE, name.text):
@@ -54,6 +58,13 @@ def unknown_node(view: View) -> Iterator[Diagnostic]:
             continue  # models that differ: whichever the program means, it is known
         elif name.text in KNOWN_WORDS or _quoted_alias(seen, name) is not None or _foreign(view, seen) is not None:
             continue  # not a node of the engine, which is reported
+        elif name.text.casefold() == "include" and (seen.name is not None or seen.node.attribute("path") is not None):
+            place = (
+                "directly below <root>: <include path=…/>"
+                if view.is_xml
+                else "outside of trees, at the start of a line"
+            )
+            yield Diagnostic("unknown-node", name.span, f"an include goes {place}")
         elif (category := _category_meant(view, seen)) is not None:
             fix = replace_fix(f"Replace `{name.text}` with `{category}`", name.span, category)
             message = f"btq reads `{name.text}` as a node here; did you mean `{category}`?"
@@ -78,17 +89,17 @@ def not_an_engine_node(view: View) -> Iterator[Diagnostic]:
         if _is_of(view, text):
             continue
         if known is not None and (not name.quoted or known.tag == name.text):
-            fixes = _of_today(seen, name, known)
+            fixes = _of_today(view, seen, name, known)
             notes = (known.why, *(way_in(view) if known.word in _TRANSLATED else ()))
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
         elif (meant := _quoted_alias(seen, name)) is not None and not _is_refused(view, seen, name):
-            note = f"a quoted kind is the XML tag, and the engine's tag is {meant.tag}"
-            fix = replace_fix("Remove the quotes", name.span, name.text)
-            yield Diagnostic("not-an-engine-node", name.span, message, notes=(note,), fixes=(fix,))
+            yield _aliased(view, seen, name, message, meant)
         elif (foreign := _foreign(view, seen)) is not None:
             message += did_you_mean((foreign.tag,))
-            notes = (foreign.note,) if foreign.note else ()
-            fixes = (_as_built_in(view, seen, name, foreign),)
+            as_child, fixes = label_as_child(view, seen, foreign.tag)
+            notes = (*((foreign.note,) if foreign.note else ()), *as_child)
+            if not as_child:
+                fixes = (_as_built_in(view, seen, name, foreign),)
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
 
 
@@ -99,6 +110,13 @@ def newer_engine_node(view: View) -> Iterator[Diagnostic]:
         for seen in tagged if missing else ():
             if seen.kind is None or seen.id is None or _is_of(view, seen.id.text):
                 continue
+            known = KNOWN_WORDS.get(seen.id.text)
+            if (
+                known is not None
+                and known.until is not None
+                and all(at_least(last_of(known.until), v) for v in missing)
+            ):
+                continue  # they have it by this name
             since = "4" if is_before_4(missing[0]) else seen.kind.since
             pin = f'if you run {view.target}, set `engine = "{view.target}"` in btq.toml'
             message = f"`{seen.kind.tag}` requires BehaviorTree.CPP {since}; {missing[0]} does not have it"
@@ -196,7 +214,11 @@ def duplicate_definition(view: View) -> Iterator[Diagnostic]:
             both = Related(first.place, COUNTS), Related(second.place, SECOND)
             yield _second(second.symbol, view.head, both, "this file includes a second definition of")
     for symbol, other, counts in view.repeated(*_DEFINED_ONCE):
-        if _is_same_model(other.symbol, symbol) or _is_of_node(view, other, symbol):
+        if (
+            _is_same_model(other.symbol, symbol)
+            or _is_of_node(view, other, symbol)
+            or lookups.is_cpp(view.store, other.path)
+        ):
             continue
         only_one = f"Nav2 registers a node `{symbol.name}`, and a program can register only one"
         differing = ", ".join(differences(other.symbol, symbol))
@@ -244,21 +266,25 @@ def _is_of(view: View, word: str) -> bool:
     )
 
 
-def _of_today(seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
+def _of_today(view: View, seen: ResolvedNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
     """The fix that replaces an older engine's node by its successor."""
     if known.replacement is not None:
         # Without quotes the old word is read as the new one already, so only this diagnostic changes.
         title = f"Replace it with `{known.replacement}`"
-        return (replace_fix(title, name.span, known.replacement, safe=not name.quoted),)
+        safe = not name.quoted and not _missing(known.replacement, view.engines)
+        return (replace_fix(title, name.span, known.replacement, safe=safe),)
     if known.category == "SubTree" and seen.node.category is None:
         return (replace_fix("Replace it with `SubTree`", name.span, "SubTree"),)
     return ()
 
 
 def _foreign(view: View, seen: ResolvedNode) -> ForeignName | None:
-    """What a node means to other engines, if it has children and nothing says that there is such a node."""
+    """What a node means to other engines, if it has children, or a label that may be meant as one, and nothing says
+    that there is such a node."""
     name = seen.id
-    if name is None or seen.node.category is not None or seen.of_model is not None or not seen.node.children:
+    if name is None or seen.node.category is not None or seen.of_model is not None:
+        return None
+    if not (seen.node.children or (has_bare_label(view, seen.node) and not is_of_leaves(name.text))):
         return None
     foreign = foreign_name(name.text)
     if foreign is None or view.defines(Kind.TREE, name.text) or view.is_pooled(Kind.MODEL, name.text):
@@ -278,6 +304,19 @@ def _as_built_in(view: View, seen: ResolvedNode, name: Word, foreign: ForeignNam
 def _quoted_alias(seen: ResolvedNode, name: Word) -> NodeKind | None:
     """The built-in that a word would mean without its quotes: `"Retry"` is not a tag of the engine."""
     return lookup(name.text) if name.quoted and seen.kind is None else None
+
+
+def _aliased(view: View, seen: ResolvedNode, name: Word, message: str, meant: NodeKind) -> Diagnostic:
+    """`<Retry>` in XML, and `"Retry"` in quotes: a word of this language that the engine does not know as a tag."""
+    if not view.is_xml:
+        note = f"a quoted kind is the XML tag, and the engine's tag is {meant.tag}"
+        fix = replace_fix("Remove the quotes", name.span, name.text)
+        return Diagnostic("not-an-engine-node", name.span, message, notes=(note,), fixes=(fix,))
+    tag = meant.tag
+    if meant.flow == "for-each" and not any(meant.port(pair.key.text) for pair in seen.node.attributes):
+        tag = next(kind.tag for kind in BUILTINS.values() if kind.flow == "repeat")  # `Loop` in other engines
+    fix = replace_fix(f"Replace `{name.text}` with `{tag}`", name.span, tag)
+    return Diagnostic("not-an-engine-node", name.span, f"{message}{did_you_mean((tag,))}", fixes=(fix,))
 
 
 def _unknown(view: View, seen: ResolvedNode, name: Word) -> Iterator[Diagnostic]:
@@ -363,9 +402,19 @@ def _tree_as_node(view: View, seen: ResolvedNode, name: Word) -> Diagnostic:
     category = seen.node.category
     span, text = (Span(name.start, name.start), "SubTree ") if category is None else (category.span, "SubTree")
     message = f"`{name.text}` is a tree, not a node"
-    fixes = (replace_fix(f"Write `SubTree {written(name.text)}`", span, text),)
+    fixes = (replace_fix(f"Write `SubTree {written(name.text)}`", span, text, safe=_is_plain_call(view, seen, name)),)
     related = view.declared_at(Kind.TREE, name.text, "tree definition")
     return Diagnostic("unknown-node", name.span, message, related=related, fixes=fixes, severity=Severity.ERROR)
+
+
+def _is_plain_call(view: View, seen: ResolvedNode, name: Word) -> bool:
+    """Whether a node of a tree's name is nothing but that tree, once `SubTree` is before it: it gives no ports and
+    needs none, and no circle of trees begins."""
+    node, tree = seen.node, view.definition(Kind.TREE, name.text)
+    if node.category or node.label or node.attributes or node.clauses or node.children or view.tree_name is None:
+        return False
+    needs_ports = tree is None or not isinstance(tree[1].item, Tree) or bool(tree[1].item.ports)
+    return not needs_ports and not view.ask(calls.runs, name.text, view.tree_name.text)
 
 
 def _is_refused(view: View, seen: ResolvedNode, name: Word) -> bool:

@@ -102,7 +102,7 @@ def invalid_literal(view: View) -> Iterator[Diagnostic]:
             notes = (f"`{target.port}` is a BT::NodeStatus, and IDLE is not allowed",)
         if target.converts and problem.kind != "refused":
             message = f"the engine reads `{text}` as {problem.reads} and silently drops the rest"
-            fixes = _as_quantity(value, target, problem.reads)
+            fixes = _as_quantity(value, target, problem.reads, is_xml=view.is_xml)
             yield Diagnostic("trailing-text-in-number", value.span, message, fixes=fixes)
             continue
         message = f"expected {problem.expected} for `{target.port}`, found {problem.found or _shown(text)}"
@@ -203,14 +203,18 @@ def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:
     return ()
 
 
-def _as_quantity(value: Word, target: _Target, reads: str | None) -> tuple[Fix, ...]:
+def _as_quantity(value: Word, target: _Target, reads: str | None, *, is_xml: bool) -> tuple[Fix, ...]:
     """`"30 sec"` on a port in ms was meant as 30 s; of `"5 apples"` only the number is understood."""
     fixes = []
     quantity = parse_quantity(value.text.strip())
     wanted = parse_unit(target.unit) if target.unit else None
     if quantity is not None and wanted is not None and quantity[1].dimension == wanted.dimension:
         quantity_text = f"{_plain(quantity[0])} {quantity[2]}" if isfinite(quantity[0]) else value.text
-        fixes.append(replace_fix(f"Write the quantity `{quantity_text}`", value.span, quantity_text))
+        if is_xml:  # which has numbers alone
+            number = _plain(convert(quantity[0], quantity[1], wanted))
+            fixes.append(replace_fix(f"Write `{number}`, which is {quantity_text}", value.span, number))
+        else:
+            fixes.append(replace_fix(f"Write the quantity `{quantity_text}`", value.span, quantity_text))
     if reads is not None:
         fixes.append(replace_fix(f"Write what the engine reads: `{reads}`", value.span, _as_value(reads)))
     return tuple(fixes)

@@ -104,8 +104,12 @@ def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Mean
 
 @of_name
 def ports_of_models(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> tuple[tuple[Port, ...], ...]:
-    """The ports of each model of a node in scope, else of the one that it has in the pool."""
+    """The ports of each model of a node in scope, of the first alone if it is C++ whose ports are all seen, else of the
+    one that it has in the pool."""
     found = workspace.scope(viewpoint).all(kind, name) or (workspace.find(viewpoint, kind, name),)
+    first = workspace.files[found[0].path].origin if found[0] is not None else None
+    if first is not None and first.nodes is not None and first.nodes[name].complete:
+        found = found[:1]
     targets = [each.symbol.target for each in found if each is not None]
     return tuple([target.ports for target in targets if isinstance(target, Model)])
 
@@ -226,6 +230,15 @@ def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tu
             place = Place(met.pair.key.span, met.tree.path, met.tree.entry.item)
             return place, met.pair.key.text, met.node.head.text
     return None
+
+
+@of_viewpoint
+def is_run_elsewhere(workspace: Workspace, viewpoint: str, tree: str) -> bool:
+    """Whether XML outside of an XML file's scope, which may be registered with it, runs a tree."""
+    if workspace.project.pool_of(viewpoint) is None or viewpoint not in workspace.xml:
+        return False
+    scope = workspace.scope(viewpoint).paths
+    return any(path not in scope and tree in workspace.files[path].said(Kind.TREE) for path in workspace.xml)
 
 
 @of_viewpoint
@@ -375,6 +388,13 @@ def main_trees(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
 
 
 @of_viewpoint
+def is_in_cpp(workspace: Workspace, viewpoint: str, name: str) -> bool:
+    """Whether C++ that the project names has a string with this text: its program may create a tree of the name, or
+    replace it."""
+    return any(file.is_cpp and f'"{name}"' in file.source for file in workspace.files.values())
+
+
+@of_viewpoint
 def is_first_registered(workspace: Workspace, viewpoint: str) -> bool:
     """Whether this file is the first one in scope that has trees."""
     paths = workspace.scope(viewpoint).paths
@@ -448,6 +468,12 @@ def has_torn_tree(workspace: Workspace, viewpoint: str) -> bool:
 def origin(workspace: Workspace, viewpoint: str) -> Origin | None:
     """The file on the disk, if it is written in another language."""
     return workspace.files[viewpoint].origin
+
+
+@of_viewpoint
+def is_cpp(workspace: Workspace, viewpoint: str) -> bool:
+    """Whether the file is C++, which registers the nodes that it has models of."""
+    return workspace.files[viewpoint].is_cpp
 
 
 @of_viewpoint

@@ -22,6 +22,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Pair
 from btq_lang.util.reach import reached
 from btq_lang.util.record import Record
+from btq_lang.workspace.inputs import of_scope
 from btq_lang.workspace.port_types import is_text
 from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.resolved import ResolvedNode
@@ -78,11 +79,13 @@ def _found_in(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[Diagn
 
 
 @on_circle({})
+@of_scope
 def _types_below(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
     """The types that a tree passes on to those that run it; empty if it runs itself."""
     return _types(store, viewpoint, tree)
 
 
+@of_scope
 def _types(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
     """The types as which the entries of a tree are used in it and below.  `_types_below` does not ask for it, or it
     would be part of each circle."""

@@ -16,6 +16,7 @@ from btq_lang.catalog.nav2 import FILES
 from btq_lang.catalog.versions import ENTRIES_OF_SUBTREE, LAST_TREE_COUNTS, at_least, last_of
 from btq_lang.checks import lookups
 from btq_lang.checks.entries import mentions
+from btq_lang.checks.isolated import isolated_node
 from btq_lang.checks.mixed_types import entry_with_two_types
 from btq_lang.checks.moved_nodes import changed
 from btq_lang.checks.pointers import pointed_at
@@ -70,7 +71,7 @@ def new_in_target(view: View, checks: tuple[Check, ...], found: list[Diagnostic]
         return
     known.update((each.rule, each.span) for each in of_engine)
     moved = View(view.workspace.moved_nodes.store, view.path, view.facts)
-    for each in entry_with_two_types(moved):  # all else that changes is in a table
+    for each in (*entry_with_two_types(moved), *isolated_node(moved)):  # all else that changes is in a table
         if (each.rule, each.span) not in known:
             yield of_target(each, target.capitalize())
 

@@ -11,14 +11,9 @@ from collections.abc import Iterator
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, ENGINES
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
-from btq_lang.checks.pointers import remaps_all
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Include
-from btq_lang.workspace.resolved import ResolvedNode
-
-_FIRST_OF_4 = "jazzy"  # that comes with BehaviorTree.CPP 4
-_OF_3 = DISTRIBUTIONS[: DISTRIBUTIONS.index(_FIRST_OF_4)]
 
 
 def moving_on(view: View) -> Iterator[Diagnostic]:
@@ -35,9 +30,7 @@ def moving_on(view: View) -> Iterator[Diagnostic]:
     from btq_lang.checks.moved_nodes import changes_of, ports_in  # as above
 
     for seen in view.nodes:
-        if seen.is_subtree:
-            yield from _subtree(seen) if steps[0] in _OF_3 and _FIRST_OF_4 in steps else ()
-        elif seen.id is not None and ports_in(view, steps[0], seen.id.text) is not None:
+        if not seen.is_subtree and seen.id is not None and ports_in(view, steps[0], seen.id.text) is not None:
             yield from changes_of(view, seen, seen.id, steps)
 
 
@@ -68,15 +61,3 @@ def _engine(view: View) -> str:
         is_declared = of_distribution is not None and is_before_4(of_distribution) and not view.project.pinned
         return of_distribution if of_distribution is not None and is_declared else view.target
     return view.target if view.is_pinned else of_distribution or view.engines[0]
-
-
-def _subtree(seen: ResolvedNode) -> Iterator[Diagnostic]:
-    """A SubTree of BehaviorTree.CPP 3, whose tree shared the blackboard or got entries by their names."""
-    if not remaps_all(seen):
-        yield Diagnostic(
-            "target-breaks",
-            seen.node.head.span,
-            f"from {_FIRST_OF_4.title()} on a SubTree has a blackboard of its own: Nav2's nodes in it lack the entry "
-            "`node`",
-            notes=('write `_autoremap = "true"`, here and on every SubTree above',),
-        )

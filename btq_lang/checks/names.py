@@ -9,6 +9,7 @@ from btq_lang.catalog.names import instance_name_problem, legal_name, model_name
 from btq_lang.catalog.versions import ID_OF_EACH_TREE, UNIQUE_SUBTREES
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category
+from btq_lang.checks.missing_ids import missing_id
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -111,8 +112,9 @@ def _nameless(view: View, tree: Tree) -> Iterator[Diagnostic]:
     read = [each for each in view.look_up(lookups.items) if isinstance(each.item, elements)]
     if len(read) > 1 and not any(problem.span.start <= tree.end for problem in view.entry.diagnostics):
         span = Span(tree.start, tree.start + len("BehaviorTree"))
-        note = "the engine accepts a tree without an ID only as the only tree of a file"
-        yield Diagnostic("forbidden-name", span, "missing ID of this tree: write `BehaviorTree <ID>`", notes=(note,))
+        notes = ("the engine accepts a tree without an ID only as the only tree of a file",)
+        what = "missing ID of this tree"
+        yield missing_id(view, "forbidden-name", span, what, "BehaviorTree", tree.attributes, notes)
 
 
 def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> Diagnostic:

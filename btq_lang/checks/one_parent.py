@@ -1,4 +1,4 @@
-"""The fix that puts several nodes below one Sequence, where only one node is allowed."""
+"""The fixes that put several nodes below one parent: a new Sequence, or the node before them that lacks children."""
 
 from __future__ import annotations
 
@@ -14,20 +14,36 @@ from btq_lang.util.text import LINE_END, Span
 
 def sequence_above(view: View, children: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
     """The fix that writes `->` above children of one parent; none where their lines cannot be indented as they are."""
-    if view.is_xml or view.entry.diagnostics:
+    margin, step, starts = _lines(view, children)
+    if not starts:
         return ()
+    above = Change(Place(Span(starts[0], starts[0])), f"{margin}->\n{step}")
+    return (Fix("Put them below a Sequence `->`", (above, *_indented(starts[1:], step))),)
+
+
+def below(view: View, parent: Node, siblings: Sequence[Node | Verbatim]) -> tuple[Fix, ...]:
+    """The fix that indents the nodes after a parent without children, so that they are its children."""
+    _, step, starts = _lines(view, siblings)
+    title = f"Indent {'it' if len(siblings) == 1 else 'them'} below `{parent.head.text}`"
+    return (Fix(title, tuple(_indented(starts, step))),) if starts else ()
+
+
+def _indented(starts: Sequence[int], step: str) -> list[Change]:
+    return [Change(Place(Span(start, start)), step) for start in starts]
+
+
+def _lines(view: View, children: Sequence[Node | Verbatim]) -> tuple[str, str, list[int]]:
+    """The margin of some children and a step more, and where their lines begin; no lines if those cannot be moved."""
+    if view.is_xml or view.entry.diagnostics or not children:
+        return "", "", []
     text = view.text
     first, end = line_start(text, 0, children[0].start), max(map(_end, children))
     margin = text[first : children[0].start]
     if margin.strip() or any(LINE_END.search(token.text.strip()) for token in tokens(text[first:end])):
-        return ()  # a string or a comment over several lines
-    step = "\t" if margin.startswith("\t") else "    "
+        return "", "", []  # a string or a comment over several lines
     starts = [first, *[match.end() for match in LINE_END.finditer(text, first, end)]]
     filled = [start for start in starts if text[start:end].partition("\n")[0].strip()]
-    changes = [Change(Place(Span(start, start)), step) for start in filled[1:]]
-    return (
-        Fix("Put them below a Sequence `->`", (Change(Place(Span(first, first)), f"{margin}->\n{step}"), *changes)),
-    )
+    return margin, "\t" if margin.startswith("\t") else "    ", filled
 
 
 def _end(child: Node | Verbatim) -> int:

@@ -15,7 +15,12 @@ def pointed_at(port: str, text: str) -> str | None:
 
 def remaps_all(seen: ResolvedNode) -> bool:
     """Whether a SubTree gets every entry under its own name; it never gets private ones, which begin with `_`."""
-    value = seen.node.attribute("_autoremap")
+    return is_on(seen, "_autoremap")
+
+
+def is_on(seen: ResolvedNode, attribute: str) -> bool:
+    """Whether an attribute has a value that the engine takes for true."""
+    value = seen.node.attribute(attribute)
     return value is not None and value.text in ("true", "True", "TRUE", "1")
 
 

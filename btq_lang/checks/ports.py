@@ -8,6 +8,7 @@ from functools import cache
 from itertools import chain
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.foreign_ports import of_other_engines
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
@@ -18,7 +19,7 @@ from btq_lang.catalog.versions import ID_IN_COMPACT_FORM, PORTS_OF_SUBTREE, UNDE
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import model_related, way_in
 from btq_lang.checks.view import View, ports_beside
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix, write_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tokens import NUMBER, QUANTITY
 from btq_lang.syntax.tree import Include, Meta, Node, Pair, Port, Root, Tree, Word, models_in, written
@@ -67,6 +68,8 @@ def unknown_port(view: View) -> Iterator[Diagnostic]:
             message = f"{seen.shown_kind} has no port `{key.text}`{did_you_mean(likely) or stale}"
             related = _declared(view, seen)
             notes = (f"it has {names}" if known else "it has no ports", *_of_version_3(view, seen, key.text))
+            if seen.kind is not None and not likely and (note := of_other_engines(seen.kind.flow, key.text)):
+                notes += (note,)
             severity = Severity.WARNING if harmless else None
             yield Diagnostic("unknown-port", key.span, message, related, notes, fixes, severity=severity)
             if not known and seen.kind is None:
@@ -94,6 +97,7 @@ def missing_port(view: View) -> Iterator[Diagnostic]:
         if not missing:
             continue
         names = " and ".join(f"`{port.name}`" for port in missing)
+        as_value, to_port = _label_as_value(view, seen, missing)
         yield Diagnostic(
             "missing-port",
             seen.node.head.span,
@@ -107,10 +111,11 @@ def missing_port(view: View) -> Iterator[Diagnostic]:
                     for port in missing
                     if port.name[:1] == "_"
                 ),
+                *as_value,
             ),
-            fixes=_passing_on(view, seen, missing),
-            # Only the robot's program knows whether it requires an input.
-            severity=None if seen.kind or seen.is_subtree else Severity.WARNING,
+            fixes=(*to_port, *_passing_on(view, seen, missing)),
+            # Only the robot's program knows whether it requires an input, except for what is known of Nav2.
+            severity=None if seen.kind or seen.is_subtree or _throwing(seen) else Severity.WARNING,
         )
 
 
@@ -263,7 +268,16 @@ def _ports(view: View, seen: ResolvedNode) -> KnownPorts | None:
         return KnownPorts(tuple(ports)) if ports else None
     if seen.kind is not None:
         return _builtin_ports(seen.kind.tag, is_before_4(view.target))
-    return view.ask(_model_ports, seen.id.text) if seen.is_defined and seen.id is not None else None
+    known = view.ask(_model_ports, seen.id.text) if seen.is_defined and seen.id is not None else None
+    if known is None or not (throws := _throwing(seen)):
+        return known
+    return KnownPorts(tuple([replace(port, required=port.required or port.name in throws) for port in known.all]))
+
+
+def _throwing(seen: ResolvedNode) -> tuple[str, ...]:
+    """The ports without which a node of Nav2 is known to throw."""
+    behavior = seen.behavior if seen.kind is None else None
+    return tuple([port.name for port in behavior.ports if port.required]) if behavior is not None else ()
 
 
 def _may_have_more(view: View, seen: ResolvedNode) -> bool:
@@ -438,6 +452,16 @@ def _passing_on(view: View, seen: ResolvedNode, missing: list[PortKind]) -> tupl
         return ()
     pairs = " ".join(f"{written(port.name)} = {{=}}" for port in missing)
     return adding_fix(view, seen.node, f"Pass on the entr{'y' if len(missing) == 1 else 'ies'} of the same name", pairs)
+
+
+def _label_as_value(view: View, seen: ResolvedNode, missing: list[PortKind]) -> tuple[tuple[str, ...], tuple[Fix, ...]]:
+    """The note and the fix for `Precondition "x > 3"`, whose label is probably the value that a built-in lacks."""
+    label = seen.node.label
+    if seen.kind is None or label is None or not label.quoted or view.is_xml or len(missing) != 1:
+        return (), ()
+    pair = f"({written(missing[0].name)} = {label.raw})"
+    fixes = () if seen.node.attributes else (write_fix(pair, label.span),)
+    return (f"btq reads `{label.raw}` as its label; for a value, write `{pair}`",), fixes
 
 
 def adding_fix(view: View, node: Node, title: str, pairs: str) -> tuple[Fix, ...]:

@@ -7,11 +7,13 @@ blackboard, and so whether a condition is ever true.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Final
 
 from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nodes import lookup
 from btq_lang.checks import lookups
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_kind
 from btq_lang.checks.view import View
@@ -53,14 +55,27 @@ def results(view: View) -> Mapping[int, Results]:
 
 
 @on_circle(UNKNOWN)
+@inputs.of_scope
 def _of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> Results:
     """The possible results of a tree by its name; all, if it runs itself."""
     found = inputs.definition(store, viewpoint, Kind.TREE, tree)
     item = found[1].item if found is not None else None
-    if found is None or not isinstance(item, Tree):
+    if found is None or not isinstance(item, Tree) or _is_filled_in(View(store, viewpoint), tree, item):
         return UNKNOWN
     roots = [child for child in item.children if isinstance(child, Node)]
     return _of_nodes(store, viewpoint, *found)[id(roots[0])] if len(roots) == 1 else UNKNOWN
+
+
+def _is_filled_in(view: View, name: str, tree: Tree) -> bool:
+    """Whether a tree that does nothing is one in the place of which the program registers another: by its name,
+    `__BringUp__`, or because C++ of the project has that name."""
+    is_stub = len(tree.children) < 2 and all(isinstance(each, Node) and _succeeds(each) for each in tree.children)
+    return is_stub and (_TEMPLATE(name) is not None or view.look_up(lookups.is_in_cpp, name))
+
+
+def _succeeds(node: Node) -> bool:
+    kind = lookup(node.kind.text) if node.kind is not None else None
+    return kind is not None and kind.flow == "succeeds" and not kind.ports
 
 
 def _of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> dict[int, Results]:
@@ -110,6 +125,7 @@ def _of_known(kind: NodeKind, node: Node, children: tuple[Results, ...]) -> Resu
     return found
 
 
+_TEMPLATE: Final = re.compile("__.+__").fullmatch
 _FEW: Final = 4  # there are not many such combinations
 _without_ports: Final[dict[tuple[int, ...], Results]] = {}
 _ANY_LEAF: Final = SUCCESS | FAILURE | RUNNING

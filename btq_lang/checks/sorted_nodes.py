@@ -10,12 +10,14 @@ from typing import Final
 
 from btq_lang.catalog.kinds import Flow
 from btq_lang.syntax.tree import Pair, Word
+from btq_lang.workspace.inputs import of_scope
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.resolved import ResolvedNode, tree_nodes
 from btq_lang.workspace.workspace import Workspace
 
 
+@of_scope
 def sorted_nodes(store: Store[Workspace], viewpoint: str, path: str, tree: Facts) -> SortedNodes:
     """The nodes of a tree, sorted."""
     return SortedNodes(store.ask(tree_nodes, viewpoint, path, tree).all)

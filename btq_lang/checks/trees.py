@@ -12,7 +12,8 @@ from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.lookups import Meaning
-from btq_lang.checks.one_parent import sequence_above
+from btq_lang.checks.missing_ids import missing_id
+from btq_lang.checks.one_parent import below, sequence_above
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -37,9 +38,12 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
         word = seen.node.category
         is_nameless = seen.id is None or seen.id.text == ""
         if word is not None and is_nameless and not view.is_torn(seen.node.start, seen.node.end):
-            yield Diagnostic("unknown-tree", word.span, "missing tree of this SubTree: write `SubTree <ID>`")
+            what, pairs = "missing tree of this SubTree", seen.node.attributes
+            yield missing_id(view, "unknown-tree", word.span, what, "SubTree", pairs)
     for use in view.uses(Kind.TREE):
         if use.name == "" or view.defines(Kind.TREE, use.name) or view.is_pooled(Kind.TREE, use.name):
+            continue
+        if use.name in view.project.external:
             continue
         if not view.is_complete or view.look_up(lookups.has_torn_tree):
             return
@@ -54,6 +58,11 @@ def unknown_tree(view: View) -> Iterator[Diagnostic]:
         if use.node is not None and (use.name in BUILTINS or (model is not None and not _is_subtree_model(model))):
             message = f"`{use.name}` is a node, not a tree"
             fixes = _as_node(use)
+        elif view.project.product:
+            if likely:
+                notes = (f"unless {view.project.product} provides a tree of this name",)
+                yield Diagnostic("unknown-tree", use.span, message, notes=notes, fixes=fixes, severity=Severity.HINT)
+            continue
         yield Diagnostic("unknown-tree", use.span, message, fixes=fixes)
 
 
@@ -152,10 +161,14 @@ def unknown_main_tree(view: View) -> Iterator[Diagnostic]:
     names = f"{', '.join(shown[:-1])} or {shown[-1]}" if len(tops) <= _MOST_NAMES else f"{', '.join(shown)}, …"
     way = '`main_tree_to_execute="…"` of <root>' if view.is_xml else "a line `Root <tree>`"
     message = f"ambiguous main tree: no other tree refers to {names}"
-    notes = (f"name the main tree with {way}",)
+    notes: tuple[str, ...] = (f"name the main tree with {way}",)
+    created = [name for name in tops if view.look_up(lookups.is_in_cpp, name)]
+    if created:
+        notes = (*notes, f"C++ of the project has the name `{created[0]}`, and may create that tree")
     others = [view.declared_at(Kind.TREE, name, "another tree without a reference") for name in tops[1:_MOST_NAMES]]
     fixes = tuple(_main_tree_fix(view, name) for name in tops[:3])
-    yield Diagnostic("unknown-main-tree", view.head, message, tuple(chain(*others)), notes, fixes)
+    severity = Severity.HINT if created else None
+    yield Diagnostic("unknown-main-tree", view.head, message, tuple(chain(*others)), notes, fixes, severity=severity)
 
 
 def _missing_main_trees(view: View, factory: Factory) -> Iterator[Diagnostic]:
@@ -204,7 +217,19 @@ def tree_root_count(view: View) -> Iterator[Diagnostic]:
     message = f"a tree must have one node at its top, found {len(tree.children)}"
     notes = (f"put them below one node, such as a Sequence{'' if view.is_xml else ' `->`'}",)
     related = (Related(Place(first), "first one"),)
-    yield Diagnostic("tree-root-count", extra, message, related, notes, sequence_above(view, tree.children))
+    fixes = sequence_above(view, tree.children)
+    if (top := _lacks_children(view)) is not None:
+        fixes = below(view, top, tree.children[1:])
+    yield Diagnostic("tree-root-count", extra, message, related, notes, fixes)
+
+
+def _lacks_children(view: View) -> Node | None:
+    """The first node of a tree, if it takes any number of children and has none."""
+    first = next(iter(view.nodes), None)
+    if first is None or first.behavior is None or first.index > 0:
+        return None
+    is_parent = first.behavior.children[0] > 0 and first.behavior.children[1] is None
+    return first.node if is_parent and not (first.node.children or first.node.label) else None
 
 
 def tree_named_like_node(view: View) -> Iterator[Diagnostic]:

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.literals import check_literal, is_pointer
-from btq_lang.catalog.name_kinds import Kind
-from btq_lang.catalog.nav2 import FILES, TREE_OF_GOAL, ports_of
+from btq_lang.catalog.nav2 import TREE_OF_GOAL, ports_of
 from btq_lang.catalog.versions import is_before_4
 from btq_lang.checks import lookups
 from btq_lang.checks.entries import blackboards, mentions
+from btq_lang.checks.nav2_nodes import of_distribution, of_nav2
 from btq_lang.checks.pointers import passed_on, pointed_at
 from btq_lang.checks.view import View, declared_ports, ports_beside
 from btq_lang.diagnostics.model import Diagnostic
@@ -33,7 +33,7 @@ def default_instead(view: View) -> Iterator[Diagnostic]:
         return
     from btq_lang.catalog.nav2.read_once import is_read_once  # only for Nav2
 
-    for seen, name, tree in _of_nav2(view, distribution):
+    for seen, name, tree in of_nav2(view, distribution, view.seen.given):
         ports = {port.id.text for port in ports_beside(view, seen) if port.id is not None}
         for pair in seen.node.attributes:
             port, value = pair.key.text, pair.value
@@ -56,7 +56,7 @@ def error_code_not_collected(view: View) -> Iterator[Diagnostic]:
     from btq_lang.catalog.nav2.navigator import COLLECTED, COLLECTING, OF_BRINGUP  # only for Nav2
 
     usual = OF_BRINGUP if view.factory is None or not view.factory.entries else ()
-    for seen, _, tree in _of_nav2(view, distribution):
+    for seen, _, tree in of_nav2(view, distribution, view.seen.given):
         for pair in seen.node.attributes:
             if pair.key.text not in COLLECTED or pair.value is None:
                 continue
@@ -77,7 +77,7 @@ def foreign_error_code(view: View) -> Iterator[Diagnostic]:
         return
     from btq_lang.catalog.nav2.navigator import HELPED  # only for Nav2
 
-    for seen, node, tree in _of_nav2(view, distribution):
+    for seen, node, tree in of_nav2(view, distribution, view.seen.given):
         value = seen.node.attribute("error_code") if node in HELPED else None
         name = pointed_at("error_code", value.text) if value is not None else None
         if value is None or name is None:
@@ -110,7 +110,7 @@ def _actions_with_codes_in(view: View, distribution: str, tree: str, name: str) 
     writes = sum(each.writes for each in boards.of(tree, name))
     if boards.is_given(tree, name) or writes > len(writers) + len(resets):
         return set()
-    found = [_of_distribution(view, seen, distribution) for seen in writers if seen.node.attribute("error_code_id")]
+    found = [of_distribution(view, seen, distribution) for seen in writers if seen.node.attribute("error_code_id")]
     return {each for each in found if each is not None} if len(found) == len(writers) and None not in found else set()
 
 
@@ -118,22 +118,6 @@ def _is_read(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> b
     """Whether anything reads an entry, or the tree is given it."""
     boards = store.ask(blackboards, viewpoint)
     return boards.is_given(tree, name) or any(each.reads for each in boards.of(tree, name))
-
-
-def _of_nav2(view: View, distribution: str) -> Iterator[tuple[ResolvedNode, str, str]]:
-    """The nodes of Nav2 that have attributes, each with its ID and the name of its tree."""
-    for seen in view.seen.given:
-        name = _of_distribution(view, seen, distribution)
-        if name is not None and seen.tree is not None:
-            yield seen, name, seen.tree
-
-
-def _of_distribution(view: View, seen: ResolvedNode, distribution: str) -> str | None:
-    """The ID of a node of Nav2; None for another one."""
-    if seen.of_model is None or seen.id is None:
-        return None
-    model = view.declaration(Kind.MODEL, seen.id.text)
-    return seen.id.text if model is not None and model.path == FILES[distribution] else None
 
 
 def _default(view: View, seen: ResolvedNode, pair: Pair, value: Word, what: str) -> Diagnostic:

@@ -1,8 +1,8 @@
-"""Files for version 3 of the engine in a project that does not say that they are."""
+"""Files for version 3 of the engine in a project that does not say so, and for version 4 in one of version 3."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from btq_lang.catalog.nav2 import ENGINES
 from btq_lang.catalog.versions import DEFAULT_VERSION, VERSION_3
@@ -26,7 +26,6 @@ def version_3_file(view: View) -> Iterator[Diagnostic]:
         declared = f", but btq.toml names {project.target}"
     elif distribution is not None:
         declared = f", but {distribution.title()} has {ENGINES[distribution]}"
-    start = view.item.start
     message = f"this file is for version 3 of the engine: it has {shown}{declared}"
     is_refused = view.ask(is_for_version_3)  # else a version 4 loads it, and takes it otherwise
     instead = (
@@ -40,7 +39,34 @@ def version_3_file(view: View) -> Iterator[Diagnostic]:
         instead,
     )
     severity = Severity.ERROR if declared and is_refused else None
-    yield Diagnostic("version-3-file", Span(start, start + len("Root")), message, notes=notes, severity=severity)
+    yield Diagnostic("version-3-file", _root(view), message, notes=notes, severity=severity)
+
+
+def refuses(found: Iterable[Diagnostic]) -> bool:
+    """Whether version 3 refuses several things in a file that version 4 takes; its own words say that it is for it."""
+    rules = [each.rule for each in found if each.effective_severity is Severity.ERROR or each.rule == _OLD_WORD]
+    return _OLD_WORD not in rules and sum(rule in _OF_VERSION_4 for rule in rules) > 1
+
+
+def version_4_file(view: View) -> Diagnostic:
+    """What says that a file is for version 4, in place of all that version 3 refuses in it; the item is its Root."""
+    distribution = view.look_up(lookups.distribution)
+    declared = f"btq.toml names {view.project.target}"
+    if distribution is not None and not view.project.pinned:
+        declared = f"{distribution.title()} has {ENGINES[distribution]}"
+    message = f"this file is for version 4 of the engine, but {declared}"
+    notes = (
+        f'if the robot runs version 4, write `engine = "{DEFAULT_VERSION}"` or a later distribution, such as '
+        '`nodes = ["nav2-jazzy"]`, into btq.toml',
+        "what else is wrong with the file is reported when that is decided",
+    )
+    return Diagnostic("version-4-file", _root(view), message, notes=notes)
+
+
+def _root(view: View) -> Span:
+    return Span(view.item.start, view.item.start + len("Root"))
 
 
 _SHOWN = 4
+_OLD_WORD = "not-an-engine-node"
+_OF_VERSION_4 = frozenset(("newer-engine-node", "unknown-port", "unknown-attribute"))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Concatenate, Generic, ParamSpec, TypeVar
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, PortKind, lookup, of_version, spellings
@@ -95,13 +95,15 @@ class View:
         self.facts: Facts = facts  # type: ignore[assignment]  # unset only where no caller reads it
         self.seen = self.seen_in(viewpoint, facts) if facts is not None else NO_NODES
 
-    def ask(self, query: Callable[..., T], *key: Any) -> T:
+    def ask(self, query: Callable[Concatenate[Store[Workspace], str, P], T], /, *key: P.args, **named: P.kwargs) -> T:
         """The result of a query from this viewpoint."""
-        return self.store.ask(query, self.path, *key)
+        return self.store.ask(query, self.path, *key, **named)
 
-    def look_up(self, read: Callable[..., T], *key: Any) -> T:
+    def look_up(
+        self, read: Callable[Concatenate[Store[Workspace], str, P], T], /, *key: P.args, **named: P.kwargs
+    ) -> T:
         """The value of an input from this viewpoint."""
-        return read(self.store, self.path, *key)
+        return read(self.store, self.path, *key, **named)
 
     # ---- the item ----
 
@@ -158,6 +160,11 @@ class View:
         starts = self.ask(_torn_places, self.facts)
         at = bisect_left(starts, start)
         return at < len(starts) and starts[at] <= end
+
+    def node_before(self, offset: int) -> ResolvedNode | None:
+        """The last node that begins before an offset of the item."""
+        at = bisect_left(self.nodes, offset, key=lambda seen: seen.node.start)
+        return self.nodes[at - 1] if at else None
 
     @property
     def is_first_tree(self) -> bool:
@@ -322,7 +329,7 @@ class View:
             constraints,
         )
 
-        is_name = partial(self.look_up, lookups.is_node_name)
+        is_name = partial(lookups.is_node_name, self.store, self.path)
         return tuple([(each, can_be_checked(each.text, is_name)) for each in constraints(requirement.text)])
 
 

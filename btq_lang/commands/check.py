@@ -152,6 +152,12 @@ def _report(
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     findings, checked = _findings(groups, texts, options)
     every = groups
+    if any(group.project.external for group in groups) and not (options.since or options.add_ignore is not None):
+        from btq_lang.commands.external_trees import unused_external  # few projects have any
+
+        of_project = [each for each in unused_external(groups, options.paths) if _is_wanted(each.diagnostic, options)]
+        findings = sorted([*findings, *of_project], key=lambda each: (each.path, each.diagnostic.span))
+        texts.update((each.path, each.text) for each in of_project)
     if parameter_files:
         from btq_lang.commands.nav2_check import as_groups, nav2_findings
 

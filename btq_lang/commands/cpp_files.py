@@ -10,11 +10,13 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from btq_lang.catalog.nav2 import PACKAGES
+from btq_lang.catalog.nav2 import DISTRIBUTIONS, ENGINES, FILES, PACKAGED, PACKAGES
+from btq_lang.catalog.versions import is_before_4
 from btq_lang.commands.factory_files import cpp_in_folder
 from btq_lang.commands.node_writers import models_in_btq
 from btq_lang.cpp.findings import findings
 from btq_lang.cpp.grammar import GrammarMissing
+from btq_lang.cpp.macros import Macro, Macros, macros_in
 from btq_lang.cpp.model import CppNode, CppNodes
 from btq_lang.cpp.nodes import nodes_of
 from btq_lang.cpp.source import Source
@@ -77,7 +79,7 @@ class CppFiles:
         is_excluded = excluder(project)
         texts = {path: text for path in paths if not is_excluded(path) and (text := read(path)[0]) is not None}
         try:
-            nodes, files = self.files(texts, project.root)
+            nodes, files = self.files(texts, project.root, distributions_of(project))
         except GrammarMissing:
             nodes, files = None, {}
             problems.append(_problem(home, project.cpp_patterns[0], MISSING))
@@ -92,12 +94,15 @@ class CppFiles:
         )
         return Read(project, files, tuple(problems))
 
-    def files(self, texts: Mapping[str, str], root: str = ".") -> tuple[CppNodes, dict[str, File]]:
+    def files(
+        self, texts: Mapping[str, str], root: str = ".", distributions: tuple[str, ...] = DISTRIBUTIONS
+    ) -> tuple[CppNodes, dict[str, File]]:
         """The nodes of some sources, and a file for each source.
 
         Args:
             texts: by path.
             root: the folder from which messages name files.
+            distributions: those of Nav2 whose base classes may be meant.
 
         Raises:
             GrammarMissing: tree-sitter is not installed.
@@ -105,7 +110,10 @@ class CppFiles:
         state = self._store.state
         changed = [path for path, text in texts.items() if state.get(path) != text]
         self._store.advance({**state, **texts}, changed)
-        nodes = self._store.ask(_nodes, *texts)
+        macros = Macros(macro for path in texts for macro in self._store.ask(_macros, path))
+        nodes = self._store.ask(
+            _nodes, distributions, *((path, macros.needed_by(text)) for path, text in texts.items())
+        )
         wrong, home = findings(nodes, texts), f"{root.rstrip('/')}/"
         of_path: dict[str, dict[str, CppNode]] = {path: {} for path in texts}
         for node in nodes.nodes:
@@ -118,6 +126,16 @@ class CppFiles:
             if before is None or (before.text, before.nodes, before.diagnostics) != (text, of_path[path], found):
                 self._files[path] = cpp_file(path, text, of_path[path], found, known)
         return nodes, {path: self._files[path] for path in texts}
+
+
+def distributions_of(project: Project) -> tuple[str, ...]:
+    """The distributions of Nav2 that a project may be for: those whose nodes it names, else those with its engine."""
+    of_factories = (PACKAGED.get(name, "") for factory in project.factories for name in factory.nodes)
+    paths = {*project.node_files, *of_factories}
+    if named := tuple(each for each in DISTRIBUTIONS if FILES[each] in paths):
+        return named
+    is_old = is_before_4(project.target)
+    return tuple(each for each in DISTRIBUTIONS if not project.pinned or is_before_4(ENGINES[each]) == is_old)
 
 
 def with_code_of_nav2(workspace: Workspace, cpp: CppFiles) -> Workspace:
@@ -150,12 +168,18 @@ def cpp_file(
     return File(path, models, origin) if before is None else before.edited(models, origin)
 
 
-def _nodes(store: Store[dict[str, str]], *paths: str) -> CppNodes:
-    return nodes_of(store.ask(_source, path) for path in paths)
+def _nodes(
+    store: Store[dict[str, str]], distributions: tuple[str, ...], *files: tuple[str, tuple[Macro, ...]]
+) -> CppNodes:
+    return nodes_of((store.ask(_source, path, macros) for path, macros in files), distributions)
 
 
-def _source(store: Store[dict[str, str]], path: str) -> Source:
-    return Source(path, store.read(path, _text, path))
+def _source(store: Store[dict[str, str]], path: str, macros: tuple[Macro, ...]) -> Source:
+    return Source(path, store.read(path, _text, path), macros)
+
+
+def _macros(store: Store[dict[str, str]], path: str) -> tuple[Macro, ...]:
+    return macros_in(path, store.read(path, _text, path))
 
 
 def _text(texts: dict[str, str], path: str) -> str:

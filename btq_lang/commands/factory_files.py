@@ -11,7 +11,7 @@ from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.util.record import replace
 from btq_lang.workspace.factories import Factory
 from btq_lang.workspace.file import CPP_SUFFIXES, GROOT_SUFFIX, SUFFIXES
-from btq_lang.workspace.loader import absolute, matching, package_folder, read
+from btq_lang.workspace.loader import absolute, matching, package_folder, read, without_tests
 
 if TYPE_CHECKING:
 
@@ -69,11 +69,10 @@ def in_folder(pattern: str, root: str, find: Callable[[str, str], tuple[str, ...
 
 
 def cpp_in_folder(pattern: str, root: str, find: Callable[[str, str], tuple[str, ...]]) -> tuple[str, ...]:
-    """As `in_folder`, for C++: `**` leaves out the folders of tests, whose mocks have the names of real nodes."""
+    """As `in_folder`, for C++: `**` leaves out folders of tests, and those that are left out everywhere."""
     found = in_folder(pattern, root, find)
-    tests = _TESTS.difference(pattern.split("/")) if "**" in pattern else frozenset()
-    above = (_place(pattern, root)[0] or "").rstrip("/") + "/"
-    return tuple(path for path in found if tests.isdisjoint(path.removeprefix(above).split("/")[:-1]))
+    above = _place(pattern, root)[0]
+    return without_tests(found, above, pattern.split("/")) if "**" in pattern and above is not None else found
 
 
 def groot_projects(pools: Iterable[Iterable[str]], wanted: Container[str]) -> Iterator[Factory]:
@@ -91,6 +90,3 @@ def _place(pattern: str, root: str) -> tuple[str | None, str]:
         return root, pattern
     package, _, inside = pattern.removeprefix(PACKAGE).partition("/")
     return package_folder(package, root), inside
-
-
-_TESTS: Final = frozenset(("test", "tests"))

@@ -180,18 +180,14 @@ class Files:
             governing(path)
         for key, home in governed.items():
             if key not in members:  # no tree of it is checked, but its parameters of Nav2 may be
-                problems += self._factories(home)[1]
+                problems += self._declared(home)[1]
         return tuple(groups), tuple(dict.fromkeys(problems))
 
     def _groups_of(
         self, tops: Mapping[str, str], home: Found, project_of: Callable[[str], Found], for_checks: bool
     ) -> tuple[list[Group], list[LoadProblem]]:
         """The requested files of one project, by factory; `tops`: each with the folder in which it was requested."""
-        factories, problems = self._factories(home)
-        if home.project.cpp or any(each.cpp_files for each in factories):
-            sources = self._sources[home.path or ""] = self.cpp.read(home, factories)
-            factories = tuple(map(sources.declared_in, factories))
-            problems += sources.problems
+        factories, problems = self._declared(home)
         groot: tuple[Factory, ...] = ()
         pools: dict[str, tuple[str, ...]] = {}
         if for_checks and (xml := {path: top for path, top in tops.items() if self._may_be_xml(path)}):
@@ -224,6 +220,15 @@ class Files:
         pools = {home.project.root} if home.path else {pool_of(*each) for each in folders}
         suffixes = (*SUFFIXES, *XML_SUFFIXES)
         return {pool: collect([pool], home.project, suffixes)[0] for pool in sorted(pools)}
+
+    def _declared(self, home: Found) -> tuple[tuple[Factory, ...], list[LoadProblem]]:
+        """The factories of a project with their files and C++ sources."""
+        factories, problems = self._factories(home)
+        if home.project.cpp or any(each.cpp_files for each in factories):
+            sources = self._sources[home.path or ""] = self.cpp.read(home, factories)
+            factories = tuple(map(sources.declared_in, factories))
+            problems += sources.problems
+        return factories, problems
 
     def _factories(self, home: Found) -> tuple[tuple[Factory, ...], list[LoadProblem]]:
         """The factories of a project with their files."""

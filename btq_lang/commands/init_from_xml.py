@@ -14,6 +14,7 @@ from argparse import Namespace
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cache
+from importlib.util import find_spec
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
@@ -73,10 +74,10 @@ def run(options: Namespace) -> int:
     def holds(line: str) -> bool:
         return _unknown_in(folder, line + rest) <= _unknown_in(folder, engine + rest)
 
-    nodes = nav2_line(workspace, packages.engines, holds)
+    nodes = nav2_line(workspace, packages, holds)
     if nodes.startswith("nodes"):
         engine = ""  # a distribution has a version of its own
-    sources = _SOURCES.format(json.dumps(packages.sources)) if packages.sources else ""
+    nodes, sources = _with_sources(nodes, packages.sources, holds)
     try:
         write_whole(target, f"{_HEAD}{engine}{nodes}{sources}{rest}{''.join(_parameters(packages.parameters))}")
     except OSError as error:
@@ -190,17 +191,17 @@ def _parameters(paths: Iterable[str]) -> Iterator[str]:
 
 
 def _unknown_in(folder: str, project: str) -> set[tuple[str, int]]:
-    """Where a check finds nodes and ports that are not known, by path and place, if this is the project file."""
+    """Where a check finds nodes and ports that are not known, or cannot read something, if this is the project file."""
     files = Files()
     files.overlay[f"{folder}/btq.toml"] = project
-    groups, _ = files.groups([folder], with_xml=True, for_checks=True)
+    groups, problems = files.groups([folder], with_xml=True, for_checks=True)
     return {
         (path, each.span.start)
         for group in groups
         for path, found in zip(group.given, check_each(group.workspace, group.given), strict=True)
         for each in found
         if each.rule in ("unknown-node", "unknown-port")
-    }
+    } | {(problem.message, 0) for problem in problems}
 
 
 def _by_kind(workspace: Workspace) -> tuple[list[str], list[str]]:
@@ -276,19 +277,37 @@ def _folders(path: str, top: str) -> Iterator[str]:
         yield posixpath.join(top, *names[:number])
 
 
-def nav2_line(workspace: Workspace, engines: tuple[str, ...], holds: Callable[[str], bool]) -> str:
+def _with_sources(nodes: str, sources: tuple[str, ...], holds: Callable[[str], bool]) -> tuple[str, str]:
+    """The line that names nodes, with C++ sources in it, and a comment that proposes these if they are not: without the
+    grammar of C++, or if with them more in the trees is unknown."""
+    written = json.dumps(sources)
+    if not sources:
+        return nodes, ""
+    both = f"{nodes}nodes = {written}  # C++ that registers nodes\n"
+    if nodes.startswith("nodes"):
+        both = nodes.replace("]", f", {written[1:]}", 1)
+    if find_spec("tree_sitter_cpp") is not None and holds(both):
+        return both, ""
+    return nodes, _SOURCES.format(written)
+
+
+def nav2_line(workspace: Workspace, packages: Packages, holds: Callable[[str], bool]) -> str:
     """The line of a project file that names Nav2's nodes, a comment if it is unknown which; empty if XML uses none.
 
     Args:
-        engines: the versions of the engine that the packages depend on; empty if that is unknown.
+        packages: what they say of the engine, and which parameter files they have.
         holds: whether a line may be written, as far as its effect on the project is concerned.
     """
     used = _used(workspace)
     if not any(used.values()):
         return ""  # a `Wait` alone may be anybody's
-    fitting = [each for each in _of_engine(workspace, engines, used) if _has(each, used)]
-    if len(fitting) == 1:
-        line = f'nodes = ["nav2-{fitting[0]}"]  # the only distribution of Nav2 with the nodes and ports of the trees\n'
+    fitting = [each for each in _of_engine(workspace, packages.engines, used) if _has(each, used)]
+    named = [each for each in fitting if each in packages.distributions]
+    if len(fitting) == 1 or len(named) == 1:
+        why = "the only distribution of Nav2 with the nodes and ports of the trees"
+        if len(fitting) > 1:
+            fitting, why = named, "the distribution of Nav2 for which the parameters of bt_navigator are"
+        line = f'nodes = ["nav2-{fitting[0]}"]  # {why}\n'
         if holds(line):
             return line
         fitting.clear()

@@ -11,7 +11,7 @@ from typing import Final, TypeAlias
 from btq_lang.btcpp import reader
 from btq_lang.btcpp.document import Element
 from btq_lang.catalog.cpp_classes import ENGINE
-from btq_lang.commands.cpp_files import MISSING
+from btq_lang.commands.cpp_files import MISSING, distributions_of
 from btq_lang.commands.options import Refused
 from btq_lang.commands.output import write_output
 from btq_lang.cpp.findings import UNSEEN, findings
@@ -22,7 +22,7 @@ from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.util.text import LineIndex, Span, counted
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import CPP_SUFFIXES
-from btq_lang.workspace.loader import LoadProblem, absolute, collect, head, read, shown
+from btq_lang.workspace.loader import LoadProblem, absolute, collect, find_project, head, read, shown, without_tests
 
 Exported: TypeAlias = tuple[str, tuple[Diagnostic, ...]]  # the text, and what its nodes leave unseen
 
@@ -32,7 +32,8 @@ FORMATS = ("btq", "xml", "html")
 def run(options: Namespace) -> int:
     """Write the nodes, and say on standard error what cannot be seen or is wrong."""
     form = options.format or os.path.splitext(options.output or "")[1].lower().removeprefix(".") or FORMATS[0]
-    files, exported, problems = _texts(options.paths)
+    project = find_project(options.paths[0]).project
+    files, exported, problems = _texts(options.paths, project)
     if form not in FORMATS:
         problems.append(f"btq nodes: cannot write {options.output}; choose one of {', '.join(FORMATS)} with --format")
     elif form != "html" and options.output and not _is_ours(options.output):
@@ -44,7 +45,7 @@ def run(options: Namespace) -> int:
     if problems:
         return 2
     try:
-        found = read_nodes(files)
+        found = read_nodes(files, distributions_of(project))
     except GrammarMissing as error:
         raise Refused(MISSING) from error
     sources = " ".join(options.paths)
@@ -63,10 +64,15 @@ def run(options: Namespace) -> int:
     return int(bool(remarks))
 
 
-def _texts(paths: list[str]) -> tuple[dict[str, str], dict[str, Exported], list[str]]:
-    """The C++ files below some paths, as they are shown, those of pluginlib, and what cannot be read."""
-    found, unreachable = collect(paths, Project(), (*CPP_SUFFIXES, ".xml"))
-    problems: list[LoadProblem] = list(unreachable)
+def _texts(paths: list[str], project: Project) -> tuple[dict[str, str], dict[str, Exported], list[str]]:
+    """The C++ files below some paths, as they are shown, those of pluginlib, and what cannot be read; folders are left
+    out as in a pattern of `nodes` in the project file."""
+    problems: list[LoadProblem] = []
+    found: dict[str, None] = {}
+    for top in map(absolute, paths):
+        below, unreachable = collect([top], project, (*CPP_SUFFIXES, ".xml"))
+        problems += unreachable
+        found.update(dict.fromkeys(below if top in below else without_tests(below, top)))
     texts = {}
     exported: dict[str, Exported] = {}
     for path in found:

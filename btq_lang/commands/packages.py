@@ -13,6 +13,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 from btq_lang.catalog.versions import VERSION_3, VERSIONS
+from btq_lang.nav2.parameters import read_parameters
+from btq_lang.nav2.yaml_reader import YamlMissing, YamlProblem
 from btq_lang.util.record import Record
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import CPP_SUFFIXES, YAML_SUFFIXES
@@ -25,14 +27,16 @@ class Packages(Record):
     Attributes:
         engines: the versions of the engine that they depend on; empty if none or several do.
         depends_on: the package of the engine that says so.
-        sources: folders with C++ that registers nodes, as patterns.
+        sources: folders with C++ that registers nodes or declares their ports, as patterns.
         parameters: files with the parameters of a bt_navigator.
+        distributions: of Nav2 for which these are, as far as they tell.
     """
 
     engines: tuple[str, ...] = ()
     depends_on: str = ""
     sources: tuple[str, ...] = ()
     parameters: tuple[str, ...] = ()
+    distributions: frozenset[str] = frozenset()
 
 
 def packages_of(folder: str) -> Packages:
@@ -42,9 +46,21 @@ def packages_of(folder: str) -> Packages:
     if not depends_on and (above := pool_of(folder, folder)) != folder:
         depends_on = _engine_among(_texts(above, _MANIFESTS))
     below = {posixpath.relpath(path, folder): text for path, text in texts.items()}
-    sources = (path for path, text in below.items() if path.endswith(CPP_SUFFIXES) and _REGISTERS(text))
-    parameters = (path for path, text in below.items() if path.endswith(YAML_SUFFIXES) and _NAVIGATOR(text))
-    return Packages(_ENGINES.get(depends_on, ()), depends_on, tuple(_patterns(sources)), tuple(parameters))
+    cpp = {path: text for path, text in below.items() if path.endswith(CPP_SUFFIXES) and not _is_of_tests(path)}
+    sources = [path for path, text in cpp.items() if _REGISTERS(text) or _PORTS(text)]
+    sources = sources if any(_REGISTERS(cpp[path]) for path in sources) else []
+    parameters = [path for path, text in below.items() if path.endswith(YAML_SUFFIXES) and _NAVIGATOR(text)]
+    distributions = frozenset(filter(None, (_distribution(below[path]) for path in parameters)))
+    engines = _ENGINES.get(depends_on, ())
+    return Packages(engines, depends_on, tuple(_patterns(sources)), tuple(parameters), distributions)
+
+
+def _distribution(text: str) -> str | None:
+    """The distribution that the parameters of a bt_navigator are for; None if they do not tell, or cannot be read."""
+    try:
+        return read_parameters(text).distribution
+    except (YamlMissing, YamlProblem):
+        return None
 
 
 def _texts(folder: str, suffixes: tuple[str, ...]) -> dict[str, str]:
@@ -64,10 +80,18 @@ def _engine_among(texts: Mapping[str, str]) -> str:
     return ""
 
 
+def _is_of_tests(path: str) -> bool:
+    return not {"test", "tests"}.isdisjoint(path.split("/")[:-1])
+
+
 def _patterns(sources: Iterable[str]) -> Iterator[str]:
-    """A pattern for each folder with sources of one suffix."""
-    for folder, suffix in dict.fromkeys((posixpath.dirname(path), os.path.splitext(path)[1]) for path in sources):
-        yield posixpath.join(folder, f"*{suffix}")
+    """A pattern for the sources of one suffix in a folder, or for several folders, in all below the one around them."""
+    folders: dict[tuple[str, str], set[str]] = {}
+    for path in sources:
+        top = path.rpartition("/")[0].partition("/")[0]
+        folders.setdefault((top, os.path.splitext(path)[1]), set()).add(posixpath.dirname(path))
+    for (top, suffix), found in folders.items():
+        yield posixpath.join(top, f"**/*{suffix}") if len(found) > 1 else posixpath.join(*found, f"*{suffix}")
 
 
 _OLD: Final = "behaviortree_cpp_v3"
@@ -92,4 +116,5 @@ _MENTIONS: Final = (
 _REGISTERS: Final = re.compile(
     r"\b(?:registerNodeType|registerBuilder|registerSimple(?:Action|Condition|Decorator)|BT_REGISTER_(?:ROS_)?NODES)\b"
 ).search
+_PORTS: Final = re.compile(r"\bprovidedPorts\s*\(").search
 _NAVIGATOR: Final = re.compile(r"^[ \t]*bt_navigator[ \t]*:", re.MULTILINE).search

@@ -8,14 +8,17 @@ from argparse import Namespace
 from collections.abc import Iterable
 
 from btq_lang.btcpp.xsd import xsd
+from btq_lang.catalog.versions import VERSIONS
 from btq_lang.catalog.versions import targets as engine_lines
 from btq_lang.checks import check
+from btq_lang.checks.engines import declared_engines
 from btq_lang.commands.files import Files, Group, no_mission_below, usage_problem
 from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_problem, tell, write_output
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.util.record import replace
+from btq_lang.workspace.engine_version import written_for
 from btq_lang.workspace.file import File
 from btq_lang.workspace.loader import find_project, shown
 from btq_lang.workspace.project_schema import project_schema
@@ -43,11 +46,12 @@ def _write_xsd(options: Namespace) -> int:
         return 2
     if empty := no_mission_below(paths, groups, "no .btq file and no BehaviorTree.CPP XML"):
         print(f"btq schema: {empty}; the schema has only the nodes of the engine", file=sys.stderr)
+    target = options.target or _target(groups, paths)
     # A schema is of version 4, also for files that are not.
     groups = tuple(replace(group, workspace=_of_version_4(group.workspace)) for group in groups)
     checked = [(group, path, check(group.workspace, path)) for group in groups for path in group.given]
     unknown = frozenset().union(*(unknown_nodes(group.workspace.files[path], found) for group, path, found in checked))
-    text = xsd([group.workspace for group in groups], options.target or _target(groups, paths), unknown)
+    text = xsd([group.workspace for group in groups], target, unknown)
     write_output(options.output, text)
     unread = [path for _, path, found in checked if any(each.rule in UNREADABLE for each in found)]
     for path in unread:
@@ -60,8 +64,11 @@ def _of_version_4(workspace: Workspace) -> Workspace:
 
 
 def _target(groups: Iterable[Group], paths: list[str]) -> str:
-    """The newest version of the engine that the projects are for, if it has a schema."""
-    targets = {group.workspace.project.target for group in groups} or {find_project(paths[0]).project.target}
+    """The newest version of the engine that the files are written for, if it has a schema."""
+    asked = [group.workspace.store.ask(declared_engines, path) for group in groups for path in group.given]
+    if not asked:
+        asked = [written_for(find_project(paths[0]).project, None, None)]
+    targets = {(engines or VERSIONS)[-1] for engines in asked}
     return next(version for version in reversed(engine_lines()) if version in targets or version == engine_lines()[0])
 
 

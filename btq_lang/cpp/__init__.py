@@ -5,6 +5,7 @@ records go out: neither the disk, nor how nodes are written in a mission, is kno
 
     model.py       the records
     grammar.py     tree-sitter, and small questions to its nodes
+    macros.py      macros that register nodes, expanded
     source.py      one file: its classes, functions, constants and registrations; C++ types as texts
     sources.py     all files: which class a name means, what it derives from, and what classes of libraries provide
     ports.py       what `providedPorts()` returns; values.py: strings, defaults and types in it

@@ -10,8 +10,6 @@ from collections.abc import Iterator
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
-from btq_lang.cpp.model import Place
-
 if TYPE_CHECKING:
     from tree_sitter import Node
 
@@ -40,13 +38,6 @@ def _parser() -> Any:
     except ImportError as error:
         raise GrammarMissing from error
     return Parser(Language(language()))
-
-
-def place_of(path: str, node: Node) -> Place:
-    """Where a node is."""
-    row, column = node.start_point
-    end_row, end_column = node.end_point
-    return Place(path, row + 1, column + 1, end_row + 1, end_column + 1)
 
 
 def text_of(node: Node | None) -> str:

@@ -6,15 +6,17 @@ One invariant: a node whose ID or category cannot be seen is left out and report
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.kinds import Category
-from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, place_of, text_of, walk
+from btq_lang.catalog.nav2 import DISTRIBUTIONS
+from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, text_of, walk
+from btq_lang.cpp.macros import Macros, macros_in
 from btq_lang.cpp.model import CppNode, CppNodes
 from btq_lang.cpp.ports import Body, PortsReader, Provided
 from btq_lang.cpp.source import Call, Source
-from btq_lang.cpp.sources import Bound, Sources, library_ports
+from btq_lang.cpp.sources import Bound, Sources
 from btq_lang.cpp.uses import Uses
 from btq_lang.cpp.values import string
 
@@ -22,18 +24,23 @@ if TYPE_CHECKING:
     from tree_sitter import Node
 
 
-def read_nodes(files: Mapping[str, str]) -> CppNodes:
-    """The nodes that some files register; files: texts by path.
+def read_nodes(files: Mapping[str, str], distributions: tuple[str, ...] = DISTRIBUTIONS) -> CppNodes:
+    """The nodes that some files register.
+
+    Args:
+        files: texts by path.
+        distributions: those of Nav2 whose base classes may be meant.
 
     Raises:
         GrammarMissing: tree-sitter is not installed.
     """
-    return nodes_of(Source(path, text) for path, text in files.items())
+    macros = Macros(macro for path, text in files.items() for macro in macros_in(path, text))
+    return nodes_of((Source(path, text, macros.needed_by(text)) for path, text in files.items()), distributions)
 
 
-def nodes_of(sources: Iterable[Source]) -> CppNodes:
-    """The nodes that parsed files register."""
-    reader = _Reader(Sources(sources))
+def nodes_of(sources: Iterable[Source], distributions: tuple[str, ...] = DISTRIBUTIONS) -> CppNodes:
+    """The nodes that parsed files register; distributions: as above."""
+    reader = _Reader(Sources(sources, distributions))
     nodes: dict[str, CppNode] = {}
     for source in reader.sources.files.values():
         for call in source.calls:
@@ -43,6 +50,7 @@ def nodes_of(sources: Iterable[Source]) -> CppNodes:
             first = nodes.setdefault(node.name, node)
             if (first.class_name, first.ports) != (node.class_name, node.ports):
                 reader.sources.report(f"`{node.name}` is also registered at {first.place}, as another node", node.place)
+    reader.report_hidden({node.class_name for node in nodes.values()})
     unseen = sorted(reader.sources.unseen, key=lambda each: (each.place.path, each.place.line, each.message))
     return CppNodes(tuple(nodes[name] for name in sorted(nodes)), tuple(unseen))
 
@@ -72,16 +80,31 @@ class _Reader:
         named = next((each for each in given if string(self.sources, each, body.frame) is not None), None)
         return self._class(call, body, call.types[0], named, None) if named is not None else None
 
+    def report_hidden(self, registered: Container[str]) -> None:
+        """Report what looks like a macro that registers a class which nothing else is seen to register."""
+        for source in self.sources.files.values():
+            for each in source.registering:
+                bounds = (self.sources.find(argument, (), source.path, each.place) for argument in each.arguments)
+                for bound in bounds:
+                    if bound.class_ is None or bound.class_.name in registered or not self.sources.category(bound):
+                        continue
+                    message = f"it cannot be seen under which ID `{each.name}` registers `{bound.name}`; {_OF_MACRO}"
+                    self.sources.report(message, each.place, hides_node=True)
+
     def _simple(self, call: Call, body: Body, given: list[Node]) -> CppNode | None:
         """`registerSimpleAction("Name", function, ports)`"""
         if (name := self._name(call, body, given[0])) is None:
             return None
-        place = place_of(call.path, call.node)
+        place = self.sources.place_of(call.path, call.node)
         provided = self._ports.of_argument(given[2], body) if len(given) > 2 else Provided((), True)
         if provided is None:
             self.sources.report(f"it cannot be seen which ports `{name}` has: `{text_of(given[2])}`", place)
             provided = Provided((), False)
-        return CppNode(name, _SIMPLE[call.name], "", place, place, provided.ports, provided.complete)
+        ports, complete = provided.ports, provided.complete
+        uses = Uses.of_function(self.sources, given[1], body.frame) if len(given) > 1 else Uses(self.sources)
+        undeclared = uses.undeclared(ports) if complete else ()
+        category, without = _SIMPLE[call.name], uses.without_each(ports)
+        return CppNode(name, category, "", place, place, ports, complete, uses.unread(ports), undeclared, without)
 
     def _manifest(self, call: Call, body: Body, manifest: Node) -> CppNode | None:
         """`registerBuilder(CreateManifest<T>("Name", ports), builder)`"""
@@ -97,9 +120,9 @@ class _Reader:
         """A class under a name; given: the argument that may be its ports."""
         if (name := self._name(call, body, named)) is None:
             return None
-        place = place_of(call.path, call.node)
+        place = self.sources.place_of(call.path, call.node)
         bound = self.sources.find(type_, call.scope, call.path, place)
-        if bound.class_ is None and library_ports(bound, place) is None:
+        if bound.class_ is None and self.sources.library_ports(bound, place) is None:
             self._report(call, f"the class `{type_}` of the node `{name}` is not in the sources")
             return None
         category = self.sources.category(bound)
@@ -113,19 +136,18 @@ class _Reader:
         ports, complete = provided.ports, provided.complete
         if bound.class_ is None:
             return CppNode(name, category, bound.name, place, place, ports, complete)
-        uses = Uses(self.sources, bound)
-        inputs = [each for each in ports if each.direction != "output" and each.default is None]
+        uses = Uses.of_class(self.sources, bound)
         return CppNode(
             name,
             category,
             bound.class_.name,
             place,
-            place_of(bound.class_.path, field(bound.class_.node, "name") or bound.class_.node),
+            self.sources.place_of(bound.class_.path, field(bound.class_.node, "name") or bound.class_.node),
             ports,
             complete,
             uses.unread(ports),
             uses.undeclared(ports) if complete else (),
-            tuple((each.name, uses.without(each)) for each in inputs),
+            uses.without_each(ports),
             ends_within_tick(self.sources, bound),
         )
 
@@ -136,7 +158,7 @@ class _Reader:
         return name
 
     def _report(self, call: Call, message: str) -> None:
-        self.sources.report(message, place_of(call.path, call.node), hides_node=True)
+        self.sources.report(message, self.sources.place_of(call.path, call.node), hides_node=True)
 
 
 def _may_be_ports(node: Node, body: Body) -> bool:
@@ -193,6 +215,7 @@ _SIMPLE: Final[dict[str, Category]] = {
     "registerSimpleCondition": "Condition",
     "registerSimpleDecorator": "Decorator",
 }
+_OF_MACRO: Final = "name the file that defines it, too, or declare the node in a model"
 _ENGINES: Final = ("registerNodeType", "registerBuilder")
 _OTHERS: Final = re.compile(
     r"register(BehaviorTreeFrom\w+|From\w*Plugins?|ScriptingEnums?|PolymorphicCast)|RegisterJsonDefinition"

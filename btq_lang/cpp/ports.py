@@ -6,15 +6,16 @@ One invariant: as in a `std::unordered_map`, the first of two entries with one n
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.kinds import Direction
-from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, named, place_of, text_of, walk
+from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, named, text_of, walk
 from btq_lang.cpp.model import CppPort, Place
 from btq_lang.cpp.source import REGISTERS, substituted
-from btq_lang.cpp.sources import Bound, Sources, library_ports
+from btq_lang.cpp.sources import Bound, Sources
 from btq_lang.cpp.values import Frame, default, string, type_of
-from btq_lang.util.record import Record
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -35,6 +36,12 @@ class PortsReader:
     def __init__(self, sources: Sources) -> None:
         self.sources: Final = sources
         self._complete = True
+        aliases = (alias for source in sources.files.values() for alias in source.aliases.items())
+        self._aliases: Final = frozenset(name.rpartition("::")[2] for name, type_ in aliases if _is_list(type_))
+
+    def is_list(self, type_: Node | None) -> bool:
+        """Whether a type is that of a list of ports, or an alias of it."""
+        return _is_list(text_of(type_)) or named(type_)[1] in self._aliases
 
     def of_class(self, bound: Bound, place: Place) -> Provided:
         """The ports that a class provides; place: where it is used."""
@@ -65,7 +72,7 @@ class PortsReader:
                 node, path = bodies[0]
                 return Body(self, Frame(each, each.scope, path, depth)).result(node)
             if each.class_ is None:
-                if (ports := library_ports(each, place)) is not None:
+                if (ports := self._of_library(each, place)) is not None:
                     if ports:
                         return ports
                     continue
@@ -75,6 +82,18 @@ class PortsReader:
                 return {}
         return {}
 
+    def _of_library(self, bound: Bound, place: Place) -> Ports | None:
+        """The ports of a class of a known library; None for any other."""
+        provided = self.sources.library_ports(bound, place)
+        if provided is None:
+            return None
+        ports, others = provided
+        if others:
+            name = bound.name.rpartition("::")[2]
+            what_to_do = 'name the distribution of Nav2 in the project file: `nodes = ["nav2-jazzy", …]`'
+            self.incomplete(f"whether `{name}` provides {others} depends on the distribution; {what_to_do}", place)
+        return ports
+
     def incomplete(self, message: str, place: Place) -> None:
         """Report what is not understood."""
         self._complete = False
@@ -82,7 +101,8 @@ class PortsReader:
 
     def helper(self, name: str, scope: str, frame: Frame, call: Node) -> tuple[Node, Frame] | None:
         """The function that a call means, a method of the class or of a base or any, and the frame of its body."""
-        sources, place = self.sources, place_of(frame.path, call)
+        sources = self.sources
+        place = sources.place_of(frame.path, call)
         for each in self._owners(scope, frame, place):
             for node, path in sources.methods(each, name)[:1]:
                 return node, Frame(each, each.scope, path, frame.depth + 1)
@@ -92,13 +112,21 @@ class PortsReader:
 
     def basic_ports(self, scope: str, frame: Frame, call: Node) -> Ports | None:
         """What `providedBasicPorts` of a library's class adds; None: unknown."""
-        place = place_of(frame.path, call)
+        place = self.sources.place_of(frame.path, call)
         libraries = [each for each in self._owners(scope, frame, place) if each.class_ is None]
-        return next(filter(None, (library_ports(each, place) for each in libraries)), None)
+        return next(filter(None, (self._of_library(each, place) for each in libraries)), None)
+
+    def constant(self, name: str, frame: Frame) -> Ports | None:
+        """The ports that a constant outside of a function is; None if it is anything else."""
+        constant = self.sources.constant(substituted(name, frame.meanings), frame.bound, frame.scope, frame.path)
+        if constant is None or frame.depth > _DEEPEST:
+            return None
+        value, scope, path = constant
+        return Body(self, Frame(frame.bound, scope, path, frame.depth + 1)).evaluated(value)
 
     def class_ports(self, scope: str, frame: Frame, call: Node) -> Ports:
         """The ports of the class before `::providedPorts()`."""
-        place = place_of(frame.path, call)
+        place = self.sources.place_of(frame.path, call)
         found = self.sources.find(substituted(scope, frame.meanings), frame.scope, frame.path, place)
         if frame.depth > _DEEPEST:
             self.incomplete("this calls itself", place)
@@ -145,11 +173,14 @@ class Body:
             self._fill(contents(statement)[0] if contents(statement) else statement)
         elif statement.type == "for_range_loop":
             self._loop(statement)
+        elif statement.type == "compound_statement":
+            for each in contents(statement):
+                self.run(each)
         elif self.names_list(statement) or any(each.type == "return_statement" for each in walk(statement, LAMBDAS)):
             self.incomplete(statement)
 
     def _declare(self, node: Node) -> None:
-        is_list = named(field(node, "type"))[1] == "PortsList"
+        is_list = self.reader.is_list(field(node, "type"))
         for each in node.children_by_field_name("declarator"):
             name, value = each, field(each, "value")
             while name.type in ("init_declarator", "pointer_declarator", "reference_declarator"):
@@ -159,7 +190,7 @@ class Body:
                 continue
             if name.type == "function_declarator" and is_list:  # `PortsList ports(other);`
                 given = contents(field(name, "parameters"))
-                ports = self.lists.get(text_of(given[0])) if given else {}
+                ports = self._copied(given[0]) if given else {}
                 name = field(name, "declarator") or name
             else:
                 wanted = is_list or text_of(field(node, "type")) == "auto"
@@ -170,15 +201,19 @@ class Body:
                 self.lists[text_of(name)] = {}
                 self.incomplete(each)
 
+    def _copied(self, given: Node) -> Ports | None:
+        """The list that another one is made of, which the grammar takes for the type of a parameter."""
+        scope, name, _ = named(field(given, "type"))
+        if name == "providedPorts" and scope:
+            return self.reader.class_ports(scope, self.frame, given)
+        return self.lists.get(text_of(given))
+
     def _fill(self, node: Node) -> None:
         """`ports.insert(…)`, `ports["name"] = …` and the like."""
-        if node.type == "assignment_expression":
-            left, right = field(node, "left"), field(node, "right")
-            if left is not None and left.type == "identifier" and text_of(left) in self.lists and right is not None:
-                ports = self.evaluated(right)
-                if ports is not None:
-                    self.lists[text_of(left)] = ports
-                    return
+        if node.type == "assignment_expression" and self._assigned(node):
+            return
+        if node.type == "call_expression" and (self._copied_into(node) or self._filled_by_helper(node)):
+            return
         function = field(node, "function") if node.type == "call_expression" else None
         name = text_of(field(function, "argument")) if function is not None else ""
         if function is None or function.type != "field_expression" or name not in self.lists:
@@ -186,6 +221,8 @@ class Body:
                 self.incomplete(node)
             return
         method, target, given = text_of(field(function, "field")), self.lists[name], arguments(node)
+        if method in ("reserve", "rehash"):
+            return
         if method == "erase" and len(given) == 1 and (key := string(self.reader.sources, given[0], self.frame)):
             target.pop(key, None)
             return
@@ -197,22 +234,79 @@ class Body:
         else:
             self.lists[name] = _united(target, ports)
 
+    def _assigned(self, node: Node) -> bool:
+        """Whether an assignment sets a list, or a port in one."""
+        left, right = field(node, "left"), field(node, "right")
+        if left is None or right is None:
+            return False
+        if left.type == "subscript_expression":
+            name, keys = text_of(field(left, "argument")), contents(field(left, "indices"))
+            ports = self._keyed(keys[0], right) if len(keys) == 1 else None
+            if name in self.lists and ports is not None:
+                self.lists[name] = {**self.lists[name], **ports}
+                return True
+            return False
+        ports = self.evaluated(right) if text_of(left) in self.lists else None
+        if ports is not None:
+            self.lists[text_of(left)] = ports
+        return ports is not None
+
+    def _copied_into(self, node: Node) -> bool:
+        """`std::copy(more.begin(), more.end(), std::inserter(ports, ports.end()))`"""
+        given = arguments(node)
+        if callee(node)[1] != "copy" or len(given) < 2 or callee(given[-1])[1] != "inserter":
+            return False
+        name, ports = text_of((arguments(given[-1]) or [node])[0]), self._added(given[:-1])
+        if name not in self.lists or ports is None:
+            return False
+        self.lists[name] = _united(self.lists[name], ports)
+        return True
+
+    def _filled_by_helper(self, node: Node) -> bool:
+        """`addPorts(ports)`, which takes the list by reference."""
+        scope, name, _ = callee(node)
+        given = arguments(node)
+        lists = [text_of(each) in self.lists for each in given]
+        function = field(node, "function")
+        if function is None or function.type == "field_expression" or sum(lists) != 1 or self.frame.depth > _DEEPEST:
+            return False
+        helper = self.reader.helper(name, scope, self.frame, node)
+        parameter = _parameters(helper[0])[lists.index(True) :][:1] if helper is not None else []
+        if helper is None or not parameter or "&" not in text_of(parameter[0]):
+            return False
+        body, inner, outer = Body(self.reader, helper[1]), _name_in(parameter[0]), text_of(given[lists.index(True)])
+        body.lists[inner] = self.lists[outer]
+        for statement in contents(field(helper[0], "body")):
+            body.run(statement)
+        self.lists[outer] = body.lists[inner]
+        return True
+
     def _added(self, given: list[Node]) -> Ports | None:
-        """What `insert` and the like are given: a port, a list, or a range."""
+        """What `insert` and the like are given: a port, its name and what it is, a list, or a range."""
         if len(given) == 2 and all(each.type == "call_expression" for each in given):
-            whose = [text_of(field(field(each, "function") or each, "argument")) for each in given]
+            whose = [_of_range(each) for each in given]
             names = [callee(each)[1] for each in given]
             if names in (["begin", "end"], ["cbegin", "cend"]) and whose[0] == whose[1]:
                 return self.lists.get(whose[0])
+        if len(given) == 2:
+            return self._keyed(*given)
         return self.evaluated(given[0]) if len(given) == 1 else None
+
+    def _keyed(self, key: Node, value: Node) -> Ports | None:
+        """The port of a name and of what another port is: `"goal", BT::InputPort<Pose>("").second`."""
+        name = string(self.reader.sources, key, self.frame)
+        port = field(value, "argument") if value.type == "field_expression" else None
+        is_second = port is not None and text_of(field(value, "field")) == "second"
+        ports = self.evaluated(port) if name is not None and port is not None and is_second else None
+        return {name: replace(next(iter(ports.values())), name=name)} if name is not None and ports else None
 
     def _loop(self, node: Node) -> None:
         """`for (const auto& port : Base::providedPorts()) ports.insert(port);`"""
         right, body = field(node, "right"), field(node, "body")
         ports = self.evaluated(right) if right is not None else None
         inside = contents(body) if body is not None and body.type == "compound_statement" else [body]
-        call = next((each for each in walk(node) if each.type == "call_expression" and each != right), None)
-        name = text_of(field(field(call, "function") or call, "argument")) if call is not None else ""
+        change = next((each for each in walk(body) if each.type in _CHANGES), None) if body is not None else None
+        name = text_of(field(field(change, "function") or change, "argument")) if change is not None else ""
         if ports is None or len(inside) != 1 or name not in self.lists:
             if self.names_list(node):
                 self.incomplete(node)
@@ -231,11 +325,12 @@ class Body:
             return self._listed(contents(node))
         if node.type == "parenthesized_expression":
             return self.evaluated(contents(node)[0])
-        if node.type == "identifier":
-            return self.lists.get(text_of(node))
+        if node.type in ("identifier", "qualified_identifier"):
+            name = text_of(node)
+            return self.lists[name] if name in self.lists else self.reader.constant(name, self.frame)
         if node.type == "compound_literal_expression":
             value = field(node, "value")
-            is_list = named(field(node, "type"))[1] == "PortsList"
+            is_list = self.reader.is_list(field(node, "type"))
             return self.evaluated(value) if is_list and value is not None else None
         return self._called(node) if node.type == "call_expression" else None
 
@@ -267,8 +362,17 @@ class Body:
             return self._listed(given)
         if name in ("move", "forward") and len(given) == 1:
             return self.evaluated(given[0])
+        if name in ("make_pair", "pair") and len(given) == 2:
+            return self._keyed(*given)
         if name == "providedPorts" and scope:
             return self.reader.class_ports(scope, self.frame, node)
+        function = field(node, "function")
+        while function is not None and function.type == "parenthesized_expression":
+            function = contents(function)[0]
+        if function is not None and function.type == "lambda_expression" and not given and "Port" in text_of(function):
+            inside = Body(self.reader, self.frame)
+            inside.lists.update(self.lists)
+            return inside.result(function)
         return self._helped(name, scope, given, node)
 
     def _helped(self, name: str, scope: str, given: list[Node], node: Node) -> Ports | None:
@@ -283,25 +387,23 @@ class Body:
             if not known and name not in ("providedPorts", "providedBasicPorts"):
                 return None
             message = f"`{name}` is not in the sources, and may add ports"
-            self.reader.incomplete(message, place_of(self.frame.path, node))
+            self.reader.incomplete(message, self.reader.sources.place_of(self.frame.path, node))
             return {key: port for each in known for key, port in each.items()}
         function, frame = helper
-        if named(field(function, "type"))[1] != "PortsList":
+        if not _returns_list(function):
             return None
         if self.frame.depth > _DEEPEST:
             return None
         body = Body(self.reader, frame)
-        declarator = next((each for each in walk(function) if each.type == "function_declarator"), None)
-        parameters = contents(field(declarator, "parameters")) if declarator is not None else []
-        for parameter, ports in zip(parameters, lists, strict=False):
-            names = [text_of(each) for each in walk(parameter) if each.type == "identifier"]
-            if ports is not None and names:
-                body.lists[names[-1]] = dict(ports)
+        for parameter, ports in zip(_parameters(function), lists, strict=False):
+            if ports is not None and (name := _name_in(parameter)):
+                body.lists[name] = dict(ports)
         return body.result(function)
 
     def _port(self, node: Node, direction: Direction, types: list[str], given: list[Node]) -> Ports | None:
         """`InputPort<T>(name)`, `(name, text)` or `(name, default, text)`."""
-        sources, place = self.reader.sources, place_of(self.frame.path, node)
+        sources = self.reader.sources
+        place = sources.place_of(self.frame.path, node)
         name = string(sources, given[0], self.frame) if given else None
         if name is None:
             self.reader.incomplete(f"the name of this port is an expression: `{_short(node)}`", place)
@@ -317,12 +419,39 @@ class Body:
     def incomplete(self, node: Node) -> None:
         """Report that a node is not understood."""
         message = f"it cannot be seen which ports this provides: `{_short(node)}`"
-        self.reader.incomplete(message, place_of(self.frame.path, node))
+        self.reader.incomplete(message, self.reader.sources.place_of(self.frame.path, node))
 
 
 def _united(ports: Ports, others: Ports) -> Ports:
     """Two lists; of a name in both, the first counts."""
     return {**ports, **{name: port for name, port in others.items() if name not in ports}}
+
+
+def _is_list(type_: str) -> bool:
+    return _LIST(type_) is not None
+
+
+def _returns_list(function: Node) -> bool:
+    trailing = next((each for each in walk(function, LAMBDAS) if each.type == "trailing_return_type"), None)
+    return _is_list(text_of(trailing) if trailing is not None else text_of(field(function, "type")))
+
+
+def _of_range(call: Node) -> str:
+    """The list of `ports.begin()` or `std::begin(ports)`."""
+    function = field(call, "function")
+    if function is not None and function.type == "field_expression":
+        return text_of(field(function, "argument"))
+    return text_of((arguments(call) or [call])[0])
+
+
+def _parameters(function: Node) -> list[Node]:
+    declarator = next((each for each in walk(function) if each.type == "function_declarator"), None)
+    return contents(field(declarator, "parameters")) if declarator is not None else []
+
+
+def _name_in(parameter: Node) -> str:
+    names = [text_of(each) for each in walk(parameter) if each.type == "identifier"]
+    return names[-1] if names else ""
 
 
 def _registers(statement: Node) -> bool:
@@ -342,4 +471,6 @@ _DIRECTIONS: Final[dict[str, Direction]] = {
     "OUTPUT": "output",
     "INOUT": "inout",
 }
+_LIST: Final = re.compile(r"\bPortsList\b|PortInfo>").search
+_CHANGES: Final = ("call_expression", "subscript_expression")
 _DEEPEST: Final = 20  # helpers that call themselves

@@ -18,11 +18,11 @@ from btq_lang.cpp.grammar import (
     literal,
     named,
     parse,
-    place_of,
     text_of,
     walk,
 )
-from btq_lang.cpp.model import Unseen
+from btq_lang.cpp.macros import MATTERS, Expanded, Macro
+from btq_lang.cpp.model import Place, Unseen
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
@@ -71,29 +71,44 @@ class Call(Record):
 class Source:
     """One file.
 
+    Args:
+        macros: those that are expanded in it.
+
     Attributes:
         strings: constants by their whole name.
+        lists: constants that may be ports, likewise, each with the scope that it is in.
         aliases: of types, likewise.
         accessed: the ports that code reads or writes of another object, as tests do.
+        registering: what may register a node, and does not show how.
     """
 
-    def __init__(self, path: str, text: str) -> None:
+    def __init__(self, path: str, text: str, macros: tuple[Macro, ...] = ()) -> None:
         self.path: Final = path
         self.classes: Final[list[Class]] = []
         self.functions: Final[list[Function]] = []
         self.calls: Final[list[Call]] = []
         self.strings: Final[dict[str, str]] = {}
+        self.lists: Final[dict[str, tuple[Node, tuple[str, ...]]]] = {}
         self.aliases: Final[dict[str, str]] = {}
         self.accessed: Final[set[str]] = set()
         self.includes: Final[list[str]] = []
         self.usings: Final[list[str]] = []
         self.unseen: Final[list[Unseen]] = []
-        root = parse(text)
+        self._expanded: Final = Expanded(path, text, macros)
+        self.registering: Final = self._expanded.registering
+        self.unseen.extend(Unseen(each.message, each.place, hides_node=True) for each in self._expanded.failed)
+        root = parse(self._expanded.text)
         self._visit(contents(root), (), None, ())
-        lines = text.splitlines()
+        lines = self._expanded.text.splitlines()
         for row, node in {node.start_point[0]: node for node in reversed([*errors(root)])}.items():
-            if any(map(_MATTERS, lines[row : node.end_point[0] + 1])):
-                self.unseen.append(Unseen("the C++ grammar cannot read this", place_of(path, node), hides_node=True))
+            if any(map(MATTERS, lines[row : node.end_point[0] + 1])):
+                self.unseen.append(Unseen("the C++ grammar cannot read this", self.place_of(node), hides_node=True))
+
+    def place_of(self, node: Node) -> Place:
+        """Where a node is on the disk."""
+        row, column = self._expanded.original(*node.start_point)
+        end_row, end_column = self._expanded.original(*node.end_point, at_end=True)
+        return Place(self.path, row + 1, column + 1, end_row + 1, end_column + 1)
 
     def _visit(
         self, nodes: Iterable[Node], scope: tuple[str, ...], within: Class | None, parameters: tuple[str, ...]
@@ -165,6 +180,8 @@ class Source:
                 value = contents(value)[0]
             if (string := literal(value)) is not None:
                 self.strings["::".join((*scope, text_of(inner)))] = string
+            elif value is not None and "Port" in text_of(node):
+                self.lists["::".join((*scope, text_of(inner)))] = value, scope
         self._inside(node, scope)
 
     def _inside(self, node: Node, scope: tuple[str, ...]) -> None:
@@ -235,7 +252,6 @@ _OF_BASES: Final = ("access_specifier", "virtual")
 _QUOTED: Final = re.compile(r'"((?:[^"\\]|\\.)*)"')
 ACCESSES: Final = ("getInput", "setOutput", "getLockedPortContent", "getInputStamped")
 REGISTERS: Final = re.compile(r"[rR]egister[A-Z]\w*|CreateRosNodePlugin").fullmatch
-_MATTERS: Final = re.compile(r"providedPorts|Port\s*[<(]|[rR]egister[A-Z]\w*\s*[<(]|getInput|setOutput").search
 _BLANKS: Final = re.compile(r"\s+")
 _AROUND: Final = re.compile(r" ?(::|[<>,]) ?")
 _WORD: Final = re.compile(r"(?<![\w:])[A-Za-z_]\w*")

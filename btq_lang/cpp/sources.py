@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 from btq_lang.catalog.cpp_classes import ENGINE, LIBRARIES, NUMBERED_TAGS, ROS_PORTS, TAGS
 from btq_lang.catalog.kinds import Category
+from btq_lang.catalog.nav2 import DISTRIBUTIONS
+from btq_lang.catalog.nav2.bases import BASES, NAMESPACE, BasePort
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.cpp.grammar import place_of
 from btq_lang.cpp.model import CppPort, Place, Unseen
 from btq_lang.cpp.source import Class, Function, Source, parts, substituted
 from btq_lang.util.grouping import grouped
@@ -41,11 +42,15 @@ class Bound(Record):
 class Sources:
     """The files, by path.
 
+    Args:
+        distributions: those of Nav2 that may be meant.
+
     Attributes:
         accessed: the ports that code reads or writes of another object.
     """
 
-    def __init__(self, sources: Iterable[Source]) -> None:
+    def __init__(self, sources: Iterable[Source], distributions: tuple[str, ...] = DISTRIBUTIONS) -> None:
+        self._distributions: Final = distributions
         self.files: Final = {source.path: source for source in sources}
         self.unseen: Final = [each for source in self.files.values() for each in source.unseen]
         self.accessed: Final = frozenset().union(*(source.accessed for source in self.files.values()))
@@ -55,6 +60,10 @@ class Sources:
         # By the last part of the name, of a class and of a function.
         self._classes: Final = grouped((_last(each.name), each) for source in every for each in source.classes)
         self._methods: Final = grouped((_last(each.name), each) for source in every for each in source.functions)
+
+    def place_of(self, path: str, node: Node) -> Place:
+        """Where a node of a file is on the disk."""
+        return self.files[path].place_of(node)
 
     def report(self, message: str, place: Place, hides_node: bool = False) -> None:
         """Report once what cannot be read."""
@@ -85,7 +94,7 @@ class Sources:
                 continue
             for base in each.class_.bases:
                 type_ = substituted(base, each.meanings)
-                place = place_of(each.class_.path, each.class_.node)
+                place = self.place_of(each.class_.path, each.class_.node)
                 found = self.find(type_, each.scope, each.class_.path, place)
                 if found.name not in seen:
                     seen.add(found.name)
@@ -118,12 +127,9 @@ class Sources:
 
     def string(self, name: str, bound: Bound | None, scope: tuple[str, ...], path: str) -> str | None:
         """The string that a constant means."""
-        scopes = [each.scope for each in self.ancestry(bound)] if bound is not None else []
-        for around in (scope, *scopes):
-            for whole in _in_scopes(name, around):
-                for source in self._near(path):
-                    if whole in source.strings:
-                        return source.strings[whole]
+        for whole, source in self._meant(name, bound, scope, path):
+            if whole in source.strings:
+                return source.strings[whole]
         found = {
             string
             for source in self.files.values()
@@ -131,6 +137,22 @@ class Sources:
             if whole.endswith(f"::{name}") or whole == name
         }
         return found.pop() if len(found) == 1 else None
+
+    def constant(
+        self, name: str, bound: Bound | None, scope: tuple[str, ...], path: str
+    ) -> tuple[Node, tuple[str, ...], str] | None:
+        """The value of a constant that may be ports, with its scope and file."""
+        for whole, source in self._meant(name, bound, scope, path):
+            if whole in source.lists:
+                return *source.lists[whole], source.path
+        return None
+
+    def _meant(self, name: str, bound: Bound | None, scope: tuple[str, ...], path: str) -> Iterator[tuple[str, Source]]:
+        """The whole names that a name may mean, each in each file, the nearest first."""
+        scopes = [each.scope for each in self.ancestry(bound)] if bound is not None else []
+        for around in (scope, *scopes):
+            for whole in _in_scopes(name, around):
+                yield from ((whole, source) for source in self._near(path))
 
     def strings_of(self, names: set[str]) -> set[str]:
         """The strings of all constants that have one of some names."""
@@ -149,6 +171,20 @@ class Sources:
                     return source.aliases[whole]
         return None
 
+    def library_ports(self, bound: Bound, place: Place) -> tuple[dict[str, CppPort], str] | None:
+        """The ports of a class of a known library, by name, each at a place, and those that it may have, too; None for
+        any other class, which may provide any port."""
+        if (of_nav2 := _of_nav2(bound)) is None:
+            ports = _library_ports(bound, place)
+            return None if ports is None else (ports, "")
+        in_all = [each for each in of_nav2 if all(map(each.is_in, self._distributions))]
+        in_some = [each for each in of_nav2 if each not in in_all and any(map(each.is_in, self._distributions))]
+        ports = {
+            each.name: CppPort(each.name, each.direction, each.type, _default(each), "", each.text, place)
+            for each in in_all
+        }
+        return ports, ", ".join(f"`{each.name}`" for each in in_some)
+
     def _outside(self, class_: Class, name: str) -> list[Function]:
         """The methods of a class whose body is outside of it."""
         found = []
@@ -156,7 +192,7 @@ class Sources:
             owner = function.name.rpartition("::")[0]
             if not owner or _last(owner) != _last(class_.name):
                 continue
-            place = place_of(function.path, function.node)
+            place = self.place_of(function.path, function.node)
             meant = self._nearest(self._classes[_last(owner)], owner, function.scope, function.path, place)
             if meant is class_:
                 found.append(function)
@@ -220,9 +256,18 @@ def _last(name: str) -> str:
     return name.rpartition("::")[2]
 
 
-def library_ports(bound: Bound, place: Place) -> dict[str, CppPort] | None:
-    """The ports of a class of the engine or of behaviortree_ros2, by name, each at a place; None for any other class,
-    which may provide any port."""
+def _of_nav2(bound: Bound) -> tuple[BasePort, ...] | None:
+    """The ports of a base class of Nav2's nodes in its distributions; None for any other class."""
+    scope, _, name = bound.name.rpartition("::")
+    return BASES.get(name) if bound.class_ is None and scope in ("", NAMESPACE) else None
+
+
+def _default(port: BasePort) -> str | None:
+    return "" if port.direction == "input" else None
+
+
+def _library_ports(bound: Bound, place: Place) -> dict[str, CppPort] | None:
+    """The ports of a class of the engine or of behaviortree_ros2, by name, each at a place."""
     name = bound.name.rpartition("::")[2]
     if name in ROS_PORTS:
         key, text = ROS_PORTS[name]

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.cpp_classes import ENGINE
-from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, enclosing, field, literal, place_of, text_of, walk
+from btq_lang.cpp.grammar import LAMBDAS, arguments, callee, contents, enclosing, field, literal, text_of, walk
 from btq_lang.cpp.model import CppPort, Use
 from btq_lang.cpp.source import ACCESSES
 from btq_lang.cpp.sources import Bound, Sources
@@ -23,28 +23,44 @@ if TYPE_CHECKING:
 
 
 class Uses:
-    """What the code of a class does with ports.
+    """What code does with ports.
 
     Attributes:
         all: reads and writes whose port can be seen, in order.
         complete: whether all code is in the sources, and the names of all ports in it can be seen.
     """
 
-    def __init__(self, sources: Sources, bound: Bound) -> None:
+    def __init__(self, sources: Sources) -> None:
         self.all: Final[list[Use]] = []
         self.complete = True
         self._sources: Final = sources
         self._strings: Final[set[str]] = set()
         self._identifiers: Final[set[str]] = set()
+
+    @classmethod
+    def of_class(cls, sources: Sources, bound: Bound) -> Uses:
+        """What the methods of a class and of its bases do."""
+        uses = cls(sources)
         for each in sources.ancestry(bound):
             if each.class_ is None:
-                self.complete = self.complete and each.name.rpartition("::")[2] in ENGINE
+                uses.complete = uses.complete and each.name.rpartition("::")[2] in ENGINE
                 continue
             bodies = sources.all_methods(each.class_)
-            self.complete = self.complete and each.class_.promised <= {name for name, *_ in bodies}
+            uses.complete = uses.complete and each.class_.promised <= {name for name, *_ in bodies}
             for name, node, path in bodies:
                 if not _PROVIDES(name):
-                    self._read(node, Frame(each, each.scope, path))
+                    uses._read(node, Frame(each, each.scope, path))
+        return uses
+
+    @classmethod
+    def of_function(cls, sources: Sources, given: Node, frame: Frame) -> Uses:
+        """What a function does that a node is made of: a lambda, or the name of one or of a function."""
+        uses = cls(sources)
+        function = _function(sources, given, frame)
+        uses.complete = function is not None and not _is_handed_on(function[0])
+        if function is not None:
+            uses._read(*function)
+        return uses
 
     def unread(self, ports: Iterable[CppPort]) -> tuple[CppPort, ...]:
         """The ports that the code never names."""
@@ -58,8 +74,12 @@ class Uses:
         names = {port.name for port in ports}
         return tuple(use for use in self.all if use.port not in names and not use.falls_back)
 
-    def without(self, port: CppPort) -> str:
-        """What the code does without an input: see `Use.without`."""
+    def without_each(self, ports: Iterable[CppPort]) -> tuple[tuple[str, str], ...]:
+        """What the code does without each input that has no default: see `Use.without`."""
+        inputs = (port for port in ports if port.direction != "output" and port.default is None)
+        return tuple((port.name, self._without(port)) for port in inputs)
+
+    def _without(self, port: CppPort) -> str:
         found = {use.without for use in self.all if use.port == port.name and not use.writes}
         if "fails" in found:
             return "fails"
@@ -81,12 +101,42 @@ class Uses:
             if port is not None:
                 writes = name == "setOutput"
                 without = "" if writes else _without(call)
-                self.all.append(Use(port, writes, without, place_of(frame.path, call)))
+                self.all.append(Use(port, writes, without, self._sources.place_of(frame.path, call)))
             elif not _is_parameter(given[0]):  # else the name is in a string of the code that calls this
                 self.complete = False
         elif _FALLS_BACK(name):
             for port in filter(None, map(literal, given)):
-                self.all.append(Use(port, False, "goes on", place_of(frame.path, call), falls_back=True))
+                self.all.append(Use(port, False, "goes on", self._sources.place_of(frame.path, call), falls_back=True))
+
+
+def _function(sources: Sources, given: Node, frame: Frame) -> tuple[Node, Frame] | None:
+    """The function that an argument is, with the frame of its body; None if it cannot be seen."""
+    if given.type == "lambda_expression":
+        return given, frame
+    if given.type not in ("identifier", "qualified_identifier"):
+        return None
+    around = enclosing(given, ("function_definition",))
+    for each in walk(around) if around is not None else ():
+        if each.type == "init_declarator" and text_of(field(each, "declarator")) == text_of(given):
+            value = field(each, "value")
+            return (value, frame) if value is not None and value.type == "lambda_expression" else None
+    function = sources.function(text_of(given), frame.scope, frame.path, sources.place_of(frame.path, given))
+    return None if function is None else (function.node, Frame(None, function.scope, function.path))
+
+
+def _is_handed_on(function: Node) -> bool:
+    """Whether other code may read ports, too, because the function passes on the node that it is given."""
+    listed = next((each for each in walk(function) if each.type == "parameter_list"), None)
+    parameters = [each for each in contents(listed) if "NodeStatus" not in text_of(each)]  # that of a decorator's child
+    names = {text_of(each) for parameter in parameters for each in walk(parameter) if each.type == "identifier"}
+    body = field(function, "body")
+    return any(
+        each.type == "identifier"
+        and text_of(each) in names
+        and each.parent is not None
+        and each.parent.type != "field_expression"
+        for each in (walk(body) if body is not None else ())
+    )
 
 
 def _is_parameter(name: Node) -> bool:

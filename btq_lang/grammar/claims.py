@@ -12,8 +12,9 @@ from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.grammar.conditions import BOUNDS, COMPARISONS, HEADS, RELATIONS, ConditionParser
 from btq_lang.grammar.cursor import shown
+from btq_lang.grammar.prose import MODALS, clause_meant, state_meant
 from btq_lang.syntax.scan import number_end
-from btq_lang.syntax.tokens import NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
+from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (
     Amount,
     Between,
@@ -55,6 +56,9 @@ class ClaimParser(ConditionParser):
             if subject is not None:
                 self.no_verb(subject)
             return None
+        if isinstance(subject, Path) and subject.names[0].raw in MODALS and len(subject.names) == 1:
+            self.verb_in_other_words(self.index - 1, "")
+            subject = None
         return self.verb(start, subject)
 
     def verb(self, start: int, subject: Subject | None) -> Claim:
@@ -77,6 +81,8 @@ class ClaimParser(ConditionParser):
         elif operand == "condition":
             if verb.raw == "never" and self.raw in HAPPENINGS and self.kinds[self.index + 1] == NEWLINE:
                 self.expected("a condition", (_NEVER_FAILS,))
+            elif self.at_word("to") and self.verb_in_other_words(self.index - 1, self.before_verb(subject)):
+                self.recover()
             elif not self.signal_last(verb.raw):
                 condition = self.cond()
         elif operand == "use":
@@ -108,7 +114,7 @@ class ClaimParser(ConditionParser):
             return False
         if self.kinds[self.index + 1] != NAME or self.raws[self.index + 1] in VERB_WORDS:
             return False
-        fix = replace_fix(f"Replace `{self.raw}` with `every`", self.here(), "every")
+        fix = replace_fix(f"Replace `{self.raw}` with `every`", self.here(), "every", safe=True)
         self.complain(self.here(), "all nodes of a kind are written `every …`", fix)
         self.advance()
         return True
@@ -121,7 +127,9 @@ class ClaimParser(ConditionParser):
     def no_verb(self, subject: Subject) -> None:
         """Report a subject without a verb, or of a misspelt verb that was read as a subject."""
         first = subject.names[0] if isinstance(subject, Path) and len(subject.names) == 1 else None
-        if isinstance(subject, Path) and self.kind == NAME and self.raw in NO_VERBS:
+        if isinstance(subject, Path) and (self.in_other_words(subject) or self.situation(first)):
+            self.recover()
+        elif isinstance(subject, Path) and self.kind == NAME and self.raw in NO_VERBS:
             self.expected(_A_VERB, (NO_VERBS[self.raw],))
         elif isinstance(subject, Path) and self.at("."):
             self.complain(self.here(), "the names of a path are separated by `/`", write_fix("/", self.here()))
@@ -164,6 +172,71 @@ class ClaimParser(ConditionParser):
             elif self.kind == STRING:
                 note = 'a quality goes after `:` and a title in quotes: QualityReq ID : quality "title"'
             self.expected(f"a verb after `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
+
+    def in_other_words(self, subject: Path) -> bool:
+        """Report `must take at most 30 s`, `Go should be reached within 30 s` and `speed must stay below 1 m/s`."""
+        word = subject.names[0]
+        is_word = len(subject.names) == 1 and word.kind == NAME
+        if is_word and self.verb_in_other_words(self.index - 1, ""):
+            return True
+        if self.verb_in_other_words(self.index, self.before_verb(subject)):
+            return True
+        state = state_meant(self.raws, self.index) if is_word else None
+        if state is not None:
+            self.written_as(self.index - 1, state[0], "", f"keeps {word.raw} {state[1]}")
+        return state is not None
+
+    def before_verb(self, subject: Subject | None) -> str:
+        """The text of a subject that is a path."""
+        if not isinstance(subject, Path):
+            return ""
+        return self.text[subject.span.start + self.base : subject.span.end + self.base]
+
+    def verb_in_other_words(self, begin: int, subject: str) -> bool:
+        """Report `must take`, which begins at a token after the subject."""
+        times = [is_time(raw) for kind, raw in zip(self.kinds, self.raws, strict=True) if kind == QUANTITY]
+        found = clause_meant(self.raws, begin, is_time=bool(times) and all(times))
+        if found is not None:
+            end, verb = found
+            is_verb = not verb  # after a word like `must`
+            self.written_as(begin, end + is_verb, subject, verb or self.raws[end])
+        return found is not None
+
+    def written_as(self, begin: int, end: int, subject: str, words: str) -> None:
+        """Report that the words between two tokens, after a subject, are others here."""
+        span = Span(self.starts[begin], self.starts[end - 1] + len(self.raws[end - 1]))
+        rest = self.text[span.end : self.starts[-1]].strip()
+        whole = " ".join(part for part in (subject, words, rest) if part)
+        self.complain(span, f"this clause is written `{shown(whole)}`", write_fix(words, span))
+
+    def next_head(self) -> int:
+        """The next token that begins another clause, or ends the line or the brackets."""
+        end = self.index
+        depth = 0
+        while self.kinds[end] != NEWLINE and not (self.kinds[end] == NAME and self.raws[end] in HEADS):
+            depth += (self.kinds[end] == OPEN) - (self.kinds[end] == CLOSE)
+            if depth < 0:
+                break
+            end += 1
+        return end
+
+    def situation(self, first: Word | None) -> bool:
+        """Report `unless humans_near`, with the condition that is written there."""
+        if first is None or first.kind != NAME or first.raw not in ("unless", "if") or self.kind == NEWLINE:
+            return False
+        end = self.next_head()
+        if end == self.index:
+            return False
+        condition = self.text[self.here().start : self.starts[end - 1] + len(self.raws[end - 1])]
+        span = Span(first.start + self.base, self.here().start + len(condition))
+        if first.raw == "if":
+            note = f"to limit a clause to a situation, write `while {condition}` or `when {condition}`"
+            self.complain(span, "a clause has no `if`", notes=(note,))
+            return True
+        joined = any(word in ("and", "or") for word in self.raws[self.index : end])
+        written = f"while not ({condition})" if joined else f"while not {condition}"
+        self.complain(span, f"this clause is written `{shown(written)}`", write_fix(written, span))
+        return True
 
     def blank_in_path(self, path: Subject | None, follow: frozenset[str]) -> bool:
         """Report `Inspect Dock succeeds`, where a path is written `Inspect/Dock`, and skip the rest."""
@@ -293,6 +366,10 @@ class ClaimParser(ConditionParser):
 
     def bounded(self) -> Bounded | None:
         """Bounded = Simple | Simple "if" Cond { "," Simple "if" Cond } "else" Simple"""
+        if self.at_word("if") or (
+            "?" in self.raws[self.index :] and self.raws.index("?", self.index) < self.next_head()
+        ):
+            return self.choice_in_other_words()
         value = self.simple()
         if value is None or not self.at_word("if"):
             return value
@@ -317,6 +394,36 @@ class ClaimParser(ConditionParser):
         otherwise = self.simple() if self.expect_word("else") else None
         return Table(tuple(cases), otherwise)
 
+    def choice_in_other_words(self) -> Amount | None:
+        """Report `low ? 60 s : 30 s`, as in C++, and `if low then 60 s else 30 s`; the first of the values."""
+        begin, raws = self.index, self.raws
+        has_if = self.at_word("if")
+        middle, last = ("then", "else") if has_if else ("?", ":")
+        first = raws.index(middle, begin) if middle in raws[begin:] else begin
+        second = self.end_of_simple(first + 1)
+        third = self.end_of_simple(second + 1) if raws[second] == last else second
+        condition, note = self.between(begin + has_if, first), f"a choice is written `{_A_CHOICE}`"
+        if not condition or third <= second + 1:
+            self.expected("a value", (note,))
+            return None
+        span = Span(self.here().start, self.starts[third - 1] + len(raws[third - 1]))
+        written = f"{self.between(first + 1, second)} if {condition} else {self.between(second + 1, third)}"
+        self.complain(span, f"a choice is written `{shown(written)}`", write_fix(written, span))
+        self.go_to(first + 1)
+        value = self.simple()
+        self.go_to(third)
+        return value
+
+    def end_of_simple(self, index: int) -> int:
+        """Where the value ends that begins at a token; the same token if none does."""
+        begin = index + (self.raws[index : index + 1] == ["-"])
+        is_value = begin < len(self.kinds) and self.kinds[begin] in (QUANTITY, NUMBER, NAME)
+        return begin + 1 if is_value else min(index, len(self.kinds) - 1)
+
+    def between(self, begin: int, end: int) -> str:
+        """The text of some tokens."""
+        return self.text[self.starts[begin] : self.starts[end - 1] + len(self.raws[end - 1])] if begin < end else ""
+
     def simple(self, strings: bool = False) -> Amount | None:
         """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""
         self.skip_sign(":")
@@ -336,7 +443,6 @@ def is_time(raw: str) -> bool:
 
 
 QUALITY_IN_HEAD: Final = "a requirement's quality goes after its name: `QualityReq fast : reliability`"
-MODALS: Final = frozenset(("must", "shall", "should", "will", "may"))
 NO_VERBS: Final = {  # what else people write before or as a verb
     **dict.fromkeys(MODALS, "a clause begins with its verb, without such a word: `takes at most 30 s`"),
     **dict.fromkeys(("finishes", "ends", "completes"), "write `succeeds within 30 s`, or `takes at most 30 s`"),
@@ -362,6 +468,7 @@ MEANT: Final = {  # by the word that is read as a node before a verb
     ),
 }
 _NO_NAMES: Final = HEADS | {"and", "or", "not", "if", "else", "is", "to", "of", "by", "per", "at", "within", "after"}
+_A_CHOICE: Final = "60 s if battery_low else 30 s"
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
 _NEVER_FAILS: Final = (
     "write `succeeds` for a node that must not fail, or `never node Dock` for a node that must not run"

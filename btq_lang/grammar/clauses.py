@@ -250,8 +250,10 @@ class ClauseParser(ClaimParser):
             fix = replace_fix(f"Replace `{self.raw}` with `violation`", self.here(), "violation")
             self.complain(self.here(), f"expected `violation`, found `{self.raw}`", fix)
             self.advance()
+        elif self.kind == NAME and self.raw in ACTIONS:
+            self.expect_word("violation", forgotten=True)
         else:
-            self.expect_word("violation", forgotten=self.kind == NAME and self.raw in ACTIONS)
+            self.expected("`violation`", (_ON_VIOLATION,))
 
     def after_missing(self, words: str) -> Word:
         """Read the current percentage; report that `words` are missing before it."""
@@ -282,6 +284,9 @@ class ClauseParser(ClaimParser):
         return ends and not is_misspelt and measured(self.raws[: self.index]) == "s"
 
 
+_ON_VIOLATION: Final = (
+    "`on violation` is followed by fail, halt, warn or log; to try again, put a Retry around the node"
+)
 _OTHER_WORDS: Final = {  # for actions and methods
     **dict.fromkeys(("stop", "abort"), ("halt", "fail")),
     **dict.fromkeys(("alert", "notify", "report"), ("warn", "log")),

@@ -101,7 +101,7 @@ class Cursor:
     def no_end(self, notes: tuple[str, ...], fixes: tuple[Fix, ...]) -> None:
         """Report what is left of the line."""
         if not notes and self.at_name() and self.index > 0 and self.kinds[self.index - 1] == NAME:
-            notes = (_QUOTES,)
+            notes = (QUOTES,)
         if not notes and self.at(".") and self.kinds[self.index + 1] == NAME and self.adjacent(self.index + 1):
             notes = ("a name that contains a point goes in quotes",)
         if not notes and self.kind == QUANTITY and self.index and self.kinds[self.index - 1] == QUANTITY:
@@ -456,7 +456,7 @@ def shown(raw: str) -> str:
     return line if len(line) == len(raw) <= 40 else f"{line[:37]}…"
 
 
-_QUOTES: Final = "a name of several words goes in quotes"
+QUOTES: Final = "a name of several words goes in quotes"
 VALUES: Final = frozenset((STRING, NAME, NUMBER, QUANTITY, BRACED))
 # Mistakes reported by the lexer after which the parser misses something.
 _LEAVING_GAPS: Final = frozenset(

@@ -5,10 +5,12 @@ Each function is a production of docs/grammar.md and named after it; its docstri
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from btq_lang.diagnostics.model import Fix, replace_fix, write_fix
 from btq_lang.grammar.nodes import NodeParser
+from btq_lang.grammar.requirements import sort_of
 from btq_lang.syntax.scan import blanks_end, is_name, is_unit, line_end, number_end, path_end
 from btq_lang.syntax.tokens import BRACED, CATEGORIES, CLOSE, DIRECTIONS, ERROR, NAME, NEWLINE, OPEN, QUANTITY, STRING
 from btq_lang.syntax.tree import (
@@ -123,11 +125,26 @@ class ItemParser(NodeParser):
                 fixes = self.replaced_by((*sorted(DIRECTIONS), "metadata", "xml"))
                 if self.kind == NAME and self.raw in ("in", "out"):
                     fixes = (write_fix(f"{self.raw}put", self.here(), safe=True),)
-                self.expected("a port (input, output or inout), metadata or xml", (), fixes)
+                notes: tuple[str, ...] = ()
+                if declared := _OF_CPP.match(self.text, self.here().start):
+                    fixes = self.port_of_cpp(declared)
+                    notes = (_A_PORT,)
+                self.expected("a port (input, output or inout), metadata or xml", notes, fixes)
                 self.end_line()
                 self.skip_block(inner)
             self.no_block(inner)
         return tuple(body)
+
+    def port_of_cpp(self, declared: re.Match[str]) -> tuple[Fix, ...]:
+        """The fix for `InputPort<double> speed` and `std::string place`, in the words of C++."""
+        rest = line_end(self.text, declared.end())
+        direction = _DIRECTIONS_OF_CPP[declared["port"] or "InputPort"]
+        type_ = declared["type"] or declared["bare"]
+        if self.text[declared.end() : rest].partition("#")[0].strip():
+            return ()
+        plain = type_ is not None and _PLAIN_TYPE.fullmatch(type_) is not None
+        after = "" if type_ is None else f" : {type_ if plain else quote(type_)}"
+        return (write_fix(f"{direction} {declared['name']}{after}", Span(declared.start(), declared.end())),)
 
     def meta(self) -> Meta:
         """ "metadata" Attributes NL"""
@@ -141,10 +158,12 @@ class ItemParser(NodeParser):
         """ "signal" NAME ":" UNIT [ "from" BRACED ] [ "level" | … ] [ "fresh" … ] [ "initially" … ] NL"""
         start = self.take().start
         self.skip_glued_colon()
+        if self.at_word("from") and self.kinds[self.index + 1] in (BRACED, STRING):
+            self.expected("the signal's name", (_a_signal("battery", "{battery}"),))
         name = self.plain_name("the signal's name")
-        unit = self.unit() if self.at_unit() else None
+        unit = self.unit() if name is not None and self.at_unit(name) else None
         source = behaviour = fresh = initially = None
-        if self.accept_word("from"):
+        if self.accept_word("from") or self.from_meant():
             source = self.entry_key()
         if self.kind == NAME and self.raw in _BEHAVIOURS:
             behaviour = self.take()
@@ -252,13 +271,18 @@ class ItemParser(NodeParser):
         blank = "" if self.text[start - 1] in " \t" else " "
         return replace_fix(title, Span(start, end), f"{blank}{text}", safe=safe)
 
-    def at_unit(self) -> bool:
+    def at_unit(self, name: Word) -> bool:
         """ ":" before the unit of a signal; its absence is reported"""
         if self.accept(":"):
             return True
         unit = self.index + 1
+        notes: tuple[str, ...] = ()
         fixes: tuple[Fix, ...] = ()
-        if self.at("=") and self.kinds[unit] == QUANTITY and self.kinds[unit + 1] == NEWLINE:
+        if (self.at("=") or self.kind == NAME) and self.kinds[unit] == BRACED:
+            notes = (_a_signal(name.raw, self.raws[unit]),)
+        elif self.kind == NAME and sort_of(name.raw):
+            notes = (_a_signal(self.raw, f"{{{self.raw}}}"),)
+        elif self.at("=") and self.kinds[unit] == QUANTITY and self.kinds[unit + 1] == NEWLINE:
             raw = self.raws[unit]
             symbol = raw[number_end(raw, 0) :].strip()
             span = Span(self.here().start, self.starts[unit] + len(raw))
@@ -270,8 +294,17 @@ class ItemParser(NodeParser):
             fixes = (write_fix(f": {inside}", span),) if is_unit(inside) else ()
         elif self.at("=") or self.at_word("in") or self.at_word("is"):
             fixes = (write_fix(":", self.here()),)
-        self.expected("`:` and the signal's unit", (), fixes)
+        self.expected("`:` and the signal's unit", notes, fixes)
         return False
+
+    def from_meant(self) -> bool:
+        """Report `= {speed}` after the unit of a signal, and read it as `from {speed}`."""
+        is_meant = self.at("=") or (self.kind == NAME and self.raw in _NOT_FROM)
+        if not is_meant or self.kinds[self.index + 1] != BRACED:
+            return False
+        self.complain(self.here(), f"expected `from`, found `{self.raw}`", write_fix("from", self.here(), safe=True))
+        self.advance()
+        return True
 
     def entry_key(self) -> Word | None:
         """BRACED"""
@@ -283,6 +316,19 @@ class ItemParser(NodeParser):
         return None
 
 
+def _a_signal(name: str, entry: str) -> str:
+    return f"write `signal {name} : <unit> from {entry}`; a unit is `m/s`, `s`, `%`, `bool`, `text` or `1`"
+
+
+_A_PORT: Final = "a port is written `input name : type`"
+_DIRECTIONS_OF_CPP: Final = {"InputPort": "input", "OutputPort": "output", "BidirectionalPort": "inout"}
+_OF_CPP: Final = re.compile(
+    r"(?:(?:BT::)?(?P<port>InputPort|OutputPort|BidirectionalPort)[ \t]*(?:<(?P<type>[^()\"\r\n]*)>)?"
+    r"|(?P<bare>(?:std::)?(?:string|bool|double|float|int|unsigned|vector<[^()\"\r\n]*>)))"
+    r"[ \t(]+(?P<quote>\"?)(?P<name>[^\W\d]\w*)(?P=quote)\)?;?(?![ \t]*:)"
+)
+_PLAIN_TYPE: Final = re.compile(r"\w+(?:::\w+)*")
+_NOT_FROM: Final = frozenset(("in", "is", "of", "at", "reads", "source"))
 _BEHAVIOURS: Final = frozenset(("level", "counter", "gauge"))
 _SIGNAL_WORDS: Final = ("from", *sorted(_BEHAVIOURS), "fresh", "initially")
 _SIGNAL_ORDER: Final = "the order is: signal x : % from {x} level fresh within 5 s initially 100 %"

@@ -15,7 +15,7 @@ from btq_lang.grammar.conditions import HEADS
 from btq_lang.grammar.cursor import VALUES, shown
 from btq_lang.lexer import Lexer
 from btq_lang.syntax.scan import line_end, line_start
-from btq_lang.syntax.suggestions import ATTRIBUTES, CHILDREN, attributes_in_braces
+from btq_lang.syntax.suggestions import ATTRIBUTES, CHILDREN, are_plain_pairs, attributes_in_braces
 from btq_lang.syntax.tokens import (
     BRACED,
     CATEGORIES,
@@ -219,7 +219,22 @@ class NodeParser(AttributeParser):
         else:
             is_negation = self.raw == "!" and self.kinds[self.index + 1] in (NAME, STRING)
             notes = ("to negate a node, put an `Inverter` above it, and indent the node",) if is_negation else ()
-            self.expected("a node: its kind, or a symbol: -> ? || …", notes, self.symbol_meant())
+            fixes = self.inverter() if is_negation else self.symbol_meant()
+            self.expected("a node: its kind, or a symbol: -> ? || …", notes, fixes)
+
+    def inverter(self) -> tuple[Fix, ...]:
+        """The fix for `!Dark`."""
+        sign = Span(self.here().start, self.starts[self.index + 1])
+        below = self.line_below()
+        return (replace_fix("Put an `Inverter` above it", sign, f"Inverter{below}"),) if below else ()
+
+    def line_below(self) -> str:
+        """How a line begins that is one step deeper than the current one, with the line end before it; empty if the
+        current one begins with something else.
+        """
+        margin = self.text[line_start(self.text, 0, self.starts[0]) : self.starts[0]]
+        step = "\t" if margin.startswith("\t") else "    "
+        return "" if margin.strip() else f"\n{margin}{step}"
 
     def found_xml(self) -> None:
         """Report that the current line is XML; the fix writes an element as a node."""
@@ -290,6 +305,8 @@ class NodeParser(AttributeParser):
             self.expected("the end of the line", ("values go in brackets, with their names: `(key = value)`",))
         elif self.at(",") or self.kind == SYMBOL:
             self.expected("the end of the line", (CHILDREN,))
+        elif self.kind == NAME and self.raw in ("if", "when", "while", "unless"):
+            self.expected("the end of the line", (_ONLY_IF,))
         else:
             return
         self.go_to(len(self.kinds) - 1)
@@ -304,11 +321,10 @@ class NodeParser(AttributeParser):
         if self.kinds[index + 1] not in (NAME, STRING) or self.raws[index + 1] in NODE_CLAUSES:
             return False
         start, end = self.starts[index], self.starts[-2] + len(self.raws[-2])
-        margin = self.text[line_start(self.text, 0, self.starts[0]) : self.starts[0]]
         before = self.starts[index - 1] + len(self.raws[index - 1])
-        step = "\t" if margin.startswith("\t") else "    "
-        fix = replace_fix("Put it on a line of its own", Span(before, start), f"\n{margin}{step}")
-        self.complain(Span(start, end), CHILD, *(() if margin.strip() else (fix,)))
+        below = self.line_below()
+        fixes = (replace_fix("Put it on a line of its own", Span(before, start), below),) if below else ()
+        self.complain(Span(start, end), CHILD, *fixes)
         self.go_to(len(self.kinds) - 1)
         return True
 
@@ -356,7 +372,8 @@ class NodeParser(AttributeParser):
         closing = [problem for problem in lexer.problems[self.known :] if self.is_stray_bracket(problem)]
         if not closing:  # else the `(` is missing
             changes += (Change(Place(Span(end, end)), ")"),)
-        fixes = (Fix("Put brackets around them", changes),) if plain or closing else ()
+        safe = plain and not closing and are_plain_pairs(self.text[start:end])
+        fixes = (Fix("Put brackets around them", changes, safe),) if plain or closing else ()
         message = "attributes go in brackets: `(key = value)`"
         self.complain_instead(closing[-1:], Diagnostic("syntax-error", Span(start, end), message, fixes=fixes))
 
@@ -534,6 +551,9 @@ _STATEMENTS: Final = {
     **dict.fromkeys(("if", "elif", "else"), "to choose, use a Fallback `?` with a Condition, or `_skipIf` on the node"),
     **dict.fromkeys(("while", "for"), "to repeat, use `Repeat`, `Retry` or `KeepRunningUntilFailure`"),
 }
+_ONLY_IF: Final = (
+    "a node that runs only if something holds goes below a Precondition, or after a Condition in a Sequence `->`"
+)
 _ARROW: Final = re.compile(r"[-=~]+ ?>")
 _BEFORE_TYPES: Final = frozenset(("const", "unsigned", "signed", "long", "short"))
 MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine's limit (4.9 and later)

@@ -5,12 +5,14 @@ Each function is a production of docs/grammar.md and named after it; its docstri
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix, write_fix
-from btq_lang.grammar.claims import MEANT, MODALS, VERB_WORDS
+from btq_lang.grammar.claims import MEANT, VERB_WORDS
 from btq_lang.grammar.clauses import ENDS_CLAUSES, ClauseParser
 from btq_lang.grammar.conditions import HEADS, RELATIONS
+from btq_lang.grammar.prose import MODALS
 from btq_lang.syntax.scan import is_unit, path_end, unit_run
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
@@ -288,28 +290,64 @@ class RequirementParser(ClauseParser):
             return None
         end = max(unit_run(self.text, first), first + len(self.raw))  # valid or not
         word = self.text[first:end]
-        if self.kind == STRING and is_unit(inner := unquote(word)):
+        if self.kind == NAME and (type_ := _TYPE.match(self.text, first)) and (sort := sort_of(type_[0])):
+            end = max(end, type_.end())
+            self.no_unit(type_[0], Span(first, type_.end()), sort)
+        elif self.kind == STRING and is_unit(inner := unquote(word)):
             self.complain(self.here(), "a unit takes no quotes", write_fix(inner, self.here(), safe=True))
         elif self.kind == STRING:
             self.expected("a unit: s, m/s, %, 1, bool, text, …")
             return None
-        elif word in _OTHER_SORTS:
-            fix = write_fix(_OTHER_SORTS[word], Span(first, end))
-            message = f"unknown unit `{word}`; did you mean `{_OTHER_SORTS[word]}`?"
-            self.report(Diagnostic("unknown-unit", Span(first, end), message, fixes=(fix,)))
         elif word not in UNITLESS and not is_unit(word):
             self.report(unknown_unit(self.text, first, end))
         while self.starts[self.index] < end and self.kind != NEWLINE:
             self.advance()
         return Word(NAME, start, self.text[first:end])
 
+    def no_unit(self, word: str, span: Span, sort: str) -> None:
+        """Report a type of C++ or ROS in place of a unit."""
+        if sort == TYPE:
+            owner = "signal" if self.is_word(0, "signal") else "parameter"
+            note = "write the unit of its values: `m/s`, `s`, `%`, …; or `1` if they have none"
+            message = f"unknown unit `{word}`: a {owner} has a unit, not a type"
+            self.report(Diagnostic("unknown-unit", span, message, notes=(note,)))
+        else:
+            message = f"unknown unit `{word}`; did you mean `{sort}`?"
+            self.report(Diagnostic("unknown-unit", span, message, fixes=(write_fix(sort, span),)))
 
-_TITLES: Final = ("description", "title", "text")
-_OTHER_SORTS: Final = {
-    **dict.fromkeys(("boolean", "Boolean", "Bool", "flag"), "bool"),
-    **dict.fromkeys(("string", "String", "str", "std::string"), "text"),
-    **dict.fromkeys(("int", "integer", "float", "double", "number", "count"), "1"),
+
+def sort_of(type_: str) -> str:
+    """What a type of C++ or ROS is as the unit of a signal: `bool`, `text`, or TYPE if it does not tell; empty if the
+    word names none."""
+    if type_ in UNITLESS:
+        return ""
+    last = _PART.split(type_)[-1].casefold()
+    if last in _SORTS:
+        return _SORTS[last]
+    return TYPE if _NUMBER_TYPE.fullmatch(last) or "::" in type_ or _MESSAGE.search(type_) else ""
+
+
+TYPE: Final = "type"
+_TYPE: Final = re.compile(
+    r"(?:(?:const|(?:un)?signed|long|short)[ \t]+(?=(?:(?:un)?signed|long|short|int|char|double)\b))*"
+    r"[^\W\d]\w*(?:(?:::|/)[^\W\d]\w*)*(?:[ \t]*<[^\"#\r\n=]*>)?"
+)
+_PART: Final = re.compile("::|[/ \t]+")
+_MESSAGE: Final = re.compile(r"_msgs\b|_interfaces\b|\bmsg/|<")
+_SORTS: Final = {
+    **dict.fromkeys(("boolean", "flag", "bool"), "bool"),
+    **dict.fromkeys(("string", "str", "string_view", "wstring"), "text"),
+    **dict.fromkeys(("number", "count"), "1"),
+    **dict.fromkeys(("speed", "velocity"), "m/s"),
+    **dict.fromkeys(("distance", "length", "height", "width"), "m"),
+    **dict.fromkeys(("time", "duration"), "s"),
+    **{"temperature": "degC", "angle": "rad", "force": "N", "voltage": "V", "power": "W", "energy": "J", "mass": "kg"},
 }
+_NUMBER_TYPE: Final = re.compile(
+    r"u?int(?:eger)?(?:8|16|32|64)?(?:_t)?|float(?:32|64)?|double|real|unsigned|signed|long|short|char|byte|size_t"
+    r"|auto|any|object|enum|list|vector|array|dict|map|tuple|pose|twist|point"
+)
+_TITLES: Final = ("description", "title", "text")
 _A_TITLE: Final = "a title goes in quotes"
 _A_QUALITY: Final = "a quality goes after `:`"
 _BEGIN_CLAUSES: Final = frozenset(

@@ -9,13 +9,16 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.btcpp.recognition import listed_trees
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.nav2.navigator import OWN_PACKAGE
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.nav2.libraries import NAMES, Libraries
 from btq_lang.nav2.loaded import Load, Skipped, file_with
 from btq_lang.nav2.names import parameter_findings
+from btq_lang.nav2.own_libraries import own_libraries
 from btq_lang.nav2.parameters import Parameters
+from btq_lang.nav2.unknown import OwnCode, unknown_parameters
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
@@ -35,14 +38,22 @@ def findings(
 ) -> Iterator[tuple[str | None, Diagnostic]]:
     """All that is wrong, with the file that it is in; None: the parameter file."""
     found = tuple(found)
-    libraries = Libraries(parameters, distribution)
+    libraries = Libraries(parameters, distribution, own_libraries(each.workspace for each in found))
     all_found: list[tuple[str | None, Diagnostic]] = []
-    all_found += ((None, each) for each in (*parameter_findings(parameters, distribution), *libraries.findings()))
+    of_names = unknown_parameters(parameters, distribution, _own_code(parameters, libraries, found))
+    all_found += ((None, each) for each in (*parameter_findings(parameters, distribution), *of_names))
+    all_found += ((None, each) for each in libraries.findings())
     for each in found:
         all_found += ((None, one) for one in _unloaded(each, parameters, libraries))
     for load, one in _of_loads(parameters, distribution, found):
         all_found += [(goal.path, replace(one, span=goal.span)) for goal in load.goals] or [(None, one)]
     yield from dict.fromkeys(all_found)
+
+
+def _own_code(parameters: Parameters, libraries: Libraries, found: Iterable[Loaded]) -> OwnCode:
+    files = {path: file.source for each in found for path, file in each.workspace.files.items() if file.is_cpp}
+    has_navigator = any(not plugin.text.startswith(OWN_PACKAGE) for _, plugin in parameters.plugins)
+    return OwnCode(tuple(files.values()), has_navigator or not libraries.are_of_nav2)
 
 
 def wrong_goals(parameters: Parameters, distribution: str, found: Iterable[Loaded]) -> Iterator[tuple[str, Diagnostic]]:

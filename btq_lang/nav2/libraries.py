@@ -7,6 +7,7 @@ from typing import Final
 
 from btq_lang.catalog.nav2.libraries import LIBRARIES
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
+from btq_lang.nav2.own_libraries import OwnLibraries
 from btq_lang.nav2.parameters import Parameters, Text
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span
@@ -17,24 +18,33 @@ NAMES: Final = "plugin_lib_names"
 class Libraries:
     """The libraries that bt_navigator loads in a distribution.
 
+    Args:
+        own: those that the team builds.
+
     Attributes:
-        nodes: that Nav2's own libraries among them register.
-        are_all_known: whether there are no others.
+        nodes: that the libraries among them register of which that is known.
+        are_of_nav2: whether all are Nav2's.
+        are_all_known: whether it is known of all.
     """
 
-    def __init__(self, parameters: Parameters, distribution: str) -> None:
+    def __init__(self, parameters: Parameters, distribution: str, own: OwnLibraries) -> None:
         self._letter = distribution[0]
         self._shown = distribution.capitalize()
         self._named = parameters.texts(NAMES)
-        own = {name for name, (_, _, loaded) in LIBRARIES.items() if self._letter in loaded}
-        self._built_in = own if self._named is None or self._letter not in _REPLACING else set()
+        usual = {name for name, (_, _, loaded) in LIBRARIES.items() if self._letter in loaded}
+        self._built_in = usual if self._named is None or self._letter not in _REPLACING else set()
         loaded = self._built_in | {each.text for each in self._named or ()}
-        self.nodes = frozenset(node for name in loaded if self._exists(name) for node in LIBRARIES[name][0])
-        self.are_all_known = all(self._exists(each.text) for each in self._named or ())
+        of_nav2 = {node for name in loaded if self._exists(name) for node in LIBRARIES[name][0]}
+        self._own = own.of_node
+        self.nodes = of_nav2 | {node for node, libraries in own.of_node.items() if libraries & loaded}
+        others = [each.text for each in self._named or () if not self._exists(each.text)]
+        self.are_of_nav2 = not others
+        self.are_all_known = own.whole.issuperset(others)
 
     def library_of(self, node: str) -> str | None:
-        """The library of Nav2 in this distribution that registers a node."""
-        return next((name for name, (nodes, _, _) in LIBRARIES.items() if node in nodes and self._exists(name)), None)
+        """The library that registers a node: one of Nav2 in this distribution, or one of the team."""
+        of_nav2 = (name for name, (nodes, _, _) in LIBRARIES.items() if node in nodes and self._exists(name))
+        return next(iter((*sorted(self._own.get(node, ())), *of_nav2)), None)
 
     def findings(self) -> Iterator[Diagnostic]:
         """What is wrong with the libraries that the parameters name."""

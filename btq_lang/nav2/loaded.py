@@ -1,8 +1,8 @@
 """The trees that bt_navigator creates, and the files that it reads for them.
 
 One invariant: a file or folder that is not on this machine is an error only if the package that should have it is
-installed here, and a warning if its package is in the workspace: what a launch file or a build puts in its place is not
-known.
+installed here, and a warning if its package is in the workspace, or a relative path leads to no file of the project:
+what a launch file or a build puts in its place is not known.
 """
 
 from __future__ import annotations
@@ -106,8 +106,9 @@ class Loads:
 
     def __init__(self, parameters: Parameters, distribution: str | None, root: str, read: ReadFile) -> None:
         self._parameters = parameters
+        self._root = root
         self._find = cache(partial(package_folder, start=root))  # each time, it looks through the workspace
-        self._folders = tuple(_folders(parameters, self._find)) if distribution == "lyrical" else None
+        self._folders = tuple(_folders(parameters, self._find, root)) if distribution == "lyrical" else None
         self._read = read
 
     def by_default(self) -> Iterator[Load]:
@@ -119,7 +120,7 @@ class Loads:
             if self._folders is not None and named is not None and is_id(named.text):
                 yield self._searched(navigator, None, named)
             elif named is not None:
-                yield self._searched(navigator, _located(named, self._find))
+                yield self._searched(navigator, _located(named, self._find, self._root))
             else:
                 yield self._searched(navigator, _of_nav2(f"behavior_trees/{default}", self._find))
 
@@ -139,7 +140,7 @@ class Loads:
         if is_id(name):
             why = "before Lyrical, a goal names the file of its tree, not the ID"
             return self._searched(name, Located(named, None, why, Severity.WARNING))
-        return self._searched(os.path.basename(name), _located(named, self._find))
+        return self._searched(os.path.basename(name), _located(named, self._find, self._root))
 
     def _searched(self, label: str, tree: Located | None, named: Text | None = None) -> Load:
         """What is read for a tree: its file, then those in the folders."""
@@ -172,7 +173,7 @@ class Loads:
         return Load(label, tree, named, files, tuple(skipped), tuple(refused), self._folders)
 
 
-def _located(named: Text, find: FindPackage, is_folder: bool = False) -> Located:
+def _located(named: Text, find: FindPackage, root: str, is_folder: bool = False) -> Located:
     """The file or folder that a string names."""
     lost: list[str] = []
     packages: list[str] = []
@@ -189,9 +190,12 @@ def _located(named: Text, find: FindPackage, is_folder: bool = False) -> Located
     if "$(" in text:
         return Located(named)
     if not text:
-        return Located(named, None, "it is empty", Severity.ERROR)
+        return Located(named, None, "it is empty")
     if not os.path.isabs(text):
-        return Located(named, None, "a relative path counts from the folder in which bt_navigator runs")
+        why = "a relative path counts from the folder in which bt_navigator runs"
+        is_path = text.endswith(".xml") and not any(map(str.isspace, text))  # and not a sentence
+        is_lost = is_path and not os.path.isfile(os.path.join(root, text))
+        return Located(named, None, why, Severity.WARNING if is_lost else Severity.HINT)
     path = absolute(text)
     is_there = os.path.isdir if is_folder else os.path.isfile
     if not is_there(path) and (match := _INSTALLED.fullmatch(path)) and (folder := find(match[1])) is not None:
@@ -213,12 +217,12 @@ def _located(named: Text, find: FindPackage, is_folder: bool = False) -> Located
     return Located(named, None, f"this machine has no such {_KINDS[is_folder]}")
 
 
-def _folders(parameters: Parameters, find: FindPackage) -> Iterator[Located]:
+def _folders(parameters: Parameters, find: FindPackage, root: str) -> Iterator[Located]:
     given = parameters.texts("bt_search_directories")
     if given is None:
         yield _of_nav2("behavior_trees", find)
     for each in given or ():
-        yield _located(each, find, is_folder=True)
+        yield _located(each, find, root, is_folder=True)
 
 
 def _of_nav2(inside: str, find: FindPackage) -> Located:

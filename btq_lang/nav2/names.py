@@ -1,7 +1,6 @@
-"""Parameters of bt_navigator that a distribution does not read or refuses, and what is misspelt.
+"""Parameters of bt_navigator that only other distributions read, or that one refuses, and keys around them.
 
-One invariant: a name that is near no name of Nav2 may be a team's own, as its nodes can read all parameters of
-bt_navigator.
+Not known here: names that no distribution has (`unknown.py`).
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.nav2.parameters import NODE, Parameters
 from btq_lang.nav2.yaml_reader import Value
-from btq_lang.util.spelling import did_you_mean, distance, near
+from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span
 
 
@@ -43,7 +42,6 @@ def parameter_findings(parameters: Parameters, distribution: str) -> Iterator[Di
     """What is wrong with names and types of parameters in a distribution."""
     yield from file_findings(parameters)
     yield from _unread(parameters, distribution)
-    yield from _misspelt(parameters, distribution)
     yield from _mistyped(parameters, distribution)
     yield from _classes(parameters, distribution) if distribution[0] != "h" else ()
 
@@ -59,23 +57,6 @@ def _unread(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]:
             yield Diagnostic("nav2-parameter", key, message, notes=notes, severity=Severity.ERROR)
         else:
             yield Diagnostic("nav2-parameter", key, f"Nav2 does not read `{name}` in {shown}", notes=notes)
-
-
-def _misspelt(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]:
-    """Names that are nearly those of parameters that the distribution reads, or of its navigators."""
-    rows = {name.removeprefix("*") for name, row in PARAMETERS.items() if distribution[0] in row.of}
-    navigators = {*NAVIGATORS, *parameters.navigators}
-    for name, (key, _) in parameters.values.items():
-        navigator, point, rest = name.partition(".")
-        if parameters.row(name) is not None or (navigator in navigators and not point):
-            continue
-        if point and navigator not in navigators and navigator in parameters.values:
-            continue  # which is what is misspelt
-        wrong, candidates = (f".{rest}", rows) if navigator in navigators else (navigator, rows | navigators)
-        for right in near(wrong, candidates, 1):
-            if distance(wrong, right) * _LETTERS_AN_EDIT <= len(wrong):
-                message = f"Nav2 has no parameter `{name}`{did_you_mean((name.replace(wrong, right),))}"
-                yield Diagnostic("nav2-parameter", key.span, message)
 
 
 def _mistyped(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]:
@@ -116,7 +97,6 @@ def _classes(parameters: Parameters, distribution: str) -> Iterator[Diagnostic]:
             yield Diagnostic("nav2-parameter", plugin.span, message, severity=Severity.ERROR)
 
 
-_LETTERS_AN_EDIT: Final = 6  # fewer would take the names of a team's own parameters for misspelt ones
 _FORMS: Final = {
     INTEGER: re.compile(r"[-+]?(0[xX][0-9a-fA-F]+|\d+)"),
     DOUBLE: re.compile(r"[-+]?(\d+\.\d*|\.\d+)([eE][-+]?\d+)?|[-+]?\d+[eE][-+]?\d+|[-+]?\.(inf|Inf|INF|nan|NaN|NAN)"),

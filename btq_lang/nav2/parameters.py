@@ -45,6 +45,7 @@ class Parameters(Record):
         values: by name, `a.b` for one below another; each with its key.
         place: of the name of the node; None if the file has no such node.
         goals: the trees that other servers name for the goals that they send to it.
+        shared: the names among the values that only a section for all nodes has.
         misspelt: keys that keep the node from its parameters, each with what is meant.
         has_client_nodes: whether it sets parameters of the nodes that only Humble configures by themselves.
     """
@@ -52,6 +53,7 @@ class Parameters(Record):
     values: dict[str, tuple[Value, Value]]
     place: Span | None
     goals: tuple[Text, ...] = ()
+    shared: frozenset[str] = frozenset()
     misspelt: tuple[tuple[Text, str], ...] = ()
     has_client_nodes: bool = False
 
@@ -151,19 +153,21 @@ def read_parameters(text: str) -> Parameters:
     top = read_yaml(text)
     nodes = [*_nodes(top)]
     values: dict[str, tuple[Value, Value]] = {}
+    own: set[str] = set()
     goals: dict[Text, None] = {}
     place = None
     for key, node in sorted(nodes, key=lambda each: _last(each[0]) == NODE):  # what names the node counts most
         if _last(key) in (NODE, "*", "**"):
             place = key.span if _last(key) == NODE else place
-            for name, value in _flat(node):
-                values[".".join(each.text or "" for each in name)] = name[-1], value
+            below = {".".join(each.text or "" for each in name): (name[-1], value) for name, value in _flat(node)}
+            values.update(below)
+            own.update(below if _last(key) == NODE else ())
         named = node.get(SENDERS[_last(key)]) if _last(key) in SENDERS else None
         if named is not None and named.text:
             goals[Text(named.text, named.span)] = None
     is_of_humble = any(_last(key).startswith(f"{NODE}_navigate_") for key, _ in nodes)
     misspelt = tuple(_misspelt(top, place is None))
-    return Parameters(values, place, tuple(goals), misspelt, is_of_humble)
+    return Parameters(values, place, tuple(goals), frozenset(values.keys() - own), misspelt, is_of_humble)
 
 
 def _nodes(top: Value) -> Iterator[tuple[Value, Value]]:

@@ -23,6 +23,7 @@ T = TypeVar("T")
 # ---- queries ----
 
 
+@inputs.of_scope
 def nodes(store: Store[Workspace], viewpoint: str) -> Nodes:
     """All written nodes in scope."""
     return Nodes([store.ask(tree_nodes, viewpoint, path, facts) for path, facts in inputs.trees(store, viewpoint)])
@@ -33,6 +34,7 @@ def callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[
     return store.ask(_callers_by_tree, viewpoint).get(tree, ())
 
 
+@inputs.of_scope
 def _callers_by_tree(store: Store[Workspace], viewpoint: str) -> dict[str | None, tuple[ResolvedNode, ...]]:
     return store.ask(nodes, viewpoint).callers_by_tree
 

@@ -105,11 +105,15 @@ def _square_brackets(text: str, start: int) -> tuple[str, tuple[Fix, ...]]:
     if closing < 0:
         return ATTRIBUTES, ()
     ends = Span(start, start + 1), Span(closing, closing + 1)
+    before = text[line_start(text, 0, start) : start].rstrip()
     if "=" in text[start:closing]:
         changes = tuple(Change(Place(end), sign) for end, sign in zip(ends, "()", strict=True))
-        return ATTRIBUTES, (Fix("Write `(` and `)`", changes),)
-    if text[line_start(text, 0, start) : start].rstrip().endswith(("satisfies", "satisfices", "tags")):
-        return "a list needs no brackets", (Fix("Remove the brackets", tuple(Change(Place(end), "") for end in ends)),)
+        is_whole = _SQUARE_ATTRIBUTES.match(text, start) is not None and "(" not in before
+        return ATTRIBUTES, (Fix("Write `(` and `)`", changes, safe=is_whole),)
+    if before.endswith(("satisfies", "satisfices", "tags")):
+        changes = tuple(Change(Place(end), "") for end in ends)
+        is_whole = _SQUARE_LIST.match(text, start) is not None
+        return "a list needs no brackets", (Fix("Remove the brackets", changes, safe=is_whole),)
     return CHILDREN, ()
 
 
@@ -119,7 +123,14 @@ def attributes_in_braces(text: str, start: int) -> Fix | None:
     if found is None:
         return None
     ends = Span(start, start + 1), Span(found.end() - 1, found.end())
-    return Fix("Write `(` and `)`", tuple(Change(Place(end), sign) for end, sign in zip(ends, "()", strict=True)))
+    changes = tuple(Change(Place(end), sign) for end, sign in zip(ends, "()", strict=True))
+    is_whole = _REST.match(text, found.end()) is not None and "(" not in text[line_start(text, 0, start) : start]
+    return Fix("Write `(` and `)`", changes, safe=is_whole)
+
+
+def are_plain_pairs(text: str) -> bool:
+    """Whether a text is nothing but `key = value`, once or several times, with values that can be nothing else."""
+    return _PLAIN_PAIRS.fullmatch(text) is not None
 
 
 def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
@@ -143,6 +154,12 @@ def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
 
 
 _WORD: Final = re.compile(r"\w+|,")
+_PAIR: Final = r"""[^\W\d][\w-]*[ \t]*=[ \t]*(?:[\w.-]+|"[^"\r\n]*"|\{\w+\})"""
+_PAIRS: Final = rf"{_PAIR}(?:(?:[ \t]*,[ \t]*|[ \t]+){_PAIR})*"
+_PLAIN_PAIRS: Final = re.compile(_PAIRS)
+_SQUARE_ATTRIBUTES: Final = re.compile(rf"\[[ \t]*{_PAIRS}[ \t]*\][ \t]*(?=#|[\r\n]|\Z|satisf|tags\b)")
+_SQUARE_LIST: Final = re.compile(r"\[[ \t]*\w+(?:[ \t]*,[ \t]*\w+)*[ \t]*\][ \t]*(?=#|[\r\n]|\Z)")
+_REST: Final = re.compile(r"[ \t]*(?=#|[\r\n]|\Z|satisf|tags\b)")
 _BRACED_ATTRIBUTES: Final = re.compile(
     r"""\{[ \t]*[\w-]+[ \t]*=(?:[^{}"'\r\n]|"[^"\r\n]*"|'[^'\r\n]*'|\{[^{}"'\r\n]*\})*\}"""
 )

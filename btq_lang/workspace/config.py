@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from btq_lang.catalog.versions import VERSION_3, VERSIONS, at_least, numbers
+from btq_lang.catalog.versions import PRODUCTS, VERSION_3, VERSIONS, at_least, numbers
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import RULES, UNREADABLE, Severity
 from btq_lang.util.record import Record, replace
@@ -36,6 +36,8 @@ class Project(Record):
         include_paths: folders, joined to `root` if they were relative.
         lost_paths: those that the loader did not find.
         engines: the versions of BehaviorTree.CPP that a file must hold for, oldest first.
+        product: the program that runs the trees, if it provides trees of its own that nothing here defines.
+        external: the trees that other packages provide, which no file of the project defines.
         qualities: the edition of the quality model for files that name none.
         severities: the rules set in `[rules]`; None is off.
         select: the only rules to apply; empty for all.
@@ -60,6 +62,8 @@ class Project(Record):
     include_paths: tuple[str, ...] = ()
     lost_paths: tuple[str, ...] = ()
     engines: tuple[str, ...] = VERSIONS
+    product: str = ""
+    external: tuple[str, ...] = ()
     qualities: str = "iso25010-2023"
     severities: tuple[tuple[str, Severity | None], ...] = ()
     select: tuple[str, ...] = ()
@@ -145,6 +149,10 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
             at = _find(text, (*above, key, *complaint.below), complaint.value)
             problems.append(ProjectProblem(complaint.message, at))
     given = {field: value for field, value in fields.items() if value is not None}
+    named_engines = given.get("engines", ())
+    given["product"] = next((name for name in named_engines if name in PRODUCTS), "")
+    if given["product"]:
+        given["engines"] = tuple(dict.fromkeys(PRODUCTS.get(name, name) for name in named_engines))
     given["names_all"] = given.get("engines") == VERSIONS
     if "include_paths" in given:
         given["include_paths"] = tuple(_joined(root, path) for path in given["include_paths"])
@@ -223,7 +231,7 @@ def _engines(key: str, value: object) -> _Read:
     if complaints:
         trap = ": TOML reads 4.10 as 4.1" if isinstance(value, float) else ""
         return None, [_Complaint(f'`{key}` must be a string such as "4.10", or a list of them{trap}')]
-    known = tuple(version for version in wanted or () if version == VERSION_3 or is_engine(version))
+    known = tuple(version for version in wanted or () if version in _NAMED or is_engine(version))
     complaints = [
         _Complaint(f"unknown engine version `{version}`{_meant_engine(version)} {_CHECKED}", value=version)
         for version in wanted
@@ -231,11 +239,17 @@ def _engines(key: str, value: object) -> _Read:
     ]
     if not wanted:
         complaints = [_Complaint(f"`{key}` must name at least one version; {_CHECKED}")]
-    return tuple(sorted(set(known), key=numbers)) or None, complaints
+    return tuple(sorted(set(known), key=_as_numbers)) or None, complaints
+
+
+def _as_numbers(named: str) -> tuple[int, ...]:
+    return numbers(PRODUCTS.get(named) or named)
 
 
 def _meant_engine(version: str) -> str:
     """A similar version with the same major number: `3.8` is not a misspelt 4.8."""
+    if not version[:1].isdecimal():
+        return _meant(version, PRODUCTS) or ";"
     return (_meant(version, VERSIONS) if version.startswith("4.") else "") or ";"
 
 
@@ -361,6 +375,7 @@ KEYS = {
         "nodes",
         "nodes declared in all files: those that btq knows, as nav2-jazzy, and patterns of C++ sources",
     ),
+    "external": ("external", _strings, "strings", "trees that other packages provide, which no file here defines"),
     "exclude": ("exclude", _strings, "strings", "patterns of paths that the check of a folder leaves out"),
     "select": ("select", _rule_names, "rules", "only these rules"),
     "ignore": ("ignore", _rule_names, "rules", "all rules except these"),
@@ -396,6 +411,7 @@ def _syntax_problem(text: str, error: Exception) -> ProjectProblem:
 _BTQ_TABLE = re.compile(r"""(?m)^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[].]""")
 SUPPORTED = f"btq supports {VERSIONS[0]} to {VERSIONS[-1]}"
 _CHECKED = f"btq supports {VERSION_3} and {VERSIONS[0]} to {VERSIONS[-1]}"
+_NAMED = frozenset((VERSION_3, *PRODUCTS))
 _RELEASE_LINE = re.compile(r"4\.(0|[1-9][0-9]?)")
 _DIGITS = re.compile(r"\d+")
 

@@ -46,8 +46,8 @@ def _input(
 
     def declare(read: Callable[Concatenate[Workspace, P], T]) -> Callable[Concatenate[Store[Workspace], P], T]:
         @wraps(read)
-        def ask(store: Store[Workspace], /, *key: P.args, **_: P.kwargs) -> T:
-            return store.read(topic(*key), read, *key)
+        def ask(store: Store[Workspace], /, *key: P.args, **named: P.kwargs) -> T:
+            return store.read(topic(*key), read, *key, **named)
 
         return ask
 
@@ -98,6 +98,30 @@ def project(workspace: Workspace) -> Project:
 def factory(workspace: Workspace) -> Factory | None:
     """Whose files these are; None: each file is a factory of its own."""
     return workspace.factory
+
+
+@of_project
+def representative(workspace: Workspace) -> str | None:
+    """The file that the queries `of_scope` are asked for in a factory; None without one."""
+    return (
+        next((path for path in workspace.factory.files if path in workspace.files), None) if workspace.factory else None
+    )
+
+
+def of_scope(
+    query: Callable[Concatenate[Store[Workspace], str, P], T],
+) -> Callable[Concatenate[Store[Workspace], str, P], T]:
+    """Declare a query of which the viewpoint is nothing but its scope: in a factory, whose files all have one, it is
+    computed once."""
+
+    @wraps(query)
+    def ask(store: Store[Workspace], viewpoint: str, /, *key: P.args, **named: P.kwargs) -> T:
+        common = representative(store)
+        if common is None or common == viewpoint:
+            return query(store, viewpoint, *key, **named)
+        return store.ask(ask, common, *key, **named)
+
+    return ask
 
 
 @of_viewpoint

@@ -13,7 +13,7 @@ import os
 import re
 import stat
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from typing import BinaryIO
 
 from btq_lang.util.record import Record, replace
@@ -30,6 +30,7 @@ from btq_lang.workspace.file import SUFFIXES
 
 _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv
 _OF_COLCON = frozenset({"build", "install", "log"})  # colcon makes these in the folder that it runs in
+_FOLDERS_OF_TESTS = frozenset({"test", "tests"})  # of C++, whose mocks have the names of real nodes
 _PACKAGE_NAME = re.compile(r"<name>\s*(\S+?)\s*</name>")
 _HEAD = 4096  # bytes that nearly always show what a file is
 IS_SPECIAL = "cannot be read: expected a regular file, found a pipe or a device"
@@ -211,6 +212,27 @@ def collect(
         else:
             files[path] = None
     return tuple(files), tuple(problems)
+
+
+def without_tests(paths: Iterable[str], top: str, named: Container[str] = ()) -> tuple[str, ...]:
+    """C++ sources below a folder, without those in folders of tests or in those that `collect` leaves out.
+
+    Args:
+        named: the names of folders that are not left out.
+    """
+    top = top.rstrip("/")
+    left_out = {top: False}
+
+    def is_left_out(folder: str) -> bool:
+        if folder not in left_out:
+            above, _, name = folder.rpartition("/")
+            is_of_colcon = name in _OF_COLCON and all(os.path.isdir(f"{above}/{each}") for each in _OF_COLCON)
+            is_skipped = is_of_colcon or name in _SKIPPED_FOLDERS or name in _FOLDERS_OF_TESTS
+            is_ignored = (is_skipped and name not in named) or os.path.exists(f"{folder}/COLCON_IGNORE")
+            left_out[folder] = is_left_out(above) or is_ignored
+        return left_out[folder]
+
+    return tuple(path for path in paths if not is_left_out(os.path.dirname(path)))
 
 
 def read(path: str) -> tuple[str | None, LoadProblem | None]:

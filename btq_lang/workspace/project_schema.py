@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.catalog.qualities import EDITIONS
-from btq_lang.catalog.versions import VERSION_3, targets
+from btq_lang.catalog.versions import PRODUCTS, VERSION_3, targets
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.workspace.config import KEYS, SEVERITIES
 from btq_lang.workspace.factories import KEYS as FACTORY_KEYS
@@ -31,7 +31,7 @@ def project_schema() -> Json:
         "description": "What holds for all missions of a project of btq",
         **_table({key: {"description": doc, "allOf": [_form(form)]} for key, (_, _, form, doc) in KEYS.items()}),
         "definitions": {
-            "engine": {"enum": [VERSION_3, *targets()]},
+            "engine": {"enum": [VERSION_3, *targets(), *PRODUCTS]},
             "engines": {"anyOf": [_form("engine"), _list(_form("engine"), minItems=1)]},
             "edition": {"enum": [*EDITIONS]},
             "strings": _list({"type": "string"}),

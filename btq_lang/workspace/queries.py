@@ -27,11 +27,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable
 from operator import attrgetter
-from typing import Any, Final, Generic, TypeVar
+from typing import Any, Concatenate, Final, Generic, ParamSpec, TypeVar
 
 from btq_lang.util.reach import reached
 
 State = TypeVar("State")
+P = ParamSpec("P")
 T = TypeVar("T")
 Query = TypeVar("Query", bound=Callable[..., object])
 
@@ -42,10 +43,10 @@ _ON_CIRCLE: dict[Callable[..., Any], object] = {}
 _HUBS: set[Callable[..., Any]] = set()
 
 
-def on_circle(answer: object) -> Callable[[Callable[..., T]], Callable[..., T]]:
+def on_circle(answer: object) -> Callable[[Query], Query]:
     """Declare the answer of a query that depends on itself."""
 
-    def declare(query: Callable[..., T]) -> Callable[..., T]:
+    def declare(query: Query) -> Query:
         _ON_CIRCLE[query] = answer
         return query
 
@@ -121,7 +122,7 @@ class Store(Generic[State]):
 
     # ---- used by queries ----
 
-    def ask(self, query: Callable[..., T], *key: Hashable) -> T:
+    def ask(self, query: Callable[Concatenate[Store[State], P], T], /, *key: P.args, **_: P.kwargs) -> T:
         """The answer of a query, `query(store, *key)`.
 
         Raises:
@@ -143,7 +144,7 @@ class Store(Generic[State]):
             return _declared(answer)  # type: ignore[no-any-return]  # its owner declares what the query may return
         return answer.value  # type: ignore[no-any-return]  # it is what the query returns
 
-    def read(self, topic: Hashable, read: Callable[..., T], *key: Hashable) -> T:
+    def read(self, topic: Hashable, read: Callable[Concatenate[State, P], T], /, *key: P.args, **named: P.kwargs) -> T:
         """The answer of an input, `read(state, *key)`."""
         if self._dependencies is None:
             self._read_again()
@@ -151,7 +152,7 @@ class Store(Generic[State]):
         answer = self._answers.get(name)
         if answer is None:
             answer = self._answers[name] = _Answer(name)
-            answer.value = read(self._state, *key)
+            answer.value = read(self._state, *key, **named)
             answer.state = _CLEAN
             self._inputs.setdefault(topic, []).append(answer)
         if self._dependencies is not None:
@@ -175,11 +176,11 @@ class Store(Generic[State]):
         self._state = state
         self._touched.update(topics)
 
-    def pin(self, query: Callable[..., object], *key: Hashable) -> None:
+    def pin(self, query: Callable[Concatenate[Store[State], P], object], /, *key: P.args, **_: P.kwargs) -> None:
         """Keep an answer, and all that it depends on, until it is unpinned."""
         self._pinned.add((query, *key))
 
-    def unpin(self, query: Callable[..., object], *key: Hashable) -> None:
+    def unpin(self, query: Callable[Concatenate[Store[State], P], object], /, *key: P.args, **_: P.kwargs) -> None:
         self._pinned.discard((query, *key))
 
     def sweep(self, *, always: bool = False) -> None:

@@ -22,17 +22,20 @@ from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 
+@inputs.of_scope
 def tree_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> ResolvedTree:
     """The nodes of a tree."""
     return ResolvedTree(path, facts, cache(partial(inputs.declared, store, viewpoint)))
 
 
+@inputs.of_scope
 def tree_named(store: Store[Workspace], viewpoint: str, name: str) -> ResolvedTree | None:
     """The nodes of the tree with a name."""
     found = inputs.definition(store, viewpoint, Kind.TREE, name)
     return store.ask(tree_nodes, viewpoint, *found) if found is not None else None
 
 
+@inputs.of_scope
 def trees_called(store: Store[Workspace], viewpoint: str, name: str) -> tuple[str, ...]:
     """The trees that the tree with a name runs."""
     tree = store.ask(tree_named, viewpoint, name)

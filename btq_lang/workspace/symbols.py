@@ -147,13 +147,14 @@ def has_ports_of(one: Symbol, other: Symbol) -> bool:
     return model.category.raw == shorter.category.raw and all(
         (known := ports.get(port.id.text)) is not None
         and known.direction.raw == port.direction.raw
-        and _may_be_one_type(known.type, port.type)
+        and may_be_one_type(known.type, port.type)
         for port in shorter.ports
         if port.id is not None
     )
 
 
-def _may_be_one_type(one: syntax.Word | None, other: syntax.Word | None) -> bool:
+def may_be_one_type(one: syntax.Word | None, other: syntax.Word | None) -> bool:
+    """Whether two types may be the same one: only those that everyone writes alike certainly differ."""
     types = {
         plain_type(word.text) for word in (one, other) if word is not None and is_known_type(plain_type(word.text))
     }

@@ -351,7 +351,10 @@ class Scope:
         self.paths = paths
         self.node_paths = node_paths
         self._files = [workspace.files[path] for path in paths]
-        self._of_models = [*self._files, *(workspace.files[path] for path in node_paths)]
+        of_models = [*self._files, *(workspace.files[path] for path in node_paths)]
+        cpp = [file for file in of_models if file.is_cpp]  # what registers a node counts first
+        self._of_models = [*cpp, *(file for file in of_models if not file.is_cpp)] if cpp else of_models
+        self._cpp = frozenset([file.path for file in cpp])
         self.complete = (
             is_known
             and all(
@@ -412,7 +415,8 @@ class Scope:
             if key in file.names.found:
                 found += file.definitions(kind, name)
         if kind is Kind.MODEL and len(found) > 1 and self.node_paths:
-            found = _richest_first(found, self.node_paths)
+            # Nothing says more than C++ but what is known of Nav2's nodes.
+            found = _richest_first(found, tuple(FILES.values()) if found[0].path in self._cpp else self.node_paths)
         self._found[key] = found
         return found
 

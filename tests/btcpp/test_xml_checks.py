@@ -191,7 +191,7 @@ def test_notes_on_xml_speak_of_xml() -> None:
     main = ("unknown-main-tree", ('name the main tree with `main_tree_to_execute="…"` of <root>',))
     shortest = '`<Action ID="InitNeo4j"/>` in <TreeNodesModel>'
     node = ("unknown-node", (f"the other nodes of this file have models; to declare this one, write {shortest}",))
-    why = "SequenceStar is the name of SequenceWithMemory in version 3"
+    why = "SequenceStar is the name of SequenceWithMemory in version 3, where it begins again after a halt"
     said, *rest = problems(OLD)
     assert said.rule == "version-3-file"
     assert [(each.rule, each.notes) for each in rest] == [main, node]

@@ -62,12 +62,15 @@ def definitions(text: str) -> Iterator[tuple[str, str, str]]:
 
 def reads(bodies: dict[str, str], start: str) -> set[str]:
     """The inputs that a function reads, itself or through others of its class."""
+    return {port for body in called_from(bodies, start) for port in READS.findall(body)}
+
+
+def called_from(bodies: dict[str, str], start: str) -> Iterator[str]:
+    """The bodies of a function and of all others of its class that it calls."""
     waiting, seen = [start], {start}
-    found: set[str] = set()
     while waiting:
         body = bodies.get(waiting.pop(), "")
-        found.update(READS.findall(body))
+        yield body
         called = {name for name in re.findall(r"\b(\w+)\(", body) if name in bodies} - seen
         seen |= called
         waiting += called
-    return found

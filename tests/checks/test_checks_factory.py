@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from btq_lang.btcpp.opening import file_of
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
+from btq_lang.checks.lookups import is_defined
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.factories import Factory, merged
+from btq_lang.workspace.inputs import of_scope
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 
@@ -31,6 +35,25 @@ def problems(workspace: Workspace) -> list[str]:
 
 
 MAIN = "a.xml: " + tree("Main", '<SubTree ID="Dock"/>')
+
+
+LOOKED: list[str] = []
+
+
+@of_scope
+def looked(store: Store[Workspace], viewpoint: str, name: str) -> bool:
+    LOOKED.append(viewpoint)
+    return is_defined(store, viewpoint, Kind.TREE, name)
+
+
+def test_what_depends_on_the_scope_alone_is_computed_once_for_all_files() -> None:
+    workspace = factory("a.xml: " + tree("Main"), "b.xml: " + tree("Dock"), "c.xml: " + tree("Wait"))
+    LOOKED.clear()
+    assert [workspace.store.ask(looked, path, "Dock") for path in ("c.xml", "b.xml", "a.xml")] == [True, True, True]
+    assert LOOKED == ["a.xml"]
+    alone = Workspace(dict(workspace.files), Project())
+    assert [alone.store.ask(looked, path, "Dock") for path in ("c.xml", "b.xml", "a.xml")] == [False, True, False]
+    assert LOOKED == ["a.xml", "c.xml", "b.xml", "a.xml"]
 
 
 def test_trees_are_known_whatever_the_order_and_the_language() -> None:

@@ -279,6 +279,15 @@ def test_a_word_of_version_3_is_read_as_that_of_today() -> None:
     assert_fix(plus, "Replace it with `SubTree`", plus.replace("Plus", ""))
 
 
+def test_a_word_of_version_3_is_replaced_by_itself_only_where_no_version_3_reads_it() -> None:
+    text = tree("SequenceStar\n            Dock")
+    for engines, safe in ((("4.6", "4.10"), True), (("3.8", "4.10"), False)):
+        workspace = workspace_of({"main.btq": text}, Project(engines=engines))
+        (found,) = check(workspace, "main.btq")
+        assert (found.rule, [fix.safe for fix in found.fixes]) == ("not-an-engine-node", [safe])
+    assert_clean(text, Project(engines=("3.8",)))
+
+
 def test_a_model_makes_a_word_a_node() -> None:
     assert_clean("Action PopFromQueue\n" + tree("PopFromQueue"))
 

@@ -154,16 +154,18 @@ def test_what_a_tree_of_humble_meets_on_the_way_to_lyrical() -> None:
     text = tree(
         "IsPathValid (path = {way})",
         'TruncatePathLocal (input_path = {way} output_path = {part} robot_frame = "base_link")',
-        "SubTree Rest (goal = goal)",
+        'SubTree Rest (goal = goal __shared_blackboard = "true")',
     )
-    assert moved(f"{text}BehaviorTree Rest\n    Own\n", "humble", "lyrical") == [
+    assert moved(f"{text}BehaviorTree Rest\n    IsStuck\n", "humble", "lyrical") == [
         "3:9 error target-breaks «IsPathValid» Nav2 has no `IsPathValid` in Lyrical: it is called `ValidatePath`",
         "4:68 error target-breaks «robot_frame» `TruncatePathLocal` has no port `robot_frame` in Lyrical: it is called "
         "`robot_base_frame`",
-        "5:17 error target-breaks «Rest» from Jazzy on a SubTree has a blackboard of its own: Nav2's nodes in it "
-        "lack the entry `node`",
+        "5:17 error target-breaks «Rest» `IsStuck` cannot be created in the tree `Rest`: this SubTree does not pass "
+        "`node`",
         "5:30 warning target-differs «goal» from 4.0 on `goal` is a text that the SubTree gets, no longer the name "
         "of an entry",
+        "5:35 warning target-differs «__shared_blackboard» the engine silently ignores `__shared_blackboard`; did you "
+        "mean `_autoremap`?",
     ]
 
 
@@ -269,7 +271,7 @@ def test_what_a_file_for_version_3_meets_on_the_way_to_4_10() -> None:
       <Sequence ID="x"><Find/></Sequence>
     </SequenceStar>
   </BehaviorTree>
-  <BehaviorTree ID="Go on"><Find/></BehaviorTree>
+  <BehaviorTree ID="Go on"><Find at="{to}"/></BehaviorTree>
   <BehaviorTree ID="Go on"><Find/></BehaviorTree>
   <TreeNodesModel>
     <Action ID="Find"><output_port name="dock"/><input_port name="at" default="0"/></Action>

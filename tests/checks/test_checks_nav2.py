@@ -83,9 +83,11 @@ def test_a_failure_that_a_recovery_swallows() -> None:
 
 
 def test_only_what_may_run_on_restarts_what_runs_beside_it() -> None:
-    text = tree("R->", "    TruncatePathLocal (input_path = {p} output_path = {q})", "    FollowPath (path = {q})")
+    text = tree(
+        "R->", "    TruncatePathLocal (input_path = {goal} output_path = {goals})", "    FollowPath (path = {goals})"
+    )
     assert found(text, "jazzy") == []
-    text = text.replace("TruncatePathLocal (input_path = {p} output_path = {q})", "Spin")
+    text = text.replace("TruncatePathLocal (input_path = {goal} output_path = {goals})", "Spin")
     assert found(text, "jazzy") == [
         "4:9 hint reactive-multiple-async «FollowPath» if `Spin` takes longer than one tick, it restarts whenever "
         "`FollowPath` is RUNNING, and halts it"
@@ -217,14 +219,120 @@ def test_an_entry_that_is_read_before_it_is_written() -> None:
         "when nothing has written `d`"
     )
     assert found(text, "jazzy") == [message]
-    given = f"{text.replace('Main', 'Sub')}BehaviorTree Main\n    SubTree Sub (d = {{}})\nRoot Main\n"
+    given = f"{text.replace('Main', 'Sub')}BehaviorTree Main\n    SubTree Sub (_autoremap = true d = {{}})\nRoot Main\n"
     assert found(given.replace("{}", "2.0"), "jazzy") == []
     assert found(given.replace("{}", "{e}"), "jazzy") == [message]
-    assert found(given.replace("(d = {})", "(_autoremap = true)"), "jazzy") == [message]
-    through = given.replace("{}", "{e}").replace("Root Main", "BehaviorTree Top\n    SubTree Main (e = 2.0)\nRoot Top")
+    assert found(given.replace(" d = {}", ""), "jazzy") == [message]
+    through = given.replace("{}", "{e}").replace(
+        "Root Main", "BehaviorTree Top\n    SubTree Main (_autoremap = true e = 2.0)\nRoot Top"
+    )
     assert found(through, "jazzy") == []
     declared = text.replace("BehaviorTree Main\n", "BehaviorTree Main\n    input d : double = 2.0\n")
     assert found(declared, "jazzy") == []
+
+
+# ---- nodes in SubTrees ----
+
+
+def isolated(text: str, distribution: str) -> list[str]:
+    return [line.split("» ")[1] for line in found(text, distribution) if "isolated-node" in line]
+
+
+def lacking(node: str, *entries: str) -> list[str]:
+    names = ", ".join(f"`{each}`" for each in entries)
+    return [f"`{node}` cannot be created in the tree `Sub`: this SubTree does not pass {names}"]
+
+
+OF_ACTIONS = ("node", "wait_for_service_timeout", "bt_loop_duration")
+
+
+@pytest.mark.parametrize(
+    ("node", "distribution", "entries"),
+    [
+        ("Spin", "jazzy", OF_ACTIONS),
+        ("Spin", "humble", (*OF_ACTIONS, "server_timeout")),
+        ("CancelSpin", "lyrical", OF_ACTIONS[:2]),
+        ('ClearEntireCostmap (service_name = "x")', "kilted", OF_ACTIONS),
+        ("GetCurrentPose (current_pose = {p})", "lyrical", ("node", "tf_buffer")),
+        ('PlannerSelector (topic_name = "t" selected_planner = {p} default_planner = "a")', "iron", ("node",)),
+        ("IsStuck", "humble", ("node",)),
+        ("TruncatePath (distance = 1.0 input_path = {q} output_path = {p})", "jazzy", ()),
+        ("TimeExpired (seconds = 1.0)", "jazzy", ()),
+        ("IsStuck", "kilted", ("node",)),
+        ("Own", "jazzy", ()),
+    ],
+)
+def test_a_node_in_a_subtree_without_what_it_is_created_with(
+    node: str, distribution: str, entries: tuple[str, ...]
+) -> None:
+    text = f"BehaviorTree Main\n    SubTree Sub\nBehaviorTree Sub\n    {node}\nRoot Main\nAction Own\n"
+    assert isolated(text, distribution) == (lacking(node.partition(" ")[0], *entries) if entries else [])
+    sharing = "__shared_blackboard" if distribution in ("humble", "iron") else "_autoremap"
+    assert isolated(text.replace("Tree Sub\nB", f'Tree Sub ({sharing} = "true")\nB'), distribution) == []
+
+
+def test_entries_that_are_passed_one_by_one() -> None:
+    text = "BehaviorTree Main\n    SubTree Sub ({})\nBehaviorTree Sub\n    IsStuck\nRoot Main\n"
+    assert isolated(text.format("node = {node}"), "jazzy") == isolated(text.format("node = node"), "humble") == []
+    assert isolated(text.format('__shared_blackboard = "true"'), "jazzy") == lacking("IsStuck", "node")
+    assert isolated(text.format('__shared_blackboard = "false"'), "humble") == lacking("IsStuck", "node")
+
+
+def test_each_subtree_on_the_way_passes_them() -> None:
+    text = (
+        "BehaviorTree Main\n    SubTree Sub{}\nBehaviorTree Sub\n    SubTree Below{}\n"
+        "BehaviorTree Below\n    IsStuck\nRoot Main\n"
+    )
+    all_of = " (_autoremap = true)"
+    below = ["`IsStuck` cannot be created in the tree `Below`: this SubTree does not pass `node`"]
+    assert isolated(text.format(all_of, all_of), "jazzy") == []
+    assert isolated(text.format("", all_of), "jazzy") == lacking("IsStuck", "node")
+    assert isolated(text.format(all_of, ""), "jazzy") == below
+    assert isolated(text.format("", ""), "jazzy") == lacking("IsStuck", "node") + below
+    assert isolated(text.format(" (n = {node})", " (node = {n})"), "jazzy") == []
+
+
+def test_a_node_of_a_team_that_has_the_name_of_one_of_nav2() -> None:
+    text = "BehaviorTree Main\n    SubTree Sub\nBehaviorTree Sub\n    Wait (own = 1)\nRoot Main\n"
+    assert isolated(f"{text}Action Wait\n    input own\n", "jazzy") == []
+    assert isolated(f"{text}Action Wait\n    input wait_duration = 1.0\n", "jazzy") == lacking("Wait", *OF_ACTIONS)
+
+
+# ---- servers ----
+
+CALLED = "calls the server `follow_path`, as another child of"
+
+
+@pytest.mark.parametrize(
+    ("kind", "shown", "distribution"),
+    [
+        ("||", "||", "jazzy"),
+        ("ParallelAll", "ParallelAll", "lyrical"),
+        ("NonblockingSequence", "NonblockingSequence", "lyrical"),
+        ("->", "", "jazzy"),
+        ("R->", "", "lyrical"),
+    ],
+)
+def test_two_callers_of_a_server(kind: str, shown: str, distribution: str) -> None:
+    def shared(*lines: str) -> list[str]:
+        text = tree(kind, *(f"    {line}" for line in lines))
+        text += "BehaviorTree Follow\n    FollowPath (path = {path})\nRoot Main\n"
+        return [each for each in found(text, distribution) if "shared-server" in each]
+
+    one, sub = "FollowPath (path = {path})", "SubTree Follow (_autoremap = true)"
+
+    def message(place: str, caller: str) -> list[str]:
+        return [f"{place} warning shared-server {caller} {CALLED} `{shown}` does"] if shown else []
+
+    assert shared(one, "->", f"    {one}") == message("5:13", "«FollowPath» `FollowPath`")
+    assert shared(one, sub) == message("4:17", "«Follow» `FollowPath` in the tree `Follow`")
+    assert shared(one, 'FollowPath (path = {path} server_name = "/follow_path")') == message(
+        "4:9", "«FollowPath» `FollowPath`"
+    )
+    assert shared(one, 'FollowPath (path = {path} server_name = "other")') == []
+    assert shared(one, "FollowPath (path = {path} server_name = {other})") == []
+    assert shared("->", f"    {one}", f"    {one}", "Spin") == []
+    assert shared(one, "CancelControl", 'Spin (server_name = "spin")', "Wait") == []
 
 
 def test_bt_navigator_sets_some_entries_before() -> None:
@@ -348,7 +456,7 @@ def test_how_long_a_recovery_may_take() -> None:
     text = tree(
         "RecoveryNode (number_of_retries = 2)",
         "    satisfies QualityReq a takes at most 20 s",
-        "    FollowPath (path = {path}) satisfies QualityReq b takes at most 5 s",
+        "    FollowPath (path = {goal}) satisfies QualityReq b takes at most 5 s",
         "    Spin satisfies QualityReq c takes at most 3 s",
     )
     assert found(text, "jazzy") == [

@@ -123,7 +123,7 @@ def test_ports_of_a_model() -> None:
     assert_problems(
         model + tree("Move"), "8:9 warning missing-port «Move» `Move` requires a value for its port `place`"
     )
-    assert_clean(model + tree("Move (place = {p})"))
+    assert_clean(model + tree("Move (place = p)"))
     assert_clean(model + tree('Move (place = "" name = "m" _skipIf = "true")'))
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
+from shutil import copy, copytree
 
 import pytest
 from in_process import run_btq
@@ -206,3 +208,38 @@ def test_the_value_that_keeps_the_meaning_is_named(tmp_path: Path, spelling: str
     out = run_btq("check", f"t.{spelling}", "--target", "nav2-lyrical", cwd=tmp_path)[1]
     said = 'wrap_around="true"' if spelling == "xml" else "wrap_around = true"
     assert f"= note: write `{said}` to keep its meaning\n" in out
+
+
+@pytest.mark.parametrize(
+    ("file", "expected"),
+    [
+        ("trees/01-post-script-spaces/t.xml", ["4:31 warning unknown-attribute", "5:43 warning uncreated-entry"]),
+        ("trees/03-assign-unknown-with-equals/t1.xml", []),
+        ("trees/03-assign-unknown-with-equals/t2.xml", ["4:21 warning uncreated-entry"]),
+        ("trees/18-shared-blackboard-literal/t.xml", ["2:2 warning version-3-file", "17:102 warning unread-argument"]),
+        ("trees/18-shared-blackboard-literal/t4.xml", ["17:46 warning unread-argument"]),
+        (
+            "trees/27-subtree-does-not-share",
+            ["4:20 error isolated-node", "5:25 warning unset-entry", "10:32 warning unset-entry"],
+        ),
+        ("trees/28-read-before-write/t.xml", ["4:22 hint unset-entry"]),
+        (
+            "trees/35-misspelt-subtree-argument/t.xml",
+            [
+                "4:26 warning unread-argument",
+                "4:45 hint unset-entry",
+                "5:21 warning unset-entry",
+                "10:23 warning unset-entry",
+            ],
+        ),
+        ("nav2/unset", ["6:26 warning unset-entry"]),
+        ("nav2/c7_4016", ["6:30 warning unset-entry"]),
+    ],
+)
+def test_entries_that_nothing_sets_and_arguments_that_nothing_reads(
+    file: str, expected: list[str], shared: Path, tmp_path: Path
+) -> None:
+    source = shared / "field" / file
+    folder = copytree(source, tmp_path / "x") if source.is_dir() else Path(copy(source, tmp_path)).parent
+    _, out, _ = run_btq("check", "--output-format", "concise", cwd=folder)
+    assert [" ".join(each) for each in re.findall(r"\.xml:(\d+:\d+): (\w+)\[([\w-]+)\]", out)] == expected

@@ -26,7 +26,7 @@ IDIOMS = """\
       <Sequence ID="x"><Find/></Sequence>
     </SequenceStar>
   </BehaviorTree>
-  <BehaviorTree ID="Go on"><Find/></BehaviorTree>
+  <BehaviorTree ID="Go on"><Find at="{to}"/></BehaviorTree>
   <TreeNodesModel>
     <Action ID="Find"><output_port name="dock"/><input_port name="at" default="0"/></Action>
     <SubTree ID="Go on"><input_port name="to"/></SubTree>
@@ -117,6 +117,40 @@ def test_what_version_3_refuses() -> None:
         "5:41 error unknown-attribute 3.8 takes `_skipIf` for a port, and refuses `Wait`",
         "6:8 warning not-an-engine-node `RetryUntilSuccesful` is not built into BehaviorTree.CPP 4.6–4.10",
     ]
+
+
+OF_4 = """\
+<root{}>
+  <BehaviorTree ID="Main">
+    <Sequence>
+      <Script code="x := 1"/>
+      <Parallel success_count="1"><Wait _skipIf="x == 1"/><Spin/></Parallel>
+      {}
+    </Sequence>
+  </BehaviorTree>
+</root>
+"""
+
+
+@pytest.mark.parametrize("declared", ["", ' BTCPP_format="4"', " BTCPP_format='5'"])
+def test_a_file_for_version_4_in_a_project_of_version_3(declared: str) -> None:
+    xml, message = OF_4.format(declared, ""), "1:2 error version-4-file this file is for version 4 of the engine, but"
+    assert shown(xml, Project(engines=("3.8",))) == [f"{message} btq.toml names 3.8"]
+    ignoring = Project(engines=("3.8",), ignore=("version-4-file",))
+    rules = ["newer-engine-node", "unknown-port", "unknown-attribute"]
+    assert [line.split()[2] for line in shown(xml, ignoring)] == rules
+    one = xml.replace("success_count", "success_threshold").replace(' _skipIf="x == 1"', "")
+    assert [line.split()[2] for line in shown(one, Project(engines=("3.8",)))] == ["newer-engine-node"]
+
+
+def test_a_folder_of_files_that_contradict_the_distribution(tmp_path: Path) -> None:
+    (tmp_path / "btq.toml").write_text('nodes = ["nav2-humble"]\n')
+    for name in ("a", "b"):
+        more = '<FollowPath path="{p}" error_code_id="{e}"/><Spin error_code_id="{e}"/>'
+        (tmp_path / f"{name}.xml").write_text(OF_4.format(' BTCPP_format="4"', more))
+    _, out, _ = run_btq("check", "--output-format", "concise", cwd=tmp_path)
+    message = "1:2: error[version-4-file] this file is for version 4 of the engine, but Humble has 3.8.7"
+    assert out.splitlines() == [f"a.xml:{message}", f"b.xml:{message}", "Found 2 errors"]
 
 
 def test_nothing_is_built_for_version_3(tmp_path: Path) -> None:

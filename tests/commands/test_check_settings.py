@@ -50,6 +50,7 @@ def test_show_settings(folder: Path) -> None:
         'qualities = "iso25010-2023"              # default',
         "include-paths = []                       # default",
         "nodes = []                               # default",
+        "external = []                            # default",
         'exclude = ["old/"]                       # btq.toml:3',
         "select = []                              # default",
         'ignore = ["old-quality-name"]            # btq.toml:2',

@@ -19,7 +19,7 @@ def folder(tmp_path: Path) -> Path:
     for name in ("a", "b"):
         (tmp_path / f"{name}.xml").write_text(
             f'<root main_tree_to_execute="Main">\n<BehaviorTree ID="Main">\n<Sequence>\n{docks}\n</Sequence>\n'
-            '</BehaviorTree>\n<BehaviorTree ID="Dock">\n<AlwaysSuccess/>\n</BehaviorTree>\n</root>\n'
+            '</BehaviorTree>\n<BehaviorTree ID="Dock">\n<Go pose="{pose}" speed="{speed}"/>\n</BehaviorTree>\n</root>\n'
         )
     (tmp_path / "btq.toml").write_text('engine = "3.8"\n')
     return tmp_path

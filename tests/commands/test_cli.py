@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 from in_process import run_btq
+from running_process import running
 
 from btq_lang import __version__
 from btq_lang.catalog.language import SIGNS
@@ -530,9 +531,7 @@ def test_watch_checks_again_after_a_change(tmp_path: Path) -> None:
     file = tmp_path / "main.btq"
     file.write_text(WRONG)
     command = [sys.executable, "-u", "-m", "btq_lang", "check", "--watch", "--output-format", "concise"]
-    with subprocess.Popen(
-        command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-    ) as process:
+    with running(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as process:
         assert process.stdout is not None
         seen: list[str] = []
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from pathlib import Path
+from shutil import copytree
 
 import pytest
 from in_process import run_btq
@@ -346,3 +347,136 @@ def test_a_source_is_parsed_again_only_if_it_changes(robot: Path, monkeypatch: p
     assert parsed[2:] == [changed]
     of_each = [group.workspace.files[f"{robot}/include/drive.hpp"] for group in (before, after)]
     assert of_each[0] is of_each[1]
+
+
+def test_cpp_counts_before_a_stale_model(shared: Path, tmp_path: Path) -> None:
+    if not (shared / "field" / "nav2" / "stale-model").is_dir():
+        pytest.skip("the shared inputs have no field/nav2/stale-model")
+    copytree(shared / "field" / "nav2" / "stale-model", tmp_path, dirs_exist_ok=True)
+    assert check(tmp_path) == [
+        "t.xml:3:10: error[unknown-port] `Fly` has no port `path_topic`; did you mean `route`?",
+        "t.xml:6:40: warning[stale-model] the C++ of `Fly` has no port `path_topic`; did you mean `route`?",
+    ]
+    _, shown, _ = run_btq("check", cwd=tmp_path)
+    assert shown.count("= help: Replace `path_topic` with `route`") == 2
+
+
+STALE = "trees/m.btq:{}: warning[stale-model] {}"
+
+
+@pytest.mark.parametrize(
+    ("model", "found"),
+    [
+        ("Action Drive\n    input goal\n    input fast\n    input speed\n    output code", []),
+        ('Action Drive\n    input goal : "Pose_<std::allocator<void>>"\n    input speed : double = 1.0', []),
+        ("Condition IsOpen", []),
+        ("Action IsOpen", ["1:1", "`IsOpen` is of category Action in this model, and Condition in C++"]),
+        ("Condition IsOpen\n    input door", ["2:11", "the C++ of `IsOpen` has no port `door`"]),
+        (
+            "Action Drive\n    output goal",
+            ["2:5", "the port `goal` is an output in this model, and an input in C++"],
+        ),
+        (
+            "Action Drive\n    inout speed : double",
+            ["2:5", "the port `speed` is an input and output in this model, and an input in C++"],
+        ),
+        (
+            "Action Drive\n    input speed : string",
+            ["2:19", "the type of the port `speed` is `string` in this model, and `double` in C++"],
+        ),
+        (
+            "Action Drive\n    input gaol : Pose",
+            ["2:11", "the C++ of `Drive` has no port `gaol`; did you mean `goal`?"],
+        ),
+        (
+            "TreeNodesModel\n    Action Drive\n        input velocity : double",
+            ["3:15", "the C++ of `Drive` has no port `velocity`"],
+        ),
+    ],
+)
+def test_a_model_that_says_otherwise_than_the_cpp_is_stale(robot: Path, model: str, found: list[str]) -> None:
+    write(robot, "trees/m.btq", f"{model}\n\nBehaviorTree M\n    ->\n        IsOpen\n        Drive (goal = {{g}})\n")
+    findings = check(robot, "trees/m.btq", "--ignore", "unset-entry")
+    assert findings == ([STALE.format(*found)] if found else [])
+
+
+def test_a_stale_model_in_a_file_of_models_declares_no_port(robot: Path) -> None:
+    cpp = 'nodes = ["src/*.cpp", "include/*.hpp"]\n'
+    write(robot, "btq.toml", f'{cpp}[[factory]]\nname = "a"\nload = ["trees/*"]\nnodes = ["models.btq"]\n')
+    write(robot, "models.btq", "Action Drive\n    input goal\n    input old\n")
+    write(robot, "trees/m.btq", "BehaviorTree Main\n    Drive (goal = {g} old = 1)\n")
+    of_tree = "trees/m.btq:2:23: error[unknown-port] `Drive` has no port `old`"
+    assert check(robot, "trees") == [of_tree]
+    stale = "models.btq:3:11: warning[stale-model] the C++ of `Drive` has no port `old`"
+    assert check(robot, "trees", "models.btq") == [stale, of_tree]
+
+
+def test_where_not_all_ports_of_the_cpp_are_seen_a_model_may_have_more(robot: Path) -> None:
+    write(robot, "src/drive.cpp", SOURCE.replace("return {", "return more({").replace('"code") };', '"code") });'))
+    tree = "\nBehaviorTree Main\n    Drive (goal = {g} rate = 1)\n"
+    write(robot, "trees/m.btq", f"Action Drive\n    input goal\n    input rate : int\n{tree}")
+    assert check(robot, "trees") == []
+    write(robot, "trees/m.btq", f"Action Drive\n    output goal\n    input rate : int\n{tree}")
+    stale = "the port `goal` is an output in this model, and an input in C++"
+    assert check(robot, "trees") == [f"trees/m.btq:2:5: warning[stale-model] {stale}"]
+
+
+def test_a_factory_holds_models_against_its_own_sources(robot: Path) -> None:
+    write(
+        robot,
+        "btq.toml",
+        '[[factory]]\nname = "a"\nload = ["trees/m.btq"]\nnodes = ["src/*.cpp", "include/*.hpp"]\n'
+        '[[factory]]\nname = "b"\nload = ["trees/n.btq"]\n',
+    )
+    for name in "mn":
+        write(
+            robot,
+            f"trees/{name}.btq",
+            "Action Drive\n    input goal\n    input old\n\nBehaviorTree Main\n    Drive (goal = {g} old = 1)\n",
+        )
+    assert check(robot, "trees", "--ignore", "unset-entry") == [
+        "trees/m.btq:3:11: warning[stale-model] the C++ of `Drive` has no port `old`",
+        "trees/m.btq:6:23: error[unknown-port] `Drive` has no port `old`",
+    ]
+
+
+OF_NAV2 = """\
+struct Scan : nav2_behavior_tree::BtActionNode<M> {
+  static BT::PortsList providedPorts() { return providedBasicPorts({ BT::InputPort<int>("area") }); }
+};
+BT_REGISTER_NODES(factory) { factory.registerNodeType<Scan>("Scan"); }
+"""
+
+
+@pytest.mark.parametrize(
+    ("project", "found"),
+    [
+        ('nodes = ["nav2-humble", "src/*.cpp"]\n', ["error[unknown-port] `Scan` has no port `error_msg`"]),
+        ('nodes = ["nav2-lyrical", "src/*.cpp"]\n', []),
+        ('engine = "3.8"\nnodes = ["src/*.cpp"]\n', ["error[unknown-port] `Scan` has no port `error_msg`"]),
+        ('engine = "4.6"\nnodes = ["src/*.cpp"]\n', []),  # it may be Lyrical's
+        (
+            '[[factory]]\nname = "a"\nload = ["trees/*"]\nnodes = ["nav2-jazzy", "src/*.cpp"]\n',
+            ["error[unknown-port] `Scan` has no port `error_msg`"],
+        ),
+    ],
+)
+def test_base_classes_of_nav2_are_known_by_the_distribution_of_the_project(
+    robot: Path, project: str, found: list[str]
+) -> None:
+    (robot / "src/drive.cpp").unlink()
+    write(robot, "src/scan.cpp", OF_NAV2)
+    write(robot, "btq.toml", project)
+    write(robot, "trees/m.btq", "BehaviorTree M\n    Scan (area = 1 server_name = a error_msg = {e})\n")
+    assert [each.partition(": ")[2] for each in check(robot, "trees")] == found
+    code, out, err = run_btq("nodes", "src", cwd=robot)
+    assert (code, "error_msg" in out) == ((1, False) if "4.6" in project else (0, "lyrical" in project))
+    assert err.splitlines()[:-1] == (
+        [
+            "src/scan.cpp:2:49: hint[unseen-in-cpp] whether `BtActionNode` provides `error_code_id`, `error_msg` "
+            "depends on the distribution; name the distribution of Nav2 in the project file: "
+            '`nodes = ["nav2-jazzy", …]`'
+        ]
+        if code
+        else []
+    )

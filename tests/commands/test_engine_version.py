@@ -224,6 +224,7 @@ def test_what_is_converted_is_read_as_the_packages_do(tmp_path: Path, package: s
 
 
 def test_init_proposes_sources_and_parameters(tmp_path: Path) -> None:
+    pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
     (tmp_path / "src").mkdir()
     (tmp_path / "src" / "nodes.cpp").write_text('void f(F& x) { x.registerNodeType<Dock>("Dock"); }\n')
     (tmp_path / "src" / "main.cpp").write_text("int main() {}\n")
@@ -231,11 +232,32 @@ def test_init_proposes_sources_and_parameters(tmp_path: Path) -> None:
     (tmp_path / "config" / "nav.yaml").write_text("bt_navigator:\n  ros__parameters:\n    use_sim_time: true\n")
     (tmp_path / "config" / "other.yaml").write_text("controller_server: {}\n")
     (tmp_path / "t.xml").write_text('<root BTCPP_format="4"><BehaviorTree ID="Main"><Dock/></BehaviorTree></root>\n')
-    assert run_btq("init", "--from-xml", cwd=tmp_path)[0] == 0
-    assert (tmp_path / "btq.toml").read_text().splitlines()[2:] == [
-        '# nodes = ["src/*.cpp"]  # C++ that registers nodes: `btq nodes` shows what is seen of them',
-        "",
-        "# [[factory]]  # what bt_navigator loads",
-        '# name = "navigator"',
-        '# nav2 = "config/nav.yaml"',
-    ]
+    assert lines_of_init(tmp_path) == ['nodes = ["src/*.cpp"]  # C++ that registers nodes', *NAVIGATOR]
+    (tmp_path / "src" / "nodes.cpp").write_text("// registerNodeType is called elsewhere\n")
+    proposed = '# nodes = ["src/*.cpp"]  # C++ that registers nodes: `btq nodes` shows what is seen of them'
+    assert lines_of_init(tmp_path) == [proposed, *NAVIGATOR]
+
+
+NAVIGATOR = ("", "# [[factory]]  # what bt_navigator loads", '# name = "navigator"', '# nav2 = "config/nav.yaml"')
+
+
+def lines_of_init(folder: Path) -> list[str]:
+    """What a new project file has after its heading and the engine."""
+    (folder / "btq.toml").unlink(missing_ok=True)
+    assert run_btq("init", "--from-xml", cwd=folder)[0] == 0
+    return [line for line in (folder / "btq.toml").read_text().splitlines()[1:] if not line.startswith("engine")]
+
+
+def test_init_names_sources_beside_the_distribution_of_the_parameters(tmp_path: Path) -> None:
+    pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
+    for folder in ("src/a", "src/b", "test", "config"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "src/a/one.cpp").write_text('void f(F& x) { x.registerNodeType<Dock>("Dock"); }\n')
+    (tmp_path / "src/b/two.cpp").write_text("PortsList Dock::providedPorts() { return {}; }\n")
+    (tmp_path / "test/mock.cpp").write_text('void f(F& x) { x.registerNodeType<Mock>("Mock"); }\n')
+    parameters = "bt_navigator:\n  ros__parameters:\n    error_code_name_prefixes: [a]\n    introspection_mode: x\n"
+    (tmp_path / "config/nav.yaml").write_text(parameters)
+    nodes = '<FollowPath path="{p}"/>'
+    (tmp_path / "t.xml").write_text(f'<root BTCPP_format="4"><BehaviorTree ID="M">{nodes}</BehaviorTree></root>\n')
+    why = "the distribution of Nav2 for which the parameters of bt_navigator are"
+    assert lines_of_init(tmp_path) == [f'nodes = ["nav2-lyrical", "src/**/*.cpp"]  # {why}', *NAVIGATOR]

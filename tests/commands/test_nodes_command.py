@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from in_process import run_btq
 
+from btq_lang.commands.opening import open_workspace
+
 pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
 
 DRIVE = """\
@@ -178,3 +180,32 @@ def test_other_xml_is_no_source(tmp_path: Path) -> None:
         "",
         "btq: package.xml: neither C++ nor what pluginlib reads\n",
     )
+
+
+def test_folders_of_tests_and_of_builds_are_read_only_where_they_are_named(tmp_path: Path) -> None:
+    one = 'void add(F& f) { f.registerSimpleAction("%s", go); }\n'
+    folders = "src test src/tests src/a/test/b build src/node_modules install log src/log src/x"
+    for folder in folders.split():
+        (tmp_path / folder).mkdir(parents=True)
+        name = folder.replace("/", "_").title()
+        (tmp_path / folder / "a.cpp").write_text(one % name)
+    (tmp_path / "src/x/COLCON_IGNORE").touch()
+    (tmp_path / "m.btq").write_text("BehaviorTree M\n    Src\n")
+    (tmp_path / "src/old").mkdir()
+    (tmp_path / "src/old/a.cpp").write_text(one % "Src_Old")
+    (tmp_path / "btq.toml").write_text('nodes = ["**/*.cpp"]\nexclude = ["src/old/"]\n')
+
+    def of_command(*paths: str) -> list[str]:
+        _, out, _ = run_btq("nodes", *paths, cwd=tmp_path)
+        return [line.split()[1] for line in out.splitlines() if line.startswith("    Action")]
+
+    def of_pattern(pattern: str) -> list[str]:
+        (tmp_path / "btq.toml").write_text(f'nodes = ["{pattern}"]\nexclude = ["src/old/"]\n')
+        files = open_workspace(str(tmp_path)).files.values()
+        return sorted(node for file in files if file.origin and file.origin.nodes for node in file.origin.nodes)
+
+    assert of_command(".") == of_pattern("**/*.cpp") == ["Src", "Src_Log"]
+    assert of_command("test") == of_pattern("test/**/*.cpp") == ["Test"]
+    assert of_command("src/tests") == of_pattern("src/tests/*.cpp") == ["Src_Tests"]
+    assert of_command("src", "test") == ["Src", "Src_Log", "Test"]
+    assert of_command("src/tests/a.cpp", "build") == ["Build", "Src_Tests"]

@@ -59,13 +59,13 @@ def test_without_the_key_nothing_is_known_of_them(robot: Path) -> None:
 
 def test_another_distribution_has_other_nodes(robot: Path) -> None:
     (robot / "m.btq").write_text(
-        "BehaviorTree Main\n    SmoothPath (unsmoothed_path = {p} error_code_id = {smoother_error_code})\n"
+        "BehaviorTree Main\n    SmoothPath (unsmoothed_path = {goal} error_code_id = {smoother_error_code})\n"
     )
     found = {}
     for name in PACKAGED:
         (robot / "btq.toml").write_text(f'nodes = ["{name}"]\n')
         found[name] = check(robot)
-    message = "m.btq:2:39: error[unknown-port] `SmoothPath` has no port `error_code_id`"
+    message = "m.btq:2:42: error[unknown-port] `SmoothPath` has no port `error_code_id`"
     assert found == {name: [message] if name == "nav2-humble" else [] for name in PACKAGED}
 
 

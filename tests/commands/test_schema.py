@@ -68,6 +68,27 @@ def test_for_a_version_of_the_engine(btq: Run, project: Path) -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("project_file", "root", "version"),
+    [
+        ("", 'BTCPP_format="4"', "4.10"),
+        ("", "", "4.10"),  # nothing says what it is for
+        ("", 'BTCPP_format="3"', "4.6"),  # the nearest that has a schema
+        ('engine = "3.8"\n', 'BTCPP_format="4"', "4.6"),
+        ('engine = "4.8"\n', 'BTCPP_format="3"', "4.8"),
+        ('nodes = ["nav2-humble"]\n', "", "4.6"),
+        ('nodes = ["nav2-jazzy"]\n', "", "4.10"),
+    ],
+)
+def test_it_is_for_the_version_that_the_files_are_for(
+    btq: Run, tmp_path: Path, project_file: str, root: str, version: str
+) -> None:
+    (tmp_path / "btq.toml").write_text(project_file, encoding="utf-8")
+    (tmp_path / "a.xml").write_text(TREES.replace('BTCPP_format="4"', root), encoding="utf-8")
+    told = btq("schema", "xsd", "a.xml").stdout.splitlines()[1]
+    assert told == f"<!-- The nodes of BehaviorTree.CPP {version} and of this project, by btq schema xsd. -->"
+
+
 def test_nodes_that_the_checks_call_unknown_are_left_out(btq: Run, project: Path) -> None:
     (project / "b.xml").write_text(TREES.replace("<Lift/>", "<Sequnce><Dock/></Sequnce>"), encoding="utf-8")
     assert names(btq("schema", "xsd").stdout) == {"Drive", "Lift", "Dock", "TryCatch", "Main", "Other"}

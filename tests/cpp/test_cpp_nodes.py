@@ -6,6 +6,7 @@ from textwrap import dedent
 
 import pytest
 
+from btq_lang.catalog.nav2 import DISTRIBUTIONS
 from btq_lang.cpp.model import CppNode, CppNodes
 from btq_lang.cpp.nodes import read_nodes
 
@@ -198,6 +199,75 @@ def test_ports_of_a_base_are_named_by_its_function() -> None:
     assert (node.category, ports(node)) == ("Condition", ["input a : int", "output b : int"])
 
 
+BASES = """
+    struct Base : BT::SyncActionNode {
+      static PortsList providedPorts() { return { InputPort<int>("a") }; }
+    };
+    PortsList joined(const PortsList& one, const PortsList& other) {
+      PortsList all;
+      for (const auto& port : one) all.insert(port);
+      for (const auto& port : other) all.insert(port);
+      return all;
+    }
+    auto made() -> BT::PortsList { return { BT::InputPort<int>("b") }; }
+    void add(BT::PortsList& ports) { ports.insert(BT::InputPort<int>("b")); }
+    using List = BT::PortsList;
+    const List kList = { BT::InputPort<int>("a"), BT::InputPort<int>("b") };
+    const auto kB = BT::InputPort<int>("b");
+"""
+
+
+@pytest.mark.parametrize(
+    "statements",
+    [
+        'auto ports = Base::providedPorts(); ports.insert(BT::InputPort<int>("b"));',
+        'auto ports = Base::providedPorts(); ports.insert({ BT::InputPort<int>("b") });',
+        'auto ports = Base::providedPorts(); ports.merge(BT::PortsList{ BT::InputPort<int>("b") });',
+        'auto ports = Base::providedPorts(); ports["b"] = BT::InputPort<int>("b").second;',
+        'auto ports = Base::providedPorts(); ports.emplace("b", BT::InputPort<int>("").second);',
+        'auto ports = Base::providedPorts(); ports.insert_or_assign("b", BT::InputPort<int>("").second);',
+        'auto ports = Base::providedPorts(); ports.insert(std::make_pair("b", BT::InputPort<int>("").second));',
+        'auto ports = Super::providedPorts(); ports.reserve(2); { ports.insert(BT::InputPort<int>("b")); }',
+        "auto ports = Base::providedPorts(); ports.insert(kB);",
+        "auto ports = Base::providedPorts(); add(ports);",
+        "auto ports = Base::providedPorts(); auto own = made();"
+        " std::copy(own.begin(), own.end(), std::inserter(ports, ports.end()));",
+        "auto ports = Base::providedPorts(); std::ranges::copy(made(), std::inserter(ports, ports.end()));",
+        "auto ports = Base::providedPorts(); auto own = made(); ports.insert(std::begin(own), std::end(own));",
+        'auto ports = Base::providedPorts(); for (auto port : { BT::InputPort<int>("b") }) ports.insert(port);',
+        "List ports = Base::providedPorts(); for (const auto& [name, port] : made()) { ports[name] = port; }",
+        'BT::PortsList ports(Base::providedPorts()); ports.insert(BT::InputPort<int>("b"));',
+        "std::unordered_map<std::string, BT::PortInfo> ports = Base::providedPorts(); ports.insert(kB);",
+        'return joined(Base::providedPorts(), { BT::InputPort<int>("b") });',
+        "static const BT::PortsList ports = [] { auto all = Base::providedPorts(); all.insert(kB); return all; }();",
+        "return kList;",
+        "return Move::kOwn;",
+    ],
+)
+def test_a_list_is_joined_with_that_of_a_base_class(statements: str) -> None:
+    body = f"""
+        using Super = Base;
+        inline static const BT::PortsList kOwn = {{ BT::InputPort<int>("a"), BT::InputPort<int>("b") }};
+        static BT::PortsList providedPorts() {{ {statements} return ports; }}
+    """
+    assert ports(moved(body, "Base", BASES)) == ["input a : int", "input b : int"]
+
+
+def test_what_is_no_list_is_not_taken_for_one() -> None:
+    found = read(
+        """
+        auto makeNode() { return std::make_shared<Node>(); }
+        struct A : BT::SyncActionNode { static PortsList providedPorts() { return {}; } };
+        void f() {
+          auto node = makeNode();
+          static const auto done = [] { return true; }();
+          registerNodeType<A>("A", node);
+        }
+        """
+    )
+    assert (unseen(found), [node.complete for node in found.nodes]) == ([], [True])
+
+
 def test_an_alias_stands_for_its_type() -> None:
     body = """
         typedef std::vector<Pose> Goals;
@@ -244,12 +314,58 @@ def test_a_base_class_of_behaviortree_ros2_adds_its_port(base: str, category: st
     assert [each.name for each in moved("", f"BT::{base}<M>").ports] == [port]
 
 
-def test_a_base_class_of_nav2_gives_the_category_and_its_ports_are_unseen() -> None:
-    body = 'static PortsList providedPorts() { return providedBasicPorts({ InputPort<int>("a") }); }'
-    found = read(move(body, "nav2_behavior_tree::BtActionNode<M>"))
-    (node,) = found.nodes
-    assert (node.category, ports(node), node.complete) == ("Action", ["input a : int"], False)
-    assert unseen(found) == ["a.cpp:5:43: `providedBasicPorts` is not in the sources, and may add ports"]
+TIMEOUT = "input server_timeout : std::chrono::milliseconds = ''"
+SERVER = ["input server_name : std::string = '' # Action server name", TIMEOUT]
+ERRORS = [
+    "output error_code_id : uint16_t # The action error code",
+    "output error_msg : std::string # The action error message",
+]
+
+
+@pytest.mark.parametrize(
+    ("base", "distributions", "of_base"),
+    [
+        ("BtActionNode", ("humble",), SERVER),
+        ("BtActionNode", ("iron", "jazzy", "kilted"), SERVER),
+        ("BtActionNode", ("lyrical",), [*SERVER, *ERRORS]),
+        ("BtCancelActionNode", DISTRIBUTIONS, SERVER),
+        (
+            "BtServiceNode",
+            DISTRIBUTIONS,
+            ["input service_name : std::string = '' # please_set_service_name_in_BT_Node", TIMEOUT],
+        ),
+    ],
+)
+def test_a_base_class_of_nav2_adds_the_ports_of_its_distribution(
+    base: str, distributions: tuple[str, ...], of_base: list[str]
+) -> None:
+    body = """
+        using Base = nav2_behavior_tree::{0}<M>;
+        static PortsList providedPorts() {{ return {1}providedBasicPorts({{ InputPort<int>("a") }}); }}
+    """
+    of_nav2 = f"nav2_behavior_tree::{base}"
+    for text, own in (
+        (move(body.format(base, ""), f"{of_nav2}<M>"), ["input a : int"]),
+        (move(body.format(base, "Base::"), f"{of_nav2}<M>"), ["input a : int"]),
+        (move(body.format(base, f"{of_nav2}<M>::"), f"{base}<M>"), ["input a : int"]),
+        (move("", f"{of_nav2}<M>"), []),
+    ):
+        found = read_nodes({"a.cpp": text}, distributions)
+        assert found.unseen == ()
+        assert [(node.category, ports(node), node.complete) for node in found.nodes] == [
+            ("Action", of_base + own, True)
+        ]
+
+
+def test_ports_that_a_base_class_of_nav2_has_in_some_distributions_are_unseen() -> None:
+    found = read(move("", "nav2_behavior_tree::BtActionNode<M>"))
+    assert [(ports(node), node.complete) for node in found.nodes] == [(SERVER, False)]
+    assert unseen(found) == [
+        "a.cpp:11:3: whether `BtActionNode` provides `error_code_id`, `error_msg` depends on the distribution; "
+        'name the distribution of Nav2 in the project file: `nodes = ["nav2-jazzy", …]`'
+    ]
+    other = read(move("", "elsewhere::BtActionNode<M>"))
+    assert unseen(other) == ["a.cpp:11:3: `elsewhere::BtActionNode` is not in the sources, and may provide ports"]
 
 
 @pytest.mark.parametrize(
@@ -572,3 +688,64 @@ def test_a_port_is_not_unread_if_other_code_reads_it_or_a_name_is_made() -> None
     helper = "\n template <class T> T get(const std::string& port) {{ T value; getInput(port, value); return value; }}"
     class_ += helper
     assert unread('auto x = get<int>("near");') == ["far"]
+
+
+SIMPLE = """
+    BT::NodeStatus speak(BT::TreeNode& self) {
+      if (!self.getInput("text", text)) { return BT::NodeStatus::FAILURE; }
+      self.setOutput("lenght", 1);
+      return BT::NodeStatus::SUCCESS;
+    }
+    void f(BT::BehaviorTreeFactory& factory) {
+      BT::PortsList ports{ BT::InputPort<std::string>("text"), BT::OutputPort<int>("length") };
+      auto listen = [&](BT::TreeNode& self) { self.getInput("text", text); return hear(text); };
+      factory.registerSimpleAction("Speak", speak, ports);
+      factory.registerSimpleCondition("Hears", listen, { BT::InputPort<std::string>("text") });
+      factory.registerSimpleDecorator("Mute", [](BT::NodeStatus status, BT::TreeNode& node) {
+        const auto level = node.getInput<int>("level").value();
+        return level > 3 ? status : BT::NodeStatus::SKIPPED;
+      }, { BT::BidirectionalPort<int>("level"), BT::InputPort<double>("gain", 1.0, "of the microphone") });
+      factory.registerSimpleAction("Whole", [](BT::TreeNode& self) { return other(self); },
+                                   { BT::InputPort<int>("a") });
+      factory.registerSimpleAction("Bound", std::bind(&Robot::go, &robot), { BT::InputPort<int>("b") });
+    }
+"""
+
+
+def test_the_function_of_a_simple_node_is_held_against_its_ports() -> None:
+    found = read(SIMPLE)
+    assert found.unseen == ()
+    assert [
+        (
+            node.name,
+            ports(node),
+            [port.name for port in node.unread],
+            [use.port for use in node.undeclared],
+            [what for _, what in node.without],
+        )
+        for node in found.nodes
+    ] == [
+        ("Bound", ["input b : int"], [], [], [""]),
+        ("Hears", ["input text : std::string"], [], [], ["ignores"]),
+        (
+            "Mute",
+            ["inout level : int", "input gain : double = '1.0' # of the microphone"],
+            ["gain"],
+            [],
+            ["fails"],
+        ),
+        ("Speak", ["input text : std::string", "output length : int"], ["length"], ["lenght"], ["fails"]),
+        ("Whole", ["input a : int"], [], [], [""]),
+    ]
+
+
+def test_ports_are_in_declared_order_those_of_a_base_first() -> None:
+    more = """
+        struct Base : BT::StatefulActionNode {
+          static PortsList providedPorts() { return { InputPort<int>("z"), OutputPort<int>("m") }; }
+        };
+    """
+    own = 'auto ports = Base::providedPorts(); ports.insert({ InputPort<A>("k"), InputPort<B>("a") }); return ports;'
+    assert provided(own, more, "Base") == ["input z : int", "output m : int", "input k : A", "input a : B"]
+    own = 'PortsList ports{ InputPort<A>("k"), InputPort<B>("a") }; ports.merge(Base::providedPorts()); return ports;'
+    assert provided(own, more, "Base") == ["input k : A", "input a : B", "input z : int", "output m : int"]

@@ -5,6 +5,7 @@ That list is kept by hand and is wrong in some branches; where exactly is writte
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 
 import pytest
@@ -13,6 +14,8 @@ from nav2_differences import differences
 from nav2_sources import PALETTE
 
 from btq_lang.catalog.kinds import CATEGORIES
+from btq_lang.catalog.nav2.bases import BASES
+from btq_lang.cpp.nodes import read_nodes
 
 BRANCHES = (*COUNTS, "main")  # where the nodes are those of Lyrical
 SMOOTHER = ["SmoothPath.server_name", "SmoothPath.server_timeout"]
@@ -76,3 +79,17 @@ def test_the_list_differs_only_there(branch: str) -> None:
     assert {kind: sorted(names) for kind, names in found.items()} == {
         kind: sorted(names) for kind, names in expected.items() if names
     }
+
+
+@pytest.mark.parametrize("branch", ["humble", "iron", "jazzy", "kilted", "lyrical"])
+@pytest.mark.parametrize("base", BASES)
+def test_the_ports_of_base_classes_are_those_of_the_headers(branch: str, base: str) -> None:
+    sources = files(branch)
+    text = f'struct A : nav2_behavior_tree::{base}<M> {{}};\nvoid f() {{ factory.registerNodeType<A>("A"); }}\n'
+    header = next(path for path, text in sources.items() if re.search(rf"class {base}\b[^;{{]*{{", text))
+
+    def ports(files: dict[str, str]) -> list[tuple[str, ...]]:
+        (node,) = read_nodes(files, (branch,)).nodes
+        return [(port.direction, port.name, port.type, port.text) for port in node.ports]
+
+    assert ports({"a.cpp": text}) == ports({"a.cpp": text, header: sources[header]})

@@ -39,3 +39,21 @@ def test_the_opposite_of_a_skip(engine: Engine, battery: int, runs: bool) -> Non
     xml = FILE.format(f'<Sequence><Script code="battery := {battery}"/>{charge}</Sequence>')
     answer = engine.run_one(xml, ticks=1)
     assert ("RUNNING" in answer.statuses("Charge")) is runs
+
+
+@pytest.mark.parametrize(
+    ("tag", "port", "error"),
+    [
+        ('SetBlackboard value="0.5"', "output_key", "missing port [output_key]"),
+        ("UnsetBlackboard", "key", "missing input port [key]"),
+    ],
+)
+def test_a_key_in_braces_is_read_from_the_entry(engine: Engine, tag: str, port: str, error: str) -> None:
+    node = f'<{tag} {port}="{{target}}"/>'
+    answer = engine.run_one(FILE.format(node), ticks=1)
+    assert answer.stage == "tick"
+    assert error in answer.error
+    answer = engine.run_one(FILE.format(f"<Sequence><Script code=\"target := 'speed'\"/>{node}</Sequence>"), ticks=1)
+    assert answer.status == "SUCCESS"
+    assert answer.blackboards[""].get("target") == "speed"
+    assert ("speed" in answer.blackboards[""]) is (port == "output_key")

@@ -24,6 +24,7 @@ import pytest
 import zmq
 from evidence_logs import MAIN, MAIN_XML, Verify
 from groot2_robot import KEPT, Robot
+from running_process import running
 
 from btq_lang.commands.live_screen import HINT, drawn
 from btq_lang.evidence.verdicts import ClauseVerdict, RequirementVerdict
@@ -424,7 +425,7 @@ def test_a_process_ends_with_the_table(before: list[str], number: signal.Signals
     (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
     with Robot(MAIN_XML) as robot:
         command: list[Any] = [*before, sys.executable, "-m", "btq_lang", "verify", "--live", robot.address]
-        with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as btq:
+        with running(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as btq:
             robot.wait_for("r", "t")
             robot.play(GOOD)
             robot.wait_for("t", "t")

@@ -214,9 +214,8 @@ FROM_PYTHON: Final[list[Case]] = [
     ),
     (
         tree("Sequence Go, Turn"),
-        "2:16 error syntax-error «,» expected the end of the line, found `,` | "
-        "children go on lines of their own below their parent, indented",
-        None,
+        "2:16 error syntax-error «,» children go on lines of their own below their parent, indented",
+        tree("Sequence", "    Go", "    Turn"),
     ),
     (
         tree("Sequence [", "    Go", "]"),
@@ -237,8 +236,8 @@ FROM_PYTHON: Final[list[Case]] = [
     (
         tree("Retry 3", "    Go"),
         "2:11 error syntax-error «3» expected the end of the line, found `3` | "
-        "values go in brackets, with their names: `(key = value)`",
-        None,
+        "a value goes after the name of its port: `(num_attempts = 3)`",
+        tree("Retry (num_attempts = 3)", "    Go"),
     ),
     (
         tree("Retry (3)", "    Go"),
@@ -285,7 +284,7 @@ FROM_PYTHON: Final[list[Case]] = [
         tree("->", "    !BatteryLow", "    Go"),
         "3:9 error syntax-error «!» expected a node: its kind, or a symbol: -> ? || …, found `!` | "
         "to negate a node, put an `Inverter` above it, and indent the node",
-        None,
+        tree("->", "    Inverter", "        BatteryLow", "    Go"),
     ),
     (
         condition("lit && far > 2 m"),
@@ -643,7 +642,7 @@ FROM_OTHER_LANGUAGES: list[tuple[str, str, str | None]] = [
     (
         tree("Timeout (30)", "    Go"),  # of which unit nobody knows
         "2:14 error syntax-error «30» expected an attribute: key = value, found `30` | "
-        "a value goes after the name of its port: `port = 30`",
+        "a value goes after the name of its port: `msec = 30`, or with a unit, `msec = 30 s`",
         None,
     ),
     (

@@ -171,9 +171,8 @@ def test_what_is_left_of_a_line(line: str, tree: str, problem: str | None) -> No
 
 
 def test_attributes_can_be_put_in_brackets() -> None:
-    assert_fix(
-        "BehaviorTree t\n  X a = 1 b = {c} # d", "Put brackets around them", "BehaviorTree t\n  X (a = 1 b = {c}) # d"
-    )
+    fixed = "BehaviorTree t\n  X (a = 1 b = {c}) # d"
+    assert_fix("BehaviorTree t\n  X a = 1 b = {c} # d", "Put brackets around them", fixed, safe=True)
 
 
 NO_NODE = "expected a node: its kind, or a symbol: -> ? || …"

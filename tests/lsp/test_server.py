@@ -16,6 +16,7 @@ from time import sleep
 import pytest
 from lsp_editor import SERVER, Editor, Message, part
 from lsprotocol import types
+from running_process import running
 
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.lsp.convert import Converter
@@ -1239,7 +1240,7 @@ def test_the_server_on_a_port_of_this_machine(tmp_path: Path) -> None:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     command = (sys.executable, "-m", "btq_lang", "lsp", "--tcp", str(port), "--log", "info")
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+    with running(command, stderr=subprocess.PIPE) as process:
         assert process.stderr is not None
         log = next(line for line in process.stderr if "Serving on" in line)
         assert f"('127.0.0.1', {port})" in log

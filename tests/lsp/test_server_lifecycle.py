@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from forked_server import Forked, serve
 from lsp_editor import SERVER, Editor, Message
+from running_process import running
 
 from btq_lang.lsp import editor as btq_editor
 
@@ -181,7 +182,7 @@ def test_it_ends_with_its_standard_input_while_it_reads_folders(tmp_path: Path) 
 
 def test_it_ends_after_the_process_of_its_editor(tmp_path: Path) -> None:
     """While its standard input stays open, as where another process has inherited it."""
-    with subprocess.Popen((sys.executable, "-c", "input()"), stdin=subprocess.PIPE) as crashing:
+    with running((sys.executable, "-c", "input()"), stdin=subprocess.PIPE) as crashing:
         editor = Editor(tmp_path, program=POLLING, processId=crashing.pid)
         editor.open("main.btq", "BehaviorTree Main\n    Pick\n")
         assert editor.diagnostics("main.btq") == []
@@ -238,7 +239,7 @@ def test_over_a_port_it_ends_the_same(is_shut_down: bool, tmp_path: Path) -> Non
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     command = (*SERVER[:-1], "--tcp", str(port), "--log", "info")
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+    with running(command, stderr=subprocess.PIPE) as process:
         assert process.stderr is not None
         next(line for line in process.stderr if "Serving on" in line)
         bridge = "import socket, sys, threading\n" + BRIDGE.replace("PORT", str(port))

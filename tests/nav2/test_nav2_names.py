@@ -8,6 +8,8 @@ import pytest
 from in_process import run_btq
 from nav2_robot import make_robot, shown
 
+from btq_lang.catalog.nav2 import DISTRIBUTIONS
+
 HEAD = "bt_navigator:\n  ros__parameters:\n"
 
 
@@ -33,16 +35,82 @@ def found(robot: Path, *lines: str, distribution: str = "jazzy") -> list[str]:
         ("error_codes_names", "error_code_names"),
         ("navigators_", "navigators"),
         ("goal_blackboard_ids", "goal_blackboard_id"),
-        ("bt_serch_directories", None),  # Jazzy has none
-        ("planner_id", None),
-        ("goal_frame", None),  # a node of one's own may read it
-        ("odom_frame", None),
-        ("qos_overrides", None),
     ],
 )
-def test_a_name_that_is_nearly_one(robot: Path, name: str, meant: str | None) -> None:
+def test_a_name_that_is_nearly_one(robot: Path, name: str, meant: str) -> None:
     message = f"1:5 warning Nav2 has no parameter `{name}`; did you mean `{meant}`?"
-    assert found(robot, f"{name}: x") == ([message] if meant else [])
+    assert found(robot, f"{name}: x") == [message]
+
+
+DEFAULT_TREES = "`default_nav_through_poses_bt_xml` or `default_nav_to_pose_bt_xml`"
+
+
+@pytest.mark.parametrize(
+    ("name", "distribution", "meant"),
+    [
+        ("default_bt_xml", "humble", DEFAULT_TREES),
+        ("bt_xml", "lyrical", f"`always_reload_bt_xml`, {DEFAULT_TREES}"),
+        ("bt_serch_directories", "jazzy", ""),  # which has none
+        ("planner_id", "jazzy", ""),
+        ("odom_frame", "iron", ""),
+        ("bond_heartbeat_period", "humble", ""),
+        ("server_timeout", "kilted", "`default_server_timeout`"),
+        ("groot_port", "kilted", "`navigate_through_poses.groot_server_port` or `navigate_to_pose.groot_server_port`"),
+        ("ComputePathToPose.server_timeout", "jazzy", ""),
+    ],
+)
+def test_a_name_that_nothing_reads(robot: Path, name: str, distribution: str, meant: str) -> None:
+    likely = f"; did you mean {meant}?" if meant else ""
+    message = f"Nav2 has no parameter `{name}` in {distribution.capitalize()}{likely}"
+    assert found(robot, f"{name}: x", distribution=distribution) == [f"1:5 warning {message}"]
+    own = (f"{name}: x", "plugin_lib_names: [my_nodes]")
+    assert found(robot, *own, distribution=distribution) == [f"1:5 hint {message}"]
+    for all_nodes in ("/**", "/*"):
+        text = f"bt_navigator:\n  ros__parameters: {{}}\n{all_nodes}:\n  ros__parameters:\n    {name}: x\n"
+        assert shown(robot, text, distribution) == []
+
+
+@pytest.mark.parametrize("distribution", DISTRIBUTIONS)
+def test_what_all_nodes_and_some_of_a_tree_read(robot: Path, distribution: str) -> None:
+    lines = (
+        "use_sim_time: true",
+        "goal_reached_tol: 0.3",
+        "goal_updater_topic: x",
+        "start_type_description_service: true",
+    )
+    qos = "qos_overrides: {/parameter_events: {publisher: {depth: 10}}}"
+    assert found(robot, *lines, qos, "bond_disable_heartbeat_timeout: true", distribution=distribution) == []
+
+
+def test_a_section_is_reported_once(robot: Path) -> None:
+    assert found(robot, "my_planner:", "  plugin: a/B", "  tolerance: 0.5") == [
+        "1:5 warning Nav2 has no parameter `my_planner` in Jazzy"
+    ]
+
+
+def test_what_is_read_one_level_up(robot: Path) -> None:
+    assert found(robot, "navigate_to_pose:", "  error_code_names: [a]", "  goal_blackboard_id: g") == [
+        "3:7 warning Nav2 does not read `navigate_to_pose.goal_blackboard_id` in Jazzy",
+        "2:7 warning Nav2 does not read `error_code_names` below `navigate_to_pose`: write it one level up",
+    ]
+
+
+def test_what_own_code_reads(tmp_path: Path) -> None:
+    """Its C++ is at hand, or only its library is known to be loaded."""
+    (tmp_path / "n.cpp").write_text(
+        '#include "behaviortree_cpp/bt_factory.h"\n'
+        "class Say : public BT::SyncActionNode {\n"
+        "  static BT::PortsList providedPorts() { return {}; }\n"
+        '  BT::NodeStatus tick() override { node_->get_parameter("own_volume", v_); return BT::NodeStatus::SUCCESS; }\n'
+        "};\n"
+        'BT_REGISTER_NODES(factory) { factory.registerNodeType<Say>("Say"); }\n'
+    )
+    (tmp_path / "btq.toml").write_text('nodes = ["nav2-jazzy", "*.cpp"]\n\n[[factory]]\nname = "r"\nnav2 = "p.yaml"\n')
+    (tmp_path / "p.yaml").write_text(f"{HEAD}    plugin_lib_names: [say]\n    own_volume: 1\n    own_pitch: 2\n")
+    _, out, _ = run_btq("check", "--output-format", "concise", cwd=tmp_path)
+    assert out.splitlines()[:-1] == [
+        "p.yaml:5:5: hint[nav2-parameter] Nav2 has no parameter `own_pitch` in Jazzy",
+    ]
 
 
 def test_a_name_below_a_navigator(robot: Path) -> None:
@@ -51,6 +119,7 @@ def test_a_name_below_a_navigator(robot: Path) -> None:
         "`navigate_to_pose.enable_groot_monitoring`?",
         "3:7 warning Nav2 has no parameter `navigate_to_pose.groot_serverport`; did you mean "
         "`navigate_to_pose.groot_server_port`?",
+        "4:7 warning Nav2 has no parameter `navigate_to_pose.own` in Jazzy",
     ]
     pose = "did you mean `navigate_to_pose`?"
     assert found(robot, "navigate_to_pos:", "  groot_server_port: 1667") == [
@@ -60,7 +129,7 @@ def test_a_name_below_a_navigator(robot: Path) -> None:
         "1:5 warning Nav2 has no parameter `navigate_to_pos.groot_server_port`; did you mean "
         "`navigate_to_pose.groot_server_port`?"
     ]
-    assert found(robot, "navigators: [mine]", "mine: {plugin: my_robot/Mine, groot_server_port: 1}") == []
+    assert found(robot, "navigators: [mine]", "mine: {plugin: my_robot/Mine, groot_server_port: 1, own: 2}") == []
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ NAMING = {
     "btcpp/enforcement.py": "writes these",
     "btcpp/guards.py": "writes these",
     "btcpp/wrappers.py": "writes these",
+    "grammar/nodes.py": "writes one for `!Dark`",
     "ide/refactor.py": "offers nodes to put around another one, and writes them",
 }
 

@@ -18,3 +18,27 @@ MYPY = ("mypy", "--cache-dir", os.devnull) if "BTQ_CI" in os.environ else ("mypy
 def test_nothing_to_complain_of(command: tuple[str, ...]) -> None:
     run = subprocess.run([sys.executable, "-m", *command], cwd=ROOT, capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
+
+
+QUERIES = """
+from btq_lang.workspace.queries import Store
+
+def length(store: Store[str], times: int) -> int:
+    return store.read("text", str.count, "a") * times
+
+store = Store("banana")
+store.ask(length, 2)
+store.ask(length, "2")
+store.ask(length)
+"""
+
+
+def test_wrong_arguments_of_a_query_are_errors_of_types(tmp_path: Path) -> None:
+    asked = tmp_path / "asked.py"
+    asked.write_text(QUERIES, encoding="utf-8")
+    command = [sys.executable, "-m", *MYPY, "--strict", "--follow-imports=silent", "--config-file=", str(asked)]
+    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert [line.split(": ", 1)[1] for line in run.stdout.splitlines()[:-1]] == [
+        'error: Argument 2 to "ask" of "Store" has incompatible type "str"; expected "int"  [arg-type]',
+        'error: Missing positional argument "times" in call to "ask" of "Store"  [call-arg]',
+    ]

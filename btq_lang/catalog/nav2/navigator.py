@@ -167,6 +167,16 @@ PARAMETERS: Final[Mapping[str, Parameter]] = {
     "transform_tolerance": Parameter("hijkl", type=DOUBLE),
     "plugin_lib_names": Parameter("hijkl", type=STRINGS),
 }
+# What other code of bt_navigator reads, with the distributions in which it does: some nodes of trees, and the classes
+# that all nodes of Nav2 or of ROS 2 are made of.
+OTHER_PARAMETERS: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("goal_reached_tol", "goal_updater_topic", "bond_disable_heartbeat_timeout"), "hijkl"),
+    "goals_updater_topic": "kl",
+    "bond_heartbeat_period": "ijkl",
+    **dict.fromkeys(("autostart_node", "strict_param_loading", "warn_on_missing_params"), "jkl"),
+    "allow_parameter_qos_overrides": "l",
+    **dict.fromkeys(("qos_overrides", "start_type_description_service"), "hijkl"),
+}
 # The navigators: the parameter that names a tree, the file in nav2_bt_navigator that counts without it, and the class,
 # which Iron writes with `/` and later ones with `::`.
 NAVIGATORS: Final[Mapping[str, tuple[str, str, str]]] = {

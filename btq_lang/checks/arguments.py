@@ -1,0 +1,100 @@
+"""Arguments of SubTrees that nothing in their trees reads or writes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Final
+
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.names import is_port_name
+from btq_lang.catalog.versions import PORTS_OF_SUBTREE
+from btq_lang.checks.entries import handling
+from btq_lang.checks.flow import below, calls_of
+from btq_lang.checks.view import View, declared_ports
+from btq_lang.diagnostics.model import Diagnostic, replace_fix
+from btq_lang.syntax.tree import Tree, port_named
+from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.workspace.inputs import of_scope
+from btq_lang.workspace.queries import Store, on_circle
+from btq_lang.workspace.workspace import Workspace
+
+
+def unread_argument(view: View) -> Iterator[Diagnostic]:
+    """An argument of a SubTree that nothing in its tree names, once for each tree; one that the tree's declared ports
+    lack is an unknown port."""
+    reported: set[tuple[str, str]] = set()
+    for seen in view.seen.subtrees:
+        tree = seen.id.text if seen.id is not None else ""
+        for pair in seen.node.attributes:
+            name = pair.key.text
+            if not is_port_name(name) or (tree, name) in reported or not view.defines(Kind.TREE, tree):
+                continue
+            declared = declared_ports(view, tree)
+            if port_named(declared, name) or (declared and PORTS_OF_SUBTREE.holds(view.target)):
+                continue
+            if view.ask(_is_named, tree, name):
+                continue
+            reported.add((tree, name))
+            meant = [each for each in view.ask(_meant, tree, name) if seen.node.attribute(each) is None]
+            fixes = tuple([replace_fix(f"Replace `{name}` with `{each}`", pair.key.span, each) for each in meant])
+            message = f"nothing in `{tree}` reads `{name}`{did_you_mean(tuple(meant))}"
+            yield Diagnostic("unread-argument", pair.key.span, message, fixes=fixes)
+
+
+def unread_port(view: View) -> Iterator[Diagnostic]:
+    """The same for a declared port, at its declaration, if a SubTree gives it."""
+    for owner in view.owners:
+        is_of_tree = isinstance(owner, Tree) or owner.category.raw == "SubTree"
+        tree = owner.name.text if is_of_tree and owner.name is not None else ""
+        for port in owner.ports if tree and view.defines(Kind.TREE, tree) else ():
+            name = port.id.text if port.id is not None else ""
+            if port.id is None or not is_port_name(name) or view.ask(_is_named, tree, name):
+                continue
+            if view.ask(_is_given, tree, name):
+                message = f"nothing in `{tree}` reads `{name}`, which SubTrees give it"
+                yield Diagnostic("unread-argument", port.id.span, message)
+
+
+def _is_given(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
+    """Whether a SubTree gives a tree an argument."""
+    calls = calls_of(View(store, viewpoint), tree)
+    return any(name in call.given or name in call.values for _, call in calls)
+
+
+@of_scope
+def _meant(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> tuple[str, ...]:
+    """The entries of a tree whose names are similar."""
+    return near(name, [each for each in store.ask(below, viewpoint, tree).uses if each.isidentifier()])
+
+
+@on_circle(True)
+@of_scope
+def _is_named(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
+    """Whether anything in a tree may read or write an entry."""
+    view = View(store, viewpoint)
+    own, found = view.ask(handling, tree), view.definition(Kind.TREE, tree)
+    if own.is_open or own.has_strangers or found is None or name in view.ask(_words, tree):
+        return True
+    if any(seen.kind is None and not seen.is_subtree for seen in view.seen_in(*found).all):
+        from btq_lang.catalog.nav2.navigator import ENTRIES  # few arguments are not named
+
+        if name in ENTRIES:
+            return True  # Nav2's nodes read it when they are created
+    return any(view.ask(_is_named, call.tree, name) for call in own.calls if call.passed(name) == name)
+
+
+@of_scope
+def _words(store: Store[Workspace], viewpoint: str, tree: str) -> frozenset[str]:
+    """All words in the values of a tree's attributes: programs read names of entries from some, whatever their form."""
+    view = View(store, viewpoint)
+    found = view.definition(Kind.TREE, tree)
+    words: set[str] = set()
+    for seen in view.seen_in(*found).given if found is not None else ():
+        for pair in seen.node.attributes:
+            if pair.value is not None:
+                words.update(_WORD(pair.value.text) if pair.value.text not in ("=", "{=}") else (pair.key.text,))
+    return frozenset(words)
+
+
+_WORD: Final = re.compile(r"\w+").findall

@@ -1,0 +1,179 @@
+"""Data flow across trees: what happens to an entry in a tree, in the trees that it runs, and in those that run it.
+
+One invariant: whatever may happen is included: unknown trees and XML may do anything, and what only a robot's program
+does is a flag of its own.  When nodes run is not known here.  What a tree itself does is `handling` (entries.py); the
+rest is composed of that tree by tree, so that an edit stops where it does not change what others see.
+
+Sources: addSubtreeRemapping, getEntry and enableAutoRemapping in src/blackboard.cpp of 4.6.2 and 4.10.0; for version 3
+buildTreeRecursively in src/xml_parsing.cpp of 3.8.8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from enum import IntFlag
+from functools import reduce
+from operator import or_
+from typing import Final
+
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.checks import lookups
+from btq_lang.checks.calls import callers
+from btq_lang.checks.entries import Call, Touch, handling, signal_entries
+from btq_lang.checks.view import View, declared_ports
+from btq_lang.syntax.tree import port_named
+from btq_lang.util.record import Record
+from btq_lang.workspace.inputs import of_scope
+from btq_lang.workspace.queries import Store, on_circle
+from btq_lang.workspace.workspace import Workspace
+
+
+class Use(IntFlag):
+    """What may happen to an entry.
+
+    READ, WRITTEN, CREATED: by nodes, scripts and values that SubTrees give.
+    GIVEN: it is a declared port, or a signal is read from it.
+    STRANGE: a node that nothing declares may read and write any entry.
+    OPEN: something that btq does not know may.
+    OUTSIDE: it is on the root blackboard, where the robot's program may set and read it.
+    """
+
+    READ = 1
+    WRITTEN = 2
+    CREATED = 4
+    GIVEN = 8
+    STRANGE = 16
+    OPEN = 32
+    OUTSIDE = 64
+
+
+class Below(Record):
+    """What happens to the entries of a tree, in it and in the trees that it runs.
+
+    Attributes:
+        uses: by the entry's name in the tree.
+        any: what may happen to each entry.
+    """
+
+    uses: Mapping[str, Use]
+    any: Use
+
+    def of(self, name: str) -> Use:
+        """What may happen to an entry."""
+        return self.uses.get(name, Use(0)) | self.any
+
+
+_ANYTHING: Final = Use(127)
+
+
+@of_scope
+def uses(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> Use:
+    """What may happen to an entry of a tree, under whatever names it is passed up and down."""
+    if name[:1] == "@":
+        return store.ask(_of_root, viewpoint, name[1:])
+    view = View(store, viewpoint)
+    found = view.ask(below, tree).of(name)
+    if port_named(declared_ports(view, tree), name) is not None:
+        found |= Use.GIVEN
+    running = view.ask(callers, tree)
+    if not running or tree in view.look_up(lookups.main_trees):
+        found |= Use.OUTSIDE | view.ask(of_program, name)
+    for caller in running:
+        for call in view.ask(handling, caller).calls:
+            if call.tree == tree:
+                passed = call.passed(name)
+                if name in call.values:
+                    found |= Use.WRITTEN | Use.CREATED
+                if passed is not None:
+                    found |= view.ask(_above, caller, passed)
+    return found
+
+
+@on_circle(Below({}, _ANYTHING))
+@of_scope
+def below(store: Store[Workspace], viewpoint: str, tree: str) -> Below:
+    """What happens to the entries of a tree in it and in the trees that it runs; anything, if it runs itself."""
+    own = store.ask(handling, viewpoint, tree)
+    found: dict[str, Use] = {}
+    anything = Use.OPEN if own.is_open else Use(0)
+    if own.has_strangers:
+        anything |= Use.STRANGE
+    for touch in own.touches:
+        found[touch.name] = found.get(touch.name, Use(0)) | _use(touch)
+    for name in own.named:
+        found[name] = found.get(name, Use(0)) | Use.OPEN
+    for call in own.calls:
+        called = store.ask(below, viewpoint, call.tree)
+        if call.shares:
+            anything |= called.any
+        for name, use in called.uses.items():
+            passed = name if name[:1] == "@" else call.passed(name)
+            if passed is not None:
+                found[passed] = found.get(passed, Use(0)) | use
+        for port, passed in call.given.items():
+            if called.any and port not in called.uses:
+                found[passed] = found.get(passed, Use(0)) | called.any
+    return Below(found, anything)
+
+
+@on_circle(_ANYTHING)
+@of_scope
+def _above(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> Use:
+    return uses(store, viewpoint, tree, name)
+
+
+@of_scope
+def _of_root(store: Store[Workspace], viewpoint: str, name: str) -> Use:
+    """What may happen to an entry of the root blackboard that is named with its `@`."""
+    view = View(store, viewpoint)
+    trees = [(tree, view.ask(below, tree)) for tree in view.names(Kind.TREE)]
+    found = [each.uses.get(f"@{name}", Use(0)) | each.any for _, each in trees]
+    found += [each.of(name) for tree, each in trees if not view.ask(callers, tree)]
+    return reduce(or_, found, Use.OUTSIDE | view.ask(of_program, name))
+
+
+@of_scope
+def of_program(store: Store[Workspace], viewpoint: str, name: str) -> Use:
+    """What the program is known to do with an entry of the root blackboard, and trees by its name with `@`."""
+    view = View(store, viewpoint)
+    found = view.ask(_with_sign).get(name, Use(0))
+    if ("", name) in view.ask(signal_entries):
+        found |= Use.GIVEN
+    for entry, direction in view.look_up(lookups.outside_entries):
+        if entry == name:
+            found |= Use.READ if direction != "output" else Use(0)
+            found |= Use.WRITTEN | Use.CREATED if direction != "input" else Use(0)
+    return found
+
+
+@of_scope
+def _with_sign(store: Store[Workspace], viewpoint: str) -> dict[str, Use]:
+    """The entries of the root blackboard that trees name with its `@`."""
+    view = View(store, viewpoint)
+    found: dict[str, Use] = {}
+    for tree in view.names(Kind.TREE):
+        for touch in view.ask(handling, tree).touches:
+            if touch.name[:1] == "@":
+                found[touch.name[1:]] = found.get(touch.name[1:], Use(0)) | _use(touch)
+    return found
+
+
+def _use(touch: Touch) -> Use:
+    return Use(Use.READ * touch.reads | Use.WRITTEN * touch.writes | Use.CREATED * touch.creates)
+
+
+@of_scope
+def writes_alone(store: Store[Workspace], viewpoint: str, tree: str, called: str, name: str) -> bool:
+    """Whether a tree that another one runs certainly writes an entry of its own, which never leaves it."""
+    calls = [call for call in store.ask(handling, viewpoint, tree).calls if call.tree == called]
+    if any(call.passed(name) is not None or name in call.values for call in calls):
+        return False
+    return any(
+        each.name == name and each.writes and not each.reads for each in store.ask(handling, viewpoint, called).touches
+    )
+
+
+def calls_of(view: View, tree: str) -> Iterator[tuple[str, Call]]:
+    """The SubTrees that run a tree, each with the tree that it is in."""
+    for caller in view.ask(callers, tree):
+        yield from ((caller, call) for call in view.ask(handling, caller).calls if call.tree == tree)

@@ -1,0 +1,82 @@
+"""Models that say otherwise of a node than the C++ that registers it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.checks import lookups
+from btq_lang.checks.clauses import with_blanks
+from btq_lang.checks.view import View
+from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
+from btq_lang.syntax.tree import Model, Port, written
+from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.workspace.symbols import may_be_one_type
+
+
+def stale_model(view: View) -> Iterator[Diagnostic]:
+    """A model with another category, or with a port that the C++ of its node has not, or has otherwise."""
+    for symbol, other, _ in view.repeated(Kind.MODEL):
+        model, of_code = symbol.target, other.symbol.target
+        is_cpp = lookups.is_cpp(view.store, other.path)
+        if not (is_cpp and isinstance(model, Model) and isinstance(of_code, Model)):
+            continue
+        node = f"`{symbol.name}`"
+        if model.category.raw != of_code.category.raw:
+            is_here, is_there = f"{model.category.raw} in this model", f"{of_code.category.raw} in C++"
+            fix = replace_fix(f"Replace it with `{of_code.category.raw}`", model.category.span, of_code.category.raw)
+            registered = (Related(other.place, _IN_CPP),)
+            message = f"{node} is of category {is_here}, and {is_there}"
+            yield Diagnostic(_RULE, model.category.span, message, registered, fixes=(fix,))
+        for port in model.ports:
+            if port.id is not None:
+                yield from _of_port(view, model, port, other)
+
+
+def _of_port(view: View, model: Model, port: Port, other: lookups.Declaration) -> Iterator[Diagnostic]:
+    """What is wrong with a port of a model."""
+    of_code = other.symbol.target
+    assert isinstance(of_code, Model), "the caller has looked"
+    assert port.id is not None, "the caller has looked"
+    ports = {each.id.text: each for each in of_code.ports if each.id is not None}
+    in_code, name = ports.get(port.id.text), f"`{port.id.text}`"
+    if in_code is None:
+        if not view.look_up(lookups.is_torn, Kind.MODEL, other.symbol.name):
+            yield _unknown(view, model, port, other, ports)
+        return
+    assert in_code.id is not None, "it was looked up by its name"
+    related = (Related(Place(in_code.id.span, other.path, other.owner.item), _IN_CPP),)
+    here, there = port.direction, in_code.direction
+    if here.raw != there.raw:
+        fix = replace_fix(f"Replace `{here.raw}` with `{there.raw}`", here.span, there.raw)
+        message = f"the port {name} is an {_DIRECTIONS[here.raw]} in this model, and an {_DIRECTIONS[there.raw]} in C++"
+        yield Diagnostic(_RULE, here.span, message, related, fixes=(fix,))
+    if port.type is not None and in_code.type is not None and not may_be_one_type(in_code.type, port.type):
+        fix = replace_fix(f"Replace `{port.type.text}` with `{in_code.type.text}`", port.type.span, in_code.type.raw)
+        message = f"the type of the port {name} is `{port.type.text}` in this model, and `{in_code.type.text}` in C++"
+        yield Diagnostic(_RULE, port.type.span, message, related, fixes=(fix,))
+
+
+def _unknown(view: View, model: Model, port: Port, other: lookups.Declaration, ports: dict[str, Port]) -> Diagnostic:
+    """A port that the C++ does not provide, with the one that may have taken its place."""
+    assert port.id is not None, "the caller has looked"
+    written_down = {each.id.text for each in model.ports if each.id is not None}
+    free = [name for name, each in ports.items() if name not in written_down and _is_alike(each, port)]
+    gone = [each.id.text for each in model.ports if each.id is not None and each.id.text not in ports]
+    likely = near(port.id.text, free) or (tuple(free) if len(free) == len(gone) == 1 else ())
+    fixes = [replace_fix(f"Replace `{port.id.text}` with `{name}`", port.id.span, written(name)) for name in likely]
+    fixes.append(replace_fix(f"Remove the port `{port.id.text}`", with_blanks(view.text, port), ""))
+    provided = ", ".join(f"`{name}`" for name in ports)
+    note = f"it provides {provided}" if provided else "it provides no ports"
+    message = f"the C++ of `{other.symbol.name}` has no port `{port.id.text}`{did_you_mean(likely)}"
+    related = (Related(other.place, _IN_CPP),)
+    return Diagnostic(_RULE, port.id.span, message, related, (note,), tuple(fixes))
+
+
+def _is_alike(one: Port, other: Port) -> bool:
+    return one.direction.raw == other.direction.raw and may_be_one_type(one.type, other.type)
+
+
+_RULE = "stale-model"
+_IN_CPP = "this C++ counts"
+_DIRECTIONS = {"input": "input", "output": "output", "inout": "input and output"}

@@ -1,0 +1,76 @@
+"""Parameters of bt_navigator that no code of Nav2 reads in a distribution, in any place.
+
+One invariant: a library, a navigator or C++ of a team's own may read any parameter of bt_navigator: with one, a name
+that is near none of Nav2 gets a hint, and none if the C++ is at hand and has the name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Final
+
+from btq_lang.catalog.nav2.navigator import NAVIGATORS, OTHER_PARAMETERS, OWN_PACKAGE, PARAMETERS
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.rules import Severity
+from btq_lang.nav2.parameters import Parameters
+from btq_lang.util.record import Record
+from btq_lang.util.spelling import did_you_mean, distance, near
+
+
+class OwnCode(Record):
+    """What a team adds to bt_navigator.
+
+    Attributes:
+        texts: of the C++ that the project names.
+        is_loaded: whether bt_navigator loads a library or a navigator that is not Nav2's.
+    """
+
+    texts: tuple[str, ...]
+    is_loaded: bool
+
+    def has(self, name: str) -> bool:
+        """Whether the C++ has a string with a name."""
+        return any(f'"{name}"' in each or f'.{name}"' in each for each in self.texts)
+
+
+def unknown_parameters(parameters: Parameters, distribution: str, own: OwnCode) -> Iterator[Diagnostic]:
+    """The parameters that nothing reads, each with what may be meant; of a section that is unknown, only its name."""
+    names = {name.removeprefix("*") for name, row in PARAMETERS.items() if distribution[0] in row.of}
+    names |= {name for name, of in OTHER_PARAMETERS.items() if distribution[0] in of}
+    navigators = {*NAVIGATORS, *parameters.navigators}
+    others = {name for name, plugin in parameters.plugins if not plugin.text.startswith(OWN_PACKAGE)}
+    for name, (key, _) in parameters.values.items():
+        section, point, rest = name.partition(".")
+        is_below = section in navigators
+        if parameters.row(name) is not None or section in names or (is_below and not point):
+            continue
+        if point and not is_below and section in parameters.values:
+            continue  # which is what is unknown
+        wrong, candidates = (f".{rest}", names) if is_below else (section, names | navigators)
+        likely = [each for each in near(wrong, candidates, 1) if distance(wrong, each) * _LETTERS_AN_EDIT <= len(wrong)]
+        severity: Severity | None = None
+        notes: tuple[str, ...] = ()
+        if rest in names:
+            message = f"Nav2 does not read `{rest}` below `{section}`: write it one level up"
+        elif likely:
+            message = f"Nav2 has no parameter `{name}`{did_you_mean([name.replace(wrong, likely[0])])}"
+        elif name in parameters.shared or section in others or "$(" in name or own.has(rest or name):
+            continue
+        else:
+            message = f"Nav2 has no parameter `{name}` in {distribution.capitalize()}"
+            message += did_you_mean(sorted(_with_words_of(name, names, navigators)))
+            severity, notes = (Severity.HINT, (_OWN,)) if own.is_loaded else (None, (_SILENT,))
+        yield Diagnostic("nav2-parameter", key.span, message, notes=notes, severity=severity)
+
+
+def _with_words_of(name: str, names: Iterable[str], navigators: Iterable[str]) -> Iterator[str]:
+    """The parameters that have all the words of a name: `default_bt_xml` lacks some of theirs."""
+    words = name.split("_")
+    for each in names if len(words) > 1 else ():
+        if {*words} <= {*each.removeprefix(".").split("_")}:
+            yield from (f"{navigator}{each}" for navigator in navigators) if each[0] == "." else (each,)
+
+
+_LETTERS_AN_EDIT: Final = 6  # fewer would take the names of a team's own parameters for misspelt ones
+_SILENT: Final = "ROS 2 sets it without a word, and the default counts"
+_OWN: Final = "a node of your own may read it"

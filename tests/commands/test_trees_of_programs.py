@@ -1,0 +1,60 @@
+"""Trees that C++ of the project creates by their names, and those in the place of which it registers others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from in_process import run_btq
+
+CPP = """\
+#include "behaviortree_cpp/bt_factory.h"
+class Say : public BT::SyncActionNode {
+ public:
+  using SyncActionNode::SyncActionNode;
+  static BT::PortsList providedPorts() { return {}; }
+  BT::NodeStatus tick() override { return BT::NodeStatus::FAILURE; }
+};
+int main() {
+  BT::BehaviorTreeFactory factory;
+  factory.registerNodeType<Say>("Say");
+  auto tree = factory.createTree("Patrol");
+}
+"""
+
+
+def found(folder: Path, xml: str, settings: str = 'nodes = ["*.cpp"]\n', cpp: str = CPP) -> list[str]:
+    pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
+    (folder / "btq.toml").write_text(settings)
+    (folder / "robot.cpp").write_text(cpp)
+    (folder / "t.xml").write_text(f'<root BTCPP_format="4"{xml}</root>\n')
+    _, out, _ = run_btq("check", "--output-format", "concise", "t.xml", cwd=folder)
+    return out.splitlines()[:-1]
+
+
+def test_a_main_tree_that_a_program_names(tmp_path: Path) -> None:
+    trees = '>\n<BehaviorTree ID="Patrol"><Say/></BehaviorTree>\n<BehaviorTree ID="Dock"><Say/></BehaviorTree>\n'
+    message = "ambiguous main tree: no other tree refers to `Patrol` or `Dock`"
+    assert found(tmp_path, trees) == [f"t.xml:2:19: hint[unknown-main-tree] {message}"]
+    other = CPP.replace("Patrol", "Charge")
+    assert found(tmp_path, trees, cpp=other) == [f"t.xml:2:19: warning[unknown-main-tree] {message}"]
+
+
+@pytest.mark.parametrize(
+    ("name", "body", "is_filled_in"),
+    [
+        ("__BringUp__", "<AlwaysSuccess/>", True),
+        ("__BringUp__", '<Action ID="AlwaysSuccess" name="later"/>', True),
+        ("Patrol", "<AlwaysSuccess/>", True),  # a string in the C++
+        ("BringUp", "<AlwaysSuccess/>", False),
+        ("__BringUp__", "<Sequence><AlwaysSuccess/></Sequence>", False),
+        ("__BringUp__", '<Script code="n := 1"/>', False),
+    ],
+)
+def test_a_tree_that_a_program_fills_in(tmp_path: Path, name: str, body: str, is_filled_in: bool) -> None:
+    xml = f""" main_tree_to_execute="Main">
+<BehaviorTree ID="Main"><Fallback><SubTree ID="{name}"/><Say/></Fallback></BehaviorTree>
+<BehaviorTree ID="{name}">{body}</BehaviorTree>
+"""
+    rules = [line.partition("[")[2].partition("]")[0] for line in found(tmp_path, xml)]
+    assert rules == ([] if is_filled_in else ["unreachable-child"])

@@ -1,0 +1,424 @@
+"""Slips of newcomers that the parser reads as something else, each with the exact diagnostic that leads on.
+
+The form is that of test_first_mistakes.py; where a fix leaves something to do, that is said in the case.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pytest
+from check_asserts import after, show
+from safe_fixes import unwanted
+from test_first_mistakes import OTHER, Case, R, S, mistakes, requirement, tree
+
+BELOW: Final = "a child goes on a line of its own below its parent, indented"
+CHILDREN: Final = "children go on lines of their own below their parent, indented"
+NO_TYPE: Final = (
+    "a signal has a unit, not a type | write the unit of its values: `m/s`, `s`, `%`, …; or `1` if they have none"
+)
+UNITS: Final = "a unit is `m/s`, `s`, `%`, `bool`, `text` or `1`"
+TO_PORT: Final = "a value goes after the name of its port:"
+_CHOICE: Final = "v > 1 m/s ? 60 s : 30 s"
+_UNLESS: Final = ("unless v > 1 m/s and v < 2 m/s", "while not (v > 1 m/s and v < 2 m/s)")
+KEEPS: Final = tree("Go satisfies r") + "QualityReq r\n    keeps "
+
+
+def label(word: str, kind: str) -> str:
+    return f"btq reads `{word}` as the label of `{kind}`; {BELOW}"
+
+
+def foreign(written: str, meant: str) -> str:
+    return f"`{written}` is not built into BehaviorTree.CPP 4.6–4.10; did you mean `{meant}`?"
+
+
+ON_ONE_LINE: Final[list[Case]] = [
+    (
+        tree("->", "    not Dark", "    Go"),
+        f"3:9 warning not-an-engine-node «not» {foreign('not', 'Inverter')} | {label('Dark', 'not')}",
+        tree("->", "    Inverter", "        Dark", "    Go"),
+    ),
+    (
+        "Action Go\n" + tree("->", "    Invert Dark", "    Go"),
+        f"4:9 warning not-an-engine-node «Invert» {foreign('Invert', 'Inverter')} | {label('Dark', 'Invert')}",
+        "Action Go\n" + tree("->", "    Inverter", "        Dark", "    Go"),
+    ),
+    (
+        tree("Selector Go"),
+        f"2:5 warning not-an-engine-node «Selector» {foreign('Selector', 'Fallback')} | {label('Go', 'Selector')}",
+        tree("Fallback", "    Go"),
+    ),
+    (
+        tree("Not Near (at = 3)"),
+        f"2:5 warning not-an-engine-node «Not» {foreign('Not', 'Inverter')} | {label('Near', 'Not')}",
+        tree("Inverter", "    Near (at = 3)"),
+    ),
+    (
+        tree("->", "    !Dark", "    Go"),
+        "3:9 error syntax-error «!» expected a node: its kind, or a symbol: -> ? || …, found `!` | "
+        "to negate a node, put an `Inverter` above it, and indent the node",
+        tree("->", "    Inverter", "        Dark", "    Go"),
+    ),
+    (
+        tree("Inverter Dark"),
+        "2:5 error child-count «Inverter» `Inverter` requires exactly 1 child, found none | "
+        f"{label('Dark', 'Inverter')}",
+        tree("Inverter", "    Dark"),
+    ),
+    (
+        "Action Greet\n" + tree("-> Greet"),
+        f"3:5 error child-count «->» `->` requires 1 or more children, found none | {label('Greet', '->')}",
+        "Action Greet\n" + tree("->", "    Greet"),
+    ),
+    (
+        tree("Repeat Go (num_cycles = 3)"),  # the brackets are those of Repeat
+        f"2:5 error child-count «Repeat» `Repeat` requires exactly 1 child, found none | {label('Go', 'Repeat')}",
+        None,
+    ),
+    (
+        tree("? Go, Turn  # or turn"),
+        f"2:9 error syntax-error «,» {CHILDREN}",
+        tree("?", "    Go", "    Turn  # or turn"),
+    ),
+    (tree("Sequence Go Turn"), f"2:17 error syntax-error «Turn» {CHILDREN}", tree("Sequence", "    Go", "    Turn")),
+    (
+        tree("Timeout (msec = 30 s) Go"),
+        f"2:27 error syntax-error «Go» {BELOW}",
+        tree("Timeout (msec = 30 s)", "    Go"),
+    ),
+    (
+        tree("->", "    Retry (num_attempts = 3)", "    Go", "    Turn"),
+        f"3:9 error child-count «Retry» `Retry` requires exactly 1 child, found none | {BELOW}",
+        tree("->", "    Retry (num_attempts = 3)", "        Go", "    Turn"),
+    ),
+    (
+        tree("Go (a = 1) if far"),
+        "2:16 error syntax-error «if» expected the end of the line, found `if` | "
+        "a node that runs only if something holds goes below a Precondition, or after a Condition in a Sequence `->`",
+        None,
+    ),
+    (
+        tree("->", '    include "other.btq"', "    Go"),
+        "3:9 warning unknown-node «include» an include goes outside of trees, at the start of a line",
+        None,
+    ),
+    (
+        tree("while", "    Near", "    Go"),
+        f"2:5 warning not-an-engine-node «while» {foreign('while', 'WhileDoElse')} | its first child is the condition",
+        tree("WhileDoElse", "    Near", "    Go"),
+    ),
+    (tree("Retry (num_attempts = 3) Inverter", "    Go"), f"2:30 error syntax-error «Inverter» {BELOW}", None),
+]
+
+VALUES: Final[list[Case]] = [
+    (
+        tree("Timeout 30 s", "    Go"),
+        f"2:13 error syntax-error «30 s» expected the end of the line, found `30 s` | {TO_PORT} `(msec = 30 s)`",
+        tree("Timeout (msec = 30 s)", "    Go"),
+    ),
+    (
+        tree("Timeout 30", "    Go"),
+        "2:13 error syntax-error «30» expected the end of the line, found `30` | "
+        f"{TO_PORT} `(msec = 30)`, or with a unit, `(msec = 30 s)`",
+        None,
+    ),
+    (
+        tree("Retry {n}", "    Go"),
+        "2:11 error syntax-error «{n}» expected the end of the line, found `{n}` | "
+        f"{TO_PORT} `(num_attempts = {{n}})`",
+        tree("Retry (num_attempts = {n})", "    Go"),
+    ),
+    (
+        tree('Repeat "again" 3', "    Go"),
+        f"2:20 error syntax-error «3» expected the end of the line, found `3` | {TO_PORT} `(num_cycles = 3)`",
+        tree('Repeat "again" (num_cycles = 3)', "    Go"),
+    ),
+    (
+        tree("Sleep 500 ms"),
+        f"2:11 error syntax-error «500 ms» expected the end of the line, found `500 ms` | {TO_PORT} `(msec = 500 ms)`",
+        tree("Sleep (msec = 500 ms)"),
+    ),
+    (
+        "Action Go\n    input station\n" + tree("Go {dock}"),
+        "4:8 error syntax-error «{dock}» expected the end of the line, found `{dock}` | "
+        f"{TO_PORT} `(station = {{dock}})`",
+        "Action Go\n    input station\n" + tree("Go (station = {dock})"),
+    ),
+    (
+        tree('Precondition "x > 3"', "    Go"),
+        "2:5 error missing-port «Precondition» `Precondition` requires a value for its port `if` | "
+        '`if`: the condition | btq reads `"x > 3"` as its label; for a value, write `(if = "x > 3")`',
+        tree('Precondition (if = "x > 3")', "    Go"),
+    ),
+    (
+        tree("Precondition (x > 3)", "    Go"),
+        f'2:19 error syntax-error «x» expected an attribute: key = value, found `x` | {TO_PORT} `if = "x > 3"`',
+        tree('Precondition (if = "x > 3")', "    Go"),
+    ),
+    (
+        tree("Script (x := 3)"),
+        f'2:15 error syntax-error «:=» expected `=` between key and value, found `:=` | {TO_PORT} `code = "x := 3"`',
+        tree('Script (code = "x := 3")'),
+    ),
+]
+
+SIGNALS: Final[list[Case]] = [
+    *(
+        (
+            f"signal v : {type_} from {{v}}\n" + tree("Go"),
+            f"1:12 error unknown-unit «{type_}» unknown unit `{type_}`: {NO_TYPE}",
+            None,
+        )
+        for type_ in (
+            *("double", "float64", "int", "uint8_t", "unsigned int", "size_t", "long", "list"),
+            *("std_msgs/Float32", "std_msgs::msg::Float64", "geometry_msgs/Twist", "std::vector<double>"),
+        )
+    ),
+    (
+        "signal lit : std_msgs/Bool from {v}\n" + KEEPS + "lit\n",
+        "1:14 error unknown-unit «std_msgs/Bool» unknown unit `std_msgs/Bool`; did you mean `bool`?",
+        "signal lit : bool from {v}\n" + KEEPS + "lit\n",
+    ),
+    (
+        "signal v : velocity from {v}\n" + KEEPS + "v < 1 m/s\n",
+        "1:12 error unknown-unit «velocity» unknown unit `velocity`; did you mean `m/s`?",
+        "signal v : m/s from {v}\n" + KEEPS + "v < 1 m/s\n",
+    ),
+    (
+        requirement("takes at most 30 s").replace("QualityReq r", "QualityReq r (n : double = 3)"),
+        "3:19 error unknown-unit «double» unknown unit `double`: " + NO_TYPE.replace("signal", "parameter"),
+        None,
+    ),
+    (
+        "signal v = {v}\n" + tree("Go"),
+        "1:10 error syntax-error «=» expected `:` and the signal's unit, found `=` | "
+        f"write `signal v : <unit> from {{v}}`; {UNITS}",
+        None,
+    ),
+    (
+        "signal v from {v}\n" + tree("Go"),
+        "1:10 error syntax-error «from» expected `:` and the signal's unit, found `from` | "
+        f"write `signal v : <unit> from {{v}}`; {UNITS}",
+        None,
+    ),
+    (
+        "signal double v\n" + tree("Go"),
+        "1:15 error syntax-error «v» expected `:` and the signal's unit, found `v` | "
+        f"write `signal v : <unit> from {{v}}`; {UNITS}",
+        None,
+    ),
+    (
+        'signal from "/v"\n' + tree("Go"),
+        "1:8 error syntax-error «from» expected the signal's name, found `from` | "
+        f"write `signal battery : <unit> from {{battery}}`; {UNITS}",
+        None,
+    ),
+    (
+        "signal v : m/s = {v}\n" + KEEPS + "v < 1 m/s\n",
+        "1:16 error syntax-error «=» expected `from`, found `=`",
+        "signal v : m/s from {v}\n" + KEEPS + "v < 1 m/s\n",
+    ),
+]
+
+OF_A_SIGNAL: Final = "signal v : m/s from {v}\n" + tree("Go satisfies r") + "QualityReq r\n    "
+PROSE: Final[list[Case]] = [
+    *(
+        (
+            requirement(prose),
+            f"4:{5 + prose.index(slip)} error syntax-error «{slip}» this clause is written `{meant}`",
+            requirement(meant),
+        )
+        for prose, slip, meant in (
+            ("shall take at most 30 s", "shall take", "takes at most 30 s"),
+            ("must takes at most 30 s", "must takes", "takes at most 30 s"),
+            ("has to take at most 30 s", "has to take", "takes at most 30 s"),
+            ("needs to take at most 30 s", "needs to take", "takes at most 30 s"),
+            ("should be reached within 30 s", "should be reached within", "succeeds within 30 s"),
+            ("Go should be done within 30 s", "should be done within", "Go succeeds within 30 s"),
+            ("Go must finish in 30 s", "must finish in", "Go succeeds within 30 s"),
+            ("completes within 30 s", "completes within", "succeeds within 30 s"),
+            ("Main/Go shall not exceed 30 s", "shall not exceed", "Main/Go takes at most 30 s"),
+            ("must not take longer than 30 s", "must not take longer than", "takes at most 30 s"),
+            ("Go must not fail", "must not fail", "Go succeeds"),
+        )
+    ),
+    *(
+        (
+            OF_A_SIGNAL + prose + "\n",
+            f"5:{5 + prose.index(slip)} error syntax-error «{slip}» this clause is written `{meant}`",
+            OF_A_SIGNAL + prose.replace(slip, meant) + "\n",
+        )
+        for prose, slip, meant in (
+            ("takes at most 30 s unless v > 1 m/s", "unless v > 1 m/s", "while not v > 1 m/s"),
+            ("takes at most 30 s unless v > 1 m/s and v < 2 m/s on violation warn", *_UNLESS),
+        )
+    ),
+    *(
+        (
+            OF_A_SIGNAL + prose + "\n",
+            f"5:5 error syntax-error «{slip}» this clause is written `{meant}`",
+            OF_A_SIGNAL + meant + "\n",
+        )
+        for prose, slip, meant in (
+            ("v must stay below 1 m/s", "v must stay below", "keeps v < 1 m/s"),
+            ("v must be at least 1 m/s", "v must be at least", "keeps v >= 1 m/s"),
+            ("v shall not exceed 1 m/s", "v shall not exceed", "keeps v <= 1 m/s"),
+            ("v is below 1 m/s", "v is below", "keeps v < 1 m/s"),
+        )
+    ),
+    (
+        OF_A_SIGNAL + "takes at most 30 s\n    if v > 1 m/s\n",
+        "6:5 error syntax-error «if v > 1 m/s» a clause has no `if` | "
+        "to limit a clause to a situation, write `while v > 1 m/s` or `when v > 1 m/s`",
+        None,
+    ),
+    (
+        requirement("takes at most 30 s", "on timeout retry"),
+        "5:8 error syntax-error «timeout» expected `violation`, found `timeout` | "
+        "`on violation` is followed by fail, halt, warn or log; to try again, put a Retry around the node",
+        None,
+    ),
+    *(
+        (
+            OF_A_SIGNAL + f"{clause} {choice}\n",
+            f"5:{6 + len(clause)} error syntax-error «{choice}» a choice is written `{meant}`",
+            OF_A_SIGNAL + f"{clause} {meant}\n",
+        )
+        for clause, choice, meant in (
+            ("takes at most", "v > 1 m/s ? 60 s : 30 s", "60 s if v > 1 m/s else 30 s"),
+            ("takes at most", "(v > 1 m/s) ? 60 s : 30 s", "60 s if (v > 1 m/s) else 30 s"),
+            ("takes at most", "if v > 1 m/s then 60 s else 30 s", "60 s if v > 1 m/s else 30 s"),
+            ("succeeds within", "v > 1 m/s ? 60 s : 30 s", "60 s if v > 1 m/s else 30 s"),
+            ("takes at most 90 s goal", "v > 1 m/s ? 60 s : 30 s", "60 s if v > 1 m/s else 30 s"),
+        )
+    ),
+    (
+        "signal v : m/s from {v}\n" + requirement("takes at most n").replace("r\n ", f"r (n : s = {_CHOICE})\n "),
+        f"4:23 error syntax-error «{_CHOICE}» a choice is written `60 s if v > 1 m/s else 30 s`",
+        "signal v : m/s from {v}\n"
+        + requirement("takes at most n").replace("r\n ", "r (n : s = 60 s if v > 1 m/s else 30 s)\n "),
+    ),
+    (
+        requirement("takes at most Go ? (30 s) : 3 s"),
+        "4:19 error syntax-error «Go» expected a value, found `Go` | "
+        "a choice is written `60 s if battery_low else 30 s`",
+        None,
+    ),
+]
+
+AMONG_PORTS: Final = "expected a port (input, output or inout), metadata or xml, found"
+MEMORY: Final = (
+    "a Sequence or Fallback goes on with the child that is running; "
+    "a ReactiveSequence or ReactiveFallback begins with the first one at every tick"
+)
+OF_OTHER_LIBRARIES: Final[list[Case]] = [
+    (
+        tree("Sequence (memory = True)", "    Go"),
+        f"2:15 error unknown-port «memory» `Sequence` has no port `memory` | it has no ports | {MEMORY}",
+        None,
+    ),
+    (
+        tree("Retry (num_attempts = 3, delay = 2)", "    Go"),
+        "2:30 error unknown-port «delay» `Retry` has no port `delay` | it has `num_attempts` | "
+        "to wait before each attempt, put a Delay around its child",
+        None,
+    ),
+    (
+        tree("Parallel (policy = all)", "    Go"),
+        "2:15 error unknown-port «policy» `Parallel` has no port `policy` | it has `success_count`, `failure_count` | "
+        "`success_count` says how many children must succeed, and -1 is all of them",
+        None,
+    ),
+    (
+        tree("? (timeout = 3 s)", "    Go"),
+        "2:8 error unknown-port «timeout» `?` has no port `timeout` | it has no ports | "
+        "to limit its time, put a Timeout around it",
+        None,
+    ),
+    *(
+        (
+            f"Action Go\n    {port}\n" + tree("Go (p = {p})"),
+            f"2:5 error syntax-error «{word}» {AMONG_PORTS} `{word}` | a port is written `input name : type`",
+            mended and f"Action Go\n    {mended}\n" + tree("Go (p = {p})"),
+        )
+        for port, word, mended in (
+            ("InputPort<std::string> p", "InputPort", "input p : std::string"),
+            ('BT::OutputPort<std::vector<int>>("p")', "BT", 'output p : "std::vector<int>"'),
+            ("BidirectionalPort p  # both ways", "BidirectionalPort", "inout p  # both ways"),
+            ("std::string p", "std", "input p : std::string"),
+            ("double p", "double", "input p : double"),
+            ('InputPort<int>("p", 3, "how many")', "InputPort", None),
+        )
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("text", "fixed"),
+    [
+        (tree("Go [x = 3, y = {a}] satisfies r") + R, tree("Go (x = 3, y = {a}) satisfies r") + R),
+        (tree('Go {x = "a b", y = {a}}'), tree('Go (x = "a b", y = {a})')),
+        (tree("Go x = 3, y = {a}"), tree("Go (x = 3, y = {a})")),
+        (tree("Go satisfies [r, s]") + R + S, tree("Go satisfies r, s") + R + S),
+        (tree("Other") + OTHER, tree("SubTree Other") + OTHER),
+        (tree("Go") + "apply r to all Go\n" + R, tree("Go") + "apply r to every Go\n" + R),
+        # what may be meant otherwise is not written:
+        (tree("SubTree (Other)") + OTHER, None),  # a tree that may not exist
+        (tree("Go [x = 3; y = 4]"), None),
+        (tree("Go [x = a b]"), None),
+        (tree("Go (x = 3) [y = 4]"), None),
+        (tree("Go x = 3 s"), None),
+        (tree("Other (x = 3)") + OTHER, None),
+        (tree("Other") + "BehaviorTree Other\n    input x\n    Go (x = {x})\n", None),
+        (tree("Other") + "BehaviorTree Other\n    SubTree Main\n", None),
+    ],
+)
+def test_what_a_check_mends_by_itself(text: str, fixed: str | None) -> None:
+    safe = [fix for found in mistakes(text) for fix in found.fixes if fix.safe]
+    assert [after(text, fix) for fix in safe] == ([fixed] if fixed else [])
+    assert list(unwanted(text)) == []
+
+
+@pytest.mark.parametrize(("text", "said", "mended"), [*ON_ONE_LINE, *VALUES, *SIGNALS, *PROSE, *OF_OTHER_LIBRARIES])
+def test_a_slip_is_one_diagnostic(text: str, said: str, mended: str | None) -> None:
+    found = mistakes(text)
+    assert [" | ".join((line, *found[0].notes)) for line in show(text, found)] == [said]
+    assert [after(text, fix) for fix in found[0].fixes] == ([mended] if mended else [])
+    assert [each for each in mistakes(mended or "") if each.rule != "unset-entry"] == []  # programs may set entries
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        "Wait Door",  # a leaf of the program, with a label
+        "Select Target",
+        "Succeeder Done",
+        "Not",
+        'Not "yet"',
+        "Not (x = 1)",
+    ],
+)
+def test_a_leaf_with_a_label(node: str) -> None:
+    assert mistakes(tree("->", f"    {node}", "    Go")) == []
+
+
+@pytest.mark.parametrize(
+    "text", [tree("Retry (num_attempts = 5) Again", "    Go"), tree('Retry (num_attempts = 5) "Go"')]
+)
+def test_a_label_after_brackets_may_be_one(text: str) -> None:
+    assert mistakes(text)[0].message == "a node's label goes before its brackets"
+
+
+def test_the_start_of_the_next_line_is_no_value() -> None:
+    assert [found.notes for found in mistakes(tree("->", "    Go", "    3"))] == [()]
+
+
+def test_children_beside_the_first_node_of_a_tree() -> None:
+    text = tree("Sequence", "Go", "Inverter  # or", "    Left")
+    found = mistakes(text)
+    assert [(each.rule, each.notes) for each in found] == [
+        ("child-count", (CHILDREN,)),
+        ("tree-root-count", ("put them below one node, such as a Sequence `->`",)),
+    ]
+    fixes = [(fix.title, after(text, fix)) for each in found for fix in each.fixes]
+    assert fixes == [("Indent them below `Sequence`", tree("Sequence", "    Go", "    Inverter  # or", "        Left"))]
