@@ -5,15 +5,13 @@ One invariant: the first line says what wrote the file, so that it is not taken 
 
 from __future__ import annotations
 
-import html
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 from btq_lang.btcpp.document import Attribute, Comment, Document, Element, Text, escape, write
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.cpp.model import CppNode, CppNodes, CppPort
-from btq_lang.render.page_style import PAGE_STYLE
 from btq_lang.util.record import replace
 
 MADE_BY = "made by `btq nodes`"
@@ -62,63 +60,24 @@ def _port(port: CppPort) -> Element:
 
 def as_html(found: CppNodes, sources: str) -> str:
     """The nodes as one page that needs nothing but itself, each port with the place where it is provided."""
-    return "\n".join(_lines(found, sources)) + "\n"
+    from btq_lang.render.pages import page
 
-
-def _lines(found: CppNodes, sources: str) -> Iterator[str]:
-    title = f"Nodes of {sources}"
-    yield "<!DOCTYPE html>"
-    yield '<html lang="en">'
-    yield '<head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
-    yield f"<title>{html.escape(title)}</title>"
-    yield f"<style>\n{PAGE_STYLE}</style></head>"
-    yield f"<body><header><h1>{html.escape(title)}</h1></header>"
-    yield "<main>"
-    for category in CATEGORIES:
-        if nodes := [node for node in found.nodes if node.category == category]:
-            yield f"<h2>{category}</h2>"
-            for node in nodes:
-                yield from _node(node)
-    if found.unseen:
-        yield "<h2>What cannot be seen</h2>"
-        yield "<ul>"
-        yield from (
-            f"<li><code>{html.escape(str(each.place))}</code> {html.escape(each.message)}</li>" for each in found.unseen
-        )
-        yield "</ul>"
-    yield "</main></body></html>"
-
-
-def _node(node: CppNode) -> Iterator[str]:
-    yield f'<section id="{html.escape(node.name)}"><h3>{html.escape(node.name)}</h3>'
-    of = f"class <code>{html.escape(node.class_name)}</code> at " if node.class_name else "function registered at "
-    yield f"<p>{of}<code>{html.escape(str(node.class_place))}</code></p>"
-    if not node.complete:
-        yield '<p class="missing">It may have more ports.</p>'
-    if node.ports:
-        yield "<table><thead><tr><th>Port</th><th>Type</th><th>Default</th><th>Meaning</th><th>Place</th></tr></thead>"
-        yield "<tbody>"
-        yield from (_row(port, _remarks(node, port)) for port in node.ports)
-        yield "</tbody></table>"
-    else:
-        yield '<p class="empty">No ports.</p>'
-    yield "</section>"
-
-
-def _row(port: CppPort, remarks: Sequence[str]) -> str:
-    cells = (
-        f"{port.direction} <span class='name'>{html.escape(port.name)}</span>",
-        f"<code>{html.escape(port.type)}</code>",
-        f"<code>{html.escape(port.written)}</code>",
-        " ".join(map(html.escape, (port.text, *remarks))),
-        f"<code class='at'>{html.escape(str(port.place))}</code>",
+    categories = [(category, [node for node in found.nodes if node.category == category]) for category in CATEGORIES]
+    return page(
+        "commands/nodes.html.j2",
+        title=f"Nodes of {sources}",
+        categories=[
+            (category, [(node, [(port, _meaning(node, port)) for port in node.ports]) for node in nodes])
+            for category, nodes in categories
+            if nodes
+        ],
+        unseen=found.unseen,
     )
-    return f"<tr>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>"
 
 
-def _remarks(node: CppNode, port: CppPort) -> list[str]:
+def _meaning(node: CppNode, port: CppPort) -> str:
     remarks = [_WITHOUT[what] for name, what in node.without if name == port.name and what in _WITHOUT]
-    return [*remarks, *(["The code never names it."] if port in node.unread else [])]
+    return " ".join([port.text, *remarks, *(["The code never names it."] if port in node.unread else [])])
 
 
 _BLANK_LINE = "\n\n"

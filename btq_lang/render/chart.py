@@ -1,6 +1,6 @@
 """Values in their order as a drawing: bars, or dots on a line, with an axis, levels to compare them with, and marks.
 
-One invariant: a pure function of its values, whatever these measure; the page's style sheet paints it (`CHART_STYLE`).
+One invariant: a pure function of its values, whatever these measure; the page's style sheet paints it (`chart.css`).
 """
 
 from __future__ import annotations
@@ -160,15 +160,3 @@ _SIZE: Final = 10  # of texts, in pixels
 _LINE: Final = 13
 _GAP: Final = 7
 _NEAR: Final = 3
-
-CHART_STYLE: Final = """\
-.chart { display: block; width: 100%; }
-.chart text { font-size: 10px; fill: var(--ink); }
-.chart .tick, .chart .last { text-anchor: end; }
-.chart path { fill: none; stroke: var(--line); }
-.chart rect, .chart circle { fill: var(--monitored); }
-.chart .mark { stroke: var(--ink); stroke-dasharray: 2 2; }
-.chart .line { stroke: var(--monitored); stroke-width: 1.5; }
-.chart .bound { stroke: var(--missing); stroke-width: 1.75; stroke-dasharray: 7 3; }
-.chart .goal { stroke: var(--enforced); stroke-width: 1.75; stroke-dasharray: 3 3; }
-"""

@@ -57,12 +57,3 @@ _GROUND: Final = 92
 _TEXT: Final = 13
 _EDGE: Final = 6
 _WIDEST: Final = 24  # a bar, where there are few
-
-HISTOGRAM_STYLE: Final = """\
-.histogram { width: 100%; max-width: 20rem; display: block; }
-.histogram text { font-size: 11px; fill: var(--ink); }
-.histogram .bin { fill: var(--monitored); stroke: var(--ground); stroke-width: .5; }
-.histogram .axis { stroke: var(--soft); }
-.histogram .bound { stroke: var(--missing); stroke-width: 2; }
-.histogram .goal { stroke: var(--enforced); stroke-width: 2; stroke-dasharray: 4 3; }
-"""

@@ -28,6 +28,11 @@ class At(Record):
     line: int
     column: int
 
+    @property
+    def file(self) -> str:
+        """The name of the file, without its folders."""
+        return self.path.rpartition("/")[2]
+
     def __str__(self) -> str:
         return f"{self.path}:{self.line}"
 

@@ -5,45 +5,42 @@ One invariant: every fact in a drawing is also in a text, and colour is never th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from html import escape
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.folding import folded_sources
 from btq_lang.evidence.node_rows import node_columns
-from btq_lang.evidence.sentences import headline, result
+from btq_lang.evidence.sentences import headline, reason, result
 from btq_lang.evidence.verdicts import VIOLATED, WORST_FIRST
-from btq_lang.evidence.wording import duration
-from btq_lang.trace.histogram import HISTOGRAM_STYLE, histogram
-from btq_lang.trace.page_parts import coded
-from btq_lang.trace.run_figure import RUN_STYLE, Breach, run_figure
-from btq_lang.trace.violating_runs import VIOLATING_STYLE, violating_runs
+from btq_lang.evidence.wording import clock_time, duration
+from btq_lang.trace.histogram import histogram
+from btq_lang.trace.run_figure import Breach, run_figure
 from btq_lang.util.grouping import grouped
 from btq_lang.util.text import counted
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.node_rows import Column
     from btq_lang.evidence.verdicts import (
         ClauseVerdict,
         MissionVerdicts,
         NodeSummary,
         RequirementVerdict,
+        Violation,
     )
+    from btq_lang.render.pages import PageData
     from btq_lang.trace.collect import BoxDetails
 
 
-def verdicts(missions: Sequence[MissionVerdicts], keys: Mapping[str, str]) -> Iterator[str]:
-    """The page's section of verdicts; `keys`: of the requirements' rows on the page, by name."""
-    yield '<section id="verdicts" aria-labelledby="h-verdicts"><h2 id="h-verdicts">Verdicts</h2>'
-    for mission in missions:
-        yield from _mission(mission, keys)
-    yield "</section>"
+def verdicts(missions: Sequence[MissionVerdicts], keys: Mapping[str, str]) -> list[PageData]:
+    """What the template shows of each mission; `keys`: of the requirements' rows on the page, by name."""
+    return [_mission(mission, keys) for mission in missions]
 
 
 def outcomes(missions: Sequence[MissionVerdicts]) -> BoxDetails:
     """A function from a node to further lines in its box, about its instances in the logs, and to the box's class."""
     nodes = (each for mission in missions for each in mission.nodes)
-    found = grouped((id(each.written.node), each) for each in nodes if each.written is not None)
-    return lambda source: _outcome(found.get(id(source.node), ()))
+    by_node = grouped((id(each.written.node), each) for each in nodes if each.written is not None)
+    return lambda source: _outcome(by_node.get(id(source.node), ()))
 
 
 def _outcome(nodes: Sequence[NodeSummary]) -> tuple[tuple[str, ...], str]:
@@ -58,85 +55,80 @@ def _outcome(nodes: Sequence[NodeSummary]) -> tuple[tuple[str, ...], str]:
     return tuple(lines), "good" if not failed else "bad" if not succeeded else "mixed"
 
 
-def _mission(mission: MissionVerdicts, keys: Mapping[str, str]) -> Iterator[str]:
+def _mission(mission: MissionVerdicts, keys: Mapping[str, str]) -> PageData:
     files = ", ".join(source.file for source in folded_sources(mission.sources))
     outcomes = ", ".join(f"{number} {outcome}" for outcome, number in mission.outcomes)
-    yield f"<h3>{escape(mission.name)}</h3>"
-    yield f"<p>{counted(mission.runs, 'run')} in {escape(files)}{': ' if outcomes else ''}{outcomes}</p>"
     clauses = [(requirement, clause) for requirement in mission.requirements for clause in requirement.clauses]
-    if not clauses:
-        yield "<p>No requirement to judge.</p>"
-        if mission.nodes:
-            yield from _nodes(mission)
-        return
     clauses.sort(key=lambda each: WORST_FIRST.index(each[1].verdict))
-    yield f'<table class="verdicts"><caption>Verdicts of {escape(mission.name)}</caption>'
-    heads = "".join(f'<th scope="col">{head}</th>' for head in ("Verdict", "Requirement", "Result", "Measured"))
-    yield f"<thead><tr>{heads}</tr></thead><tbody>"
-    for requirement, clause in clauses:
-        yield _row(requirement, clause, mission, keys.get(requirement.id, ""))
-    yield "</tbody></table>"
-    for requirement, clause in clauses:
-        if clause.violations:
-            yield from violating_runs(requirement.id, clause, mission.medians)
-    runs = {clause.timeline.run: clause.timeline for _, clause in clauses if clause.timeline is not None}
-    for run, timeline in runs.items():
-        breaches = (
-            Breach(requirement.id, keys.get(requirement.id, ""), violation)
-            for requirement, clause in clauses
-            for violation in clause.violations
-            if violation.run == run
-        )
-        yield from run_figure(timeline, [*breaches])
-    if mission.nodes:
-        yield f"<details><summary>What each of {counted(len(mission.nodes), 'node')} did</summary>"
-        yield from _nodes(mission)
-        yield "</details>"
-
-
-def _nodes(mission: MissionVerdicts) -> Iterator[str]:
-    """The table of nodes, in the order of the mission; a script sorts it by the values of a column."""
-    columns, name = node_columns(mission.nodes), f"Nodes of {escape(mission.name)}"
-    yield f'<div class="scroll" tabindex="0" role="region" aria-label="{name}">'
-    yield f'<table class="numbers sortable"><caption>{name}</caption><thead><tr>'
-    yield "".join(f'<th scope="col">{head}</th>' for head in ("node", *(column.head for column in columns)))
-    yield "</tr></thead><tbody>"
-    for place, node in enumerate(mission.nodes):
-        cells = "".join(_number(column.values[place], column.texts[place]) for column in columns)
-        yield f'<tr><th scope="row">{escape(node.path)}</th>{cells}</tr>'
-    yield "</tbody></table></div>"
-
-
-def _number(value: float | None, text: str) -> str:
-    """A cell, with its value if the text is not just that."""
-    return f"<td>{text}</td>" if value is None or text == str(value) else f'<td data-value="{value:.9g}">{text}</td>'
-
-
-def _row(requirement: RequirementVerdict, clause: ClauseVerdict, mission: MissionVerdicts, key: str) -> str:
-    look = f"<p>{coded(headline(clause, mission.medians))}</p>" if clause.verdict == VIOLATED else ""
-    name = f'<a class="name" href="#{key}">{escape(requirement.id)}</a>' if key else escape(requirement.id)
-    run = f'<p><a href="#run-{clause.timeline.run}">Show the run</a></p>' if clause.timeline is not None else ""
-    verdict = clause.verdict.replace(" ", "-")
-    text = f"<code>{escape(clause.text)}</code>" if clause.text else ""
-    return (
-        f'<tr data-note="{key}">'
-        f'<td><span class="verdict {verdict}">{clause.verdict}</span></td>'
-        f'<th scope="row">{name}<p>{escape(requirement.title)}</p>{text}</th>'
-        f"<td>{escape(result(clause))}{look}{run}</td>"
-        f"<td>{histogram(clause.histogram) if clause.histogram is not None else ''}</td></tr>"
+    timelines = {clause.timeline.run: clause.timeline for _, clause in clauses if clause.timeline is not None}
+    breaches = grouped(
+        (violation.run, Breach(requirement.id, keys.get(requirement.id, ""), violation))
+        for requirement, clause in clauses
+        for violation in clause.violations
     )
+    columns = node_columns(mission.nodes)
+    return {
+        "name": mission.name,
+        "runs": f"{counted(mission.runs, 'run')} in {files}{': ' if outcomes else ''}{outcomes}",
+        "clauses": [_clause(requirement, clause, mission, keys) for requirement, clause in clauses],
+        "violating": [_violating(each.id, clause, mission.medians) for each, clause in clauses if clause.violations],
+        "figures": [run_figure(timeline, breaches.get(run, ())) for run, timeline in timelines.items()],
+        "nodes": [(node.path, _numbers(columns, place)) for place, node in enumerate(mission.nodes)],
+        "node_heads": ("node", *(column.head for column in columns)),
+        "node_count": counted(len(mission.nodes), "node"),
+    }
 
 
-VERDICT_STYLE: Final = f"""\
-.verdicts td:first-child {{ white-space: nowrap; }}
-.verdicts td:last-child {{ width: 20rem; }}
-{HISTOGRAM_STYLE}{VIOLATING_STYLE}{RUN_STYLE}\
-.box.good .outline {{ stroke: var(--enforced); stroke-width: 2.4; }}
-.box.mixed .outline {{ stroke: var(--reviewed); stroke-width: 2.4; stroke-dasharray: 9 3; }}
-.box.bad .outline {{ stroke: var(--missing); stroke-width: 3.4; }}
-.box.idle .outline {{ stroke-dasharray: 2 3; }}
-@media (max-width: 700px) {{ .verdicts, .verdicts tbody, .verdicts tr, .verdicts th, .verdicts td {{ display: block; }}
-  .verdicts thead {{ display: none; }} .verdicts td:last-child {{ width: auto; }}
-  .verdicts td, .verdicts th {{ border: 0; padding: .2rem .4rem; }}
-  .verdicts tr {{ border-bottom: 1px solid var(--line); }} .verdicts caption {{ display: block; }} }}
-"""
+def _clause(
+    requirement: RequirementVerdict, clause: ClauseVerdict, mission: MissionVerdicts, keys: Mapping[str, str]
+) -> PageData:
+    return {
+        "requirement": requirement,
+        "clause": clause,
+        "key": keys.get(requirement.id, ""),
+        "result": result(clause),
+        "headline": headline(clause, mission.medians) if clause.verdict == VIOLATED else "",
+        "histogram": histogram(clause.histogram) if clause.histogram is not None else "",
+    }
+
+
+def _numbers(columns: Sequence[Column], place: int) -> list[tuple[str, str]]:
+    """The cells of a node: each a text, and the value to sort by if the text is not just that."""
+    cells = ((column.texts[place], column.values[place]) for column in columns)
+    return [(text, "" if value is None or text == str(value) else f"{value:.9g}") for text, value in cells]
+
+
+# ---- the runs that violate a clause ----
+
+
+def _violating(requirement: str, clause: ClauseVerdict, medians: Mapping[str, float]) -> PageData:
+    """A row for each violation that is kept: the first ones, and the others folded; all, if the clause's odds allow
+    them.
+    """
+    drawn = clause.timeline.run if clause.timeline is not None else None
+    rows = [_row(clause, violation, drawn, medians) for violation in clause.violations]
+    shown = _SHOWN if clause.verdict == VIOLATED else 0
+    rest = clause.violated - len(rows)
+    caption = f"Runs that violate {requirement}: {clause.text}"
+    more = counted(len(rows) - shown, "more violation" if shown else "violation")
+    return {
+        "caption": caption,
+        "first": rows[:shown],
+        "more": rows[shown:],
+        "more_summary": f"{more} of {requirement}",
+        "more_caption": f"{caption}, continued" if shown else caption,
+        "not_listed": f"{counted(rest, 'violation')} more of {requirement} not listed." if rest > 0 else "",
+    }
+
+
+def _row(clause: ClauseVerdict, violation: Violation, drawn: int | None, medians: Mapping[str, float]) -> PageData:
+    return {
+        "run": f"{violation.run} of {violation.source}",
+        "figure": f"run-{violation.run}" if violation.run == drawn else "",
+        "Time": f"{duration(violation.at)} after the start at {clock_time(violation.start)}".removesuffix(" at "),
+        "Measured": violation.measured or "\N{EN DASH}",
+        "Why": f"{clause.of or violation.path}: {reason(violation, medians)}",
+    }
+
+
+_SHOWN: Final = 10

@@ -35,7 +35,7 @@ FILES_OF_THE_EXTENSION = {
     "walkthrough/project.md",
     "walkthrough/python.md",
 }
-ENDINGS = {"", ".btq", ".html", ".json", ".md", ".py", ".pyi", ".txt", ".typed"}
+ENDINGS = {"", ".btq", ".css", ".html", ".j2", ".js", ".json", ".md", ".py", ".pyi", ".txt", ".typed"}
 
 
 @pytest.fixture(scope="session")
@@ -65,7 +65,12 @@ def test_there_is_what_belongs_there_and_no_more(unpacked: Path) -> None:
     python = {name for name in files if name.startswith(("python/libs/", "python/btq_lang/"))}
     assert files - python == FILES_OF_THE_EXTENSION
     assert {Path(name).suffix for name in python} <= ENDINGS
-    assert {name.split("/")[2] for name in python if "dist-info" not in name} >= {"pygls", "lsprotocol", "cattrs"}
+    assert {name.split("/")[2] for name in python if "dist-info" not in name} >= {
+        "pygls",
+        "lsprotocol",
+        "cattrs",
+        "jinja2",
+    }
 
 
 def test_every_setting_and_every_command_is_tested() -> None:
@@ -93,9 +98,18 @@ def admits_20_19(versions: str) -> bool:
 
 
 def test_every_library_is_pure_python(unpacked: Path) -> None:
-    wheels = sorted(unpacked.glob("python/libs/*.dist-info/WHEEL"))
-    assert len(wheels) == 7
-    assert {line for wheel in wheels for line in wheel.read_text().splitlines() if line.startswith("Tag:")} <= {
+    """Of MarkupSafe, whose wheels are compiled, only the Python part is there: all files end as in `ENDINGS`."""
+    wheels = {path.parent.name.partition("-")[0]: path for path in unpacked.glob("python/libs/*.dist-info/WHEEL")}
+    assert len(wheels) == 9
+    del wheels["markupsafe"]
+    assert {path.name for path in unpacked.glob("python/libs/markupsafe/*")} == {
+        "__init__.py",
+        "_native.py",
+        "py.typed",
+    }
+    assert {
+        line for wheel in wheels.values() for line in wheel.read_text().splitlines() if line.startswith("Tag:")
+    } <= {
         "Tag: py3-none-any",
         "Tag: py2-none-any",
     }
@@ -119,6 +133,20 @@ def test_the_bundled_commands_run(unpacked: Path, tmp_path: Path) -> None:
     assert run(unpacked, "init", "robot", cwd=tmp_path).returncode == 0
     checked = run(unpacked, "check", "robot", cwd=tmp_path)
     assert (checked.returncode, checked.stderr) == (0, b"")
+    page = run(unpacked, "trace", "robot", "--format", "html", cwd=tmp_path)
+    assert (page.returncode, page.stderr) == (0, b"")
+    assert page.stdout.startswith(b"<!DOCTYPE html>")
+
+
+def test_the_bundled_server_draws_the_overview(unpacked: Path, tmp_path: Path) -> None:
+    editor = Editor(tmp_path, command=bundled(unpacked, "lsp", "--stdio"))
+    editor.open(
+        "main.btq", 'QualityReq "Less <x>" : safety\n    takes at most 1 s\nBehaviorTree Main\n    Action Drive\n'
+    )
+    document = editor.document("main.btq")["textDocument"]
+    page = editor.request("workspace/executeCommand", command="btq.server.overview", arguments=[document])
+    assert "Less &lt;x&gt;</a>" in page
+    assert editor.close() == ""
 
 
 XML = """\
@@ -209,7 +237,7 @@ def test_the_commands_of_the_pages_pack_and_install(page: str, node: Path, unpac
         "code": f'exec "{node}" "{server}" --user-data-dir ~/user --extensions-dir ~/installed "$@"',
         "python": f"""
             case "$*" in
-                *" install "*) cp -r "{unpacked}/python/libs" python/libs ;;
+                *" install "*) cp -r "{unpacked}/python/libs" python ;;
                 *) exec "{sys.executable}" "$@" ;;
             esac""",
     }

@@ -47,6 +47,8 @@ READS_LOGS = ("evidence/readers/", "evidence/store/")
 # Which rooms know a package of others.
 ONLY_IN = {
     "lxml": {"btcpp"},
+    "jinja2": {"render"},
+    "markupsafe": {"render"},
     "pygls": {"lsp", "server"},
     "lsprotocol": {"lsp", "server"},
     "tree_sitter": {"cpp"},
@@ -155,7 +157,18 @@ def test_no_module_is_named_as_one_of_the_standard_library() -> None:
         ("import btq_lang", {"pygls", "lsprotocol", "lxml", "btq_lang.parser"}),
         (
             "import btq_lang.cli; btq_lang.cli.main(['check', 'examples/laboratory'])",
-            {"pygls", "lsprotocol", "lxml", "dataclasses", "inspect", "pathlib", "json", "asyncio", "multiprocessing"}
+            {
+                "pygls",
+                "lsprotocol",
+                "lxml",
+                "jinja2",
+                "dataclasses",
+                "inspect",
+                "pathlib",
+                "json",
+                "asyncio",
+                "multiprocessing",
+            }
             | {"argparse", "ast", "btq_lang.workspace.fixes", "btq_lang.render.full"},
         ),
         (
@@ -171,7 +184,21 @@ def test_no_module_is_named_as_one_of_the_standard_library() -> None:
         ("import btq_lang.cli; btq_lang.cli.main(['--version'])", {"argparse", "btq_lang.parser"}),
         (
             "import site; site.main(); import btq_lang.server",  # what an editor waits for
-            {"btq_lang.parser", "btq_lang.workspace.workspace", "btq_lang.checks", "btq_lang.catalog", "lxml"},
+            {
+                "btq_lang.parser",
+                "btq_lang.workspace.workspace",
+                "btq_lang.checks",
+                "btq_lang.catalog",
+                "lxml",
+                "jinja2",
+            },
+        ),
+        ("import site; site.main(); import btq_lang.lsp.commands, btq_lang.lsp.editor", {"jinja2", "markupsafe"}),
+        ("import btq_lang.cli; btq_lang.cli.main(['trace', 'examples/laboratory'])", {"jinja2", "markupsafe"}),
+        (
+            "import btq_lang.cli; btq_lang.cli.main(['verify', 'examples/laboratory/runs.btlog', '--mission', "
+            "'examples/laboratory/mission.btq', '--format', 'json'])",
+            {"jinja2", "markupsafe"},
         ),
     ],
 )

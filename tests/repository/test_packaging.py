@@ -63,4 +63,6 @@ def test_the_installed_commands_work_elsewhere(wheel: Path, tmp_path: Path) -> N
     run(btq, "build", "robot", cwd=tmp_path)
     assert "<root BTCPP_format=" in (tmp_path / "robot" / "mission.xml").read_text(encoding="utf-8")
     assert run(btq, "explain", "missing-port", cwd=tmp_path).startswith("# missing-port\n")
-    assert run(btq, "trace", "robot", "--format", "html", cwd=tmp_path).startswith("<!DOCTYPE html>")
+    assert run(btq, "trace", "robot", "--format", "markdown", cwd=tmp_path).startswith(
+        "## Requirements and qualities\n"
+    )

@@ -17,7 +17,6 @@ from btq_lang.cli import main
 from btq_lang.commands.opening import open_workspace
 from btq_lang.graph.svg import _COLOURS
 from btq_lang.render.cells import laid_out
-from btq_lang.render.page_style import PAGE_STYLE
 from btq_lang.trace import FORMATS, write
 from btq_lang.trace.collect import collect
 from btq_lang.trace.meanings import Meanings
@@ -441,7 +440,8 @@ def test_texts_of_a_picture_can_be_read(column: int) -> None:
 
 @pytest.mark.parametrize("at", [0, 1], ids=["light", "dark"])
 def test_texts_of_the_page_can_be_read(at: int) -> None:
-    colours = dict(re.findall(r"--(\w+): (#\w{6})", PAGE_STYLE.split("@media screen")[at].split("* {")[0]))
+    style = (ROOT / "btq_lang/render/page.css").read_text(encoding="utf-8")
+    colours = dict(re.findall(r"--(\w+): (#\w{6})", style.split("@media screen")[at].split("* {")[0]))
     assert len(colours) == 11
     for name in ("ink", "soft", "accent", "enforced", "monitored", "reviewed", "missing"):
         for ground in ("ground", "raised"):

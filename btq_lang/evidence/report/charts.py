@@ -5,12 +5,10 @@ One invariant: every fact in a drawing is also in a text, and colour is never th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from html import escape
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.units import from_si, to_si
-from btq_lang.evidence.report.parts import DOTTED, NO_NAME
 from btq_lang.evidence.wording import measured as written
 from btq_lang.evidence.wording import moment
 from btq_lang.render.axis import round_values
@@ -20,21 +18,24 @@ from btq_lang.util.text import counted
 if TYPE_CHECKING:
     from btq_lang.evidence.report.measures import MeasureTrend
     from btq_lang.evidence.report.trends import Steps, Values
+    from btq_lang.render.pages import PageData
 
 
-def bars(values: Values, steps: Steps, labels: Sequence[tuple[str, int]], shown: Callable[[float], str]) -> str:
-    """A measure over time, a bar for each step; a dotted line where the first run of a label began.
+def bars(
+    values: Values, steps: Steps, labels: Sequence[tuple[str, int]], shown: Callable[[float], str]
+) -> tuple[str, str]:
+    """A measure over time, a bar for each step, with a dotted line where the first run of a label began; and a remark.
 
     Args:
         shown: gives a value as people read it.
     """
     places = [(place, value) for place, value in enumerate(values) if value is not None]
     if not places:
-        return ""
+        return "", ""
     (first, begin), (last, end) = places[0], places[-1]
     highest = max(value for _, value in places)
     if not highest:
-        return f"<small>always {escape(shown(0.0))}</small>"
+        return "", f"always {shown(0.0)}"
     dates = [date(steps.begin(place), steps.name) for place in range(len(values))]
     change = f"{shown(begin)} from {dates[first]}, {shown(end)} from {dates[last]}"
     titles = tuple("" if each is None else f"{day}: {shown(each)}" for day, each in zip(dates, values, strict=True))
@@ -48,31 +49,28 @@ def bars(values: Values, steps: Steps, labels: Sequence[tuple[str, int]], shown:
         ends=(dates[0], dates[-1]),
         marks=tuple(Mark((start - steps.origin) / steps.length, name or NO_NAME) for name, start in labels),
     )
-    return f"{drawn(chart)}<small>at most {escape(shown(highest))}</small>"
+    return drawn(chart), f"at most {shown(highest)}"
 
 
-def measure_charts(measured: Sequence[MeasureTrend], keys: Mapping[str, str]) -> Iterator[str]:
+def measure_figures(measured: Sequence[MeasureTrend], keys: Mapping[str, str]) -> PageData:
     """A figure for each clause that measures something, the later ones folded if there are many.
 
     Args:
         keys: the ids of the rows of requirements on the page, by name.
     """
-    if not measured:
-        return
-    yield "<h3>Measures over time</h3>"
-    yield f"<p>{_EXPLAINED}</p>"
     figures = [_figure(each, keys) for each in measured]
-    yield f'<div class="measures">{"".join(figures[:_SHOWN])}</div>'
-    if more := figures[_SHOWN:]:
-        yield f"<details><summary>{counted(len(more), 'more measure')}</summary>"
-        yield f'<div class="measures">{"".join(more)}</div></details>'
+    more = figures[_SHOWN:]
+    return {"first": figures[:_SHOWN], "more": more, "summary": counted(len(more), "more measure")}
 
 
-def _figure(measured: MeasureTrend, keys: Mapping[str, str]) -> str:
-    link = f'<a class="name" href="#{keys[measured.requirement]}">{escape(measured.requirement)}</a>'
-    where = "" if measured.node in measured.clause else f" at {escape(measured.node)}"
-    head = f"<p>{link} <code>{escape(measured.clause)}</code>{where}</p>"
-    return f"<figure>{_chart(measured)}<figcaption>{head}<p>{escape(_change(measured))}</p></figcaption></figure>"
+def _figure(measured: MeasureTrend, keys: Mapping[str, str]) -> PageData:
+    return {
+        "measured": measured,
+        "key": keys[measured.requirement],
+        "node": "" if measured.node in measured.clause else measured.node,
+        "drawing": _chart(measured),
+        "change": _change(measured),
+    }
 
 
 def _chart(measured: MeasureTrend) -> str:
@@ -144,6 +142,4 @@ _SMALL: Final = (240, 72)  # pixels
 _LARGE: Final = (420, 170)
 _TICKS: Final = 5
 _SHOWN: Final = 12
-_EXPLAINED: Final = (
-    f"The worst of each run while there are few, else the median as a line and the worst as dots; {DOTTED}."
-)
+NO_NAME: Final = "(none)"

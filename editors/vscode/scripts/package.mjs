@@ -1,7 +1,7 @@
 // Packs btq-<version>.vsix: the extension's code in one file, and the Python server with its libraries beside it.
-// Only wheels for any platform are taken, so the package serves every system; the same commit gives the same bytes.
+// Nothing compiled is taken, so the package serves every system; the same commit gives the same bytes.
 import { execFileSync } from "node:child_process";
-import { cpSync, readFileSync, rmSync, statSync } from "node:fs";
+import { cpSync, readdirSync, readFileSync, rmSync, statSync } from "node:fs";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -33,13 +33,25 @@ function commitTime() {
   }
 }
 
+function install(platform, implementation, requirements) {
+  run(python(), [
+    ..."-m pip install --quiet --disable-pip-version-check --no-deps --no-compile --only-binary=:all:".split(" "),
+    ..."--python-version 3.10 --target python/libs --platform".split(" "),
+    ...[platform, "--implementation", implementation, ...requirements],
+  ]);
+}
+
 for (const name of ["python/libs", "python/btq_lang", "dist", "LICENSE"]) {
   rmSync(path.join(here, name), { recursive: true, force: true });
 }
-run(python(), [
-  ..."-m pip install --quiet --disable-pip-version-check --no-deps --no-compile --only-binary=:all:".split(" "),
-  ..."--platform any --implementation py --python-version 3.10 --target python/libs -r python/requirements.txt".split(" "),
-]);
+const pinned = readFileSync(path.join(here, "python/requirements.txt"), "utf8").match(/^[\w.-]+==\S+/gm);
+const isCompiled = (requirement) => requirement.startsWith("markupsafe==");
+install("any", "py", pinned.filter((requirement) => !isCompiled(requirement)));
+// MarkupSafe has no wheel for any platform.  Without its C part, one for Linux serves every system: Python's part is there.
+install("manylinux2014_x86_64", "cp", pinned.filter(isCompiled));
+for (const name of readdirSync(path.join(here, "python/libs/markupsafe"))) {
+  if (name.startsWith("_speedups")) rmSync(path.join(here, "python/libs/markupsafe", name));
+}
 rmSync(path.join(here, "python/libs/bin"), { recursive: true, force: true });
 cpSync(path.join(root, "btq_lang"), path.join(here, "python/btq_lang"), {
   recursive: true,

@@ -140,8 +140,11 @@ def test_the_axis_has_round_numbers(page: str) -> None:
 def breaches(page: str) -> list[tuple[str, str, str]]:
     """The rows of violations in drawings of runs: requirement, place of the line, and text."""
     rows_ = re.findall(r'<tr class="breach">(.*?)</tr>', page, re.DOTALL)
-    parts = (re.search(r'">([^<]*)</a>.*class="at" style="left: ([^"]*)".*<p [^>]*>(.*)</p>', row) for row in rows_)
-    return [each.groups() for each in parts if each is not None]  # type: ignore[misc]
+    parts = (
+        re.search(r'">([^<]*)</a>.*class="at" style="left: ([^"]*)".*<p [^>]*>(.*)</p>', row, re.DOTALL)
+        for row in rows_
+    )
+    return [part.groups() for part in parts if part is not None]  # type: ignore[misc]
 
 
 def test_what_broke_clauses_is_marked_where_it_did(page: str) -> None:
