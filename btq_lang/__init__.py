@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from btq_lang.btcpp.importing import Imported as Imported
     from btq_lang.btcpp.importing import import_xml as import_xml
     from btq_lang.checks import check as check
-    from btq_lang.commands.building import Built as Built
-    from btq_lang.commands.building import build as build
-    from btq_lang.commands.opening import open_workspace as open_workspace
     from btq_lang.diagnostics.model import Diagnostic as Diagnostic
     from btq_lang.diff.changes import Change as Change
     from btq_lang.diff.comparison import diff_missions as diff_missions
@@ -34,6 +31,9 @@ if TYPE_CHECKING:
     from btq_lang.graph.missions import draw_tree as draw_tree
     from btq_lang.parser import Parsed as Parsed
     from btq_lang.parser import parse as parse
+    from btq_lang.projects.building import Built as Built
+    from btq_lang.projects.building import build as build
+    from btq_lang.projects.opening import open_workspace as open_workspace
     from btq_lang.syntax.tree import Node as Node
     from btq_lang.syntax.tree import Requirement as Requirement
     from btq_lang.syntax.tree import Tree as Tree
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace as Workspace
 
 _HOMES = {
-    "Built": "commands.building",
+    "Built": "projects.building",
     "Change": "diff.changes",
     "Diagnostic": "diagnostics.model",
     "Imported": "btcpp.importing",
@@ -59,13 +59,13 @@ _HOMES = {
     "Verification": "evidence.verifying",
     "Workspace": "workspace.workspace",
     "__version__": "util.version",
-    "build": "commands.building",
+    "build": "projects.building",
     "check": "checks",
     "diff_missions": "diff.comparison",
     "draw_tree": "graph.missions",
     "format_text": "formatter",
     "import_xml": "btcpp.importing",
-    "open_workspace": "commands.opening",
+    "open_workspace": "projects.opening",
     "parse": "parser",
     "trace_table": "trace.missions",
     "verify_logs": "evidence.verifying",

@@ -96,7 +96,7 @@ def _plain_check(paths: Sequence[str]) -> int:
     """`btq check PATH …`, the most frequent command: it runs without argparse and other imports."""
     gc.disable()  # objects of imports stay alive; collection takes a tenth of the time of a small check
     from btq_lang.commands.check import run
-    from btq_lang.commands.options import CheckOptions
+    from btq_lang.projects.options import CheckOptions
 
     gc.freeze()
     gc.enable()
@@ -121,7 +121,7 @@ def _serve(options: Any) -> int:
 
 
 def _finish(name: str, run: Callable[[Any], int], options: object) -> int:
-    from btq_lang.commands.options import Refused
+    from btq_lang.projects.options import Refused
 
     try:
         code = run(options)
@@ -142,7 +142,7 @@ def _finish(name: str, run: Callable[[Any], int], options: object) -> int:
 
 
 def _internal_error(error: Exception) -> int:
-    from btq_lang.commands.failures import internal_error
+    from btq_lang.projects.failures import internal_error
 
     if os.environ.get("BTQ_TRACEBACK"):
         from traceback import print_exception

@@ -13,9 +13,9 @@ import os
 import sys
 from collections.abc import Sequence
 
-from btq_lang.commands.options import add_server_options
 from btq_lang.lsp import register
 from btq_lang.lsp.editor import NOT_JSON, Refused, Server, Traced
+from btq_lang.projects.options import add_server_options
 from btq_lang.util.version import __version__
 
 

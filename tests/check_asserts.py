@@ -14,10 +14,10 @@ from textwrap import dedent
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog.nav2 import PACKAGED
 from btq_lang.checks import check
-from btq_lang.commands.cpp_files import CppFiles
 from btq_lang.commands.target import with_target
 from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.diagnostics.rules import RULES
+from btq_lang.projects.cpp_files import CppFiles
 from btq_lang.util.record import replace
 from btq_lang.util.text import Edit, LineIndex, apply_edits
 from btq_lang.workspace.config import Project

@@ -6,9 +6,9 @@ import re
 from pathlib import Path
 
 from btq_lang.catalog.nav2 import PACKAGED
-from btq_lang.commands.files import Files
-from btq_lang.commands.nav2_factory import Sources, findings_of, parameter_file
 from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.projects.files import Files
+from btq_lang.projects.nav2_factory import Sources, findings_of, parameter_file
 from btq_lang.util.text import LineIndex
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.factories import Factory

@@ -23,9 +23,9 @@ from nav2_words import NODES, OF_MESSAGES, PORTS, REQUIRED, REQUIRED_IN  # noqa:
 
 from btq_lang.catalog.nav2 import FILES, ports  # noqa: E402  # of this checkout
 from btq_lang.commands.explain_nav2 import models_of  # noqa: E402  # as above
-from btq_lang.commands.node_writers import models_in_btq  # noqa: E402  # as above
 from btq_lang.cpp.model import CppNode, CppPort  # noqa: E402  # as above
 from btq_lang.cpp.nodes import read_nodes  # noqa: E402  # as above
+from btq_lang.projects.node_writers import models_in_btq  # noqa: E402  # as above
 from btq_lang.util.record import replace  # noqa: E402  # as above
 
 

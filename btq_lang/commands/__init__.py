@@ -5,11 +5,9 @@ command line comes in, and text on the standard streams and files go out.  How t
 other packages do that.
 
     arguments.py the command line, and which module runs which command
-    files.py, factory_files.py, xml_below.py   input files, by project and factory, and which XML counts
-    output.py, options.py, reporting.py   output, options of a check, its report
-    fixing.py, ignoring.py   what a check changes
-    baseline.py, since.py   which findings are known, and which files have changed
-    failures.py      messages for exceptions that nothing expected, of commands and of the server
+    output.py, reporting.py   where output goes, and the report of a check
+    fixing.py, ignoring.py    what a check changes
+    baseline.py               which findings are known
     check.py, format.py, build.py …   the commands
     shell/           completion scripts
 """

@@ -9,11 +9,11 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any, Final, NoReturn, TypeAlias
 
-from btq_lang.commands.options import CheckOptions, add_server_options
 from btq_lang.commands.verdict_formats import FORMATS as VERDICT_FORMATS
 from btq_lang.evidence.compare import FORMATS as COMPARISON_FORMATS
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
+from btq_lang.projects.options import CheckOptions, add_server_options
 from btq_lang.render import FORMATS
 from btq_lang.trace import FORMATS as TRACE_FORMATS
 from btq_lang.util.spelling import near

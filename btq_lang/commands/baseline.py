@@ -22,8 +22,8 @@ from btq_lang.render.fingerprint import fingerprint
 from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_whole
 
 if TYPE_CHECKING:
-    from btq_lang.commands.files import Group
-    from btq_lang.commands.options import CheckOptions
+    from btq_lang.projects.files import Group
+    from btq_lang.projects.options import CheckOptions
     from btq_lang.render import Finding
 
     Known: TypeAlias = Counter[tuple[str, str, str]]  # path, rule, fingerprint

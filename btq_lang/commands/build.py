@@ -16,11 +16,11 @@ from btq_lang.btcpp.outputs import Output, Places, outputs, sources, without_tre
 from btq_lang.btcpp.side_file import is_side_file, side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.catalog.versions import is_before_4
-from btq_lang.commands.building import errors, for_target
-from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem, write_stdout
-from btq_lang.commands.options import refuse
 from btq_lang.commands.output import is_coloured, tell
 from btq_lang.diagnostics.model import Place
+from btq_lang.projects.building import errors, for_target
+from btq_lang.projects.files import STDIN, Files, Group, no_mission_below, usage_problem, write_stdout
+from btq_lang.projects.options import refuse
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Span, counted

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 from btq_lang.btcpp.as_built import as_built
 from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import side_path, xml_path
-from btq_lang.commands.files import Files
-from btq_lang.commands.opening import Disk
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.own_trees import NO_MISSION, OwnTree, OwnTrees
 from btq_lang.evidence.readers import NotALog, trees
 from btq_lang.evidence.readers.side import SideFile, side_file_at, side_files_beside
+from btq_lang.projects.files import Files
+from btq_lang.projects.opening import Disk
 from btq_lang.workspace.loader import absolute, find_project, is_project_file, shown
 
 if TYPE_CHECKING:

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from btq_lang.checks import check, check_each
 from btq_lang.checks.includes import is_reported_beside
-from btq_lang.commands.files import STDIN, Files, Group, no_mission_below, usage_problem
-from btq_lang.commands.options import Refused, refuse
 from btq_lang.commands.output import FOR_PEOPLE, is_coloured, tell
 from btq_lang.commands.reporting import form_of, report_problem, write_report
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
+from btq_lang.projects.files import STDIN, Files, Group, no_mission_below, usage_problem
+from btq_lang.projects.options import Refused, refuse
 from btq_lang.render import Finding, Report
 from btq_lang.util.record import replace
 from btq_lang.util.text import counted
@@ -24,9 +24,9 @@ from btq_lang.workspace.loader import LoadProblem, absolute, shown
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.commands.nav2_factory import ParameterFile
-    from btq_lang.commands.options import CheckOptions
     from btq_lang.diagnostics.model import Diagnostic
+    from btq_lang.projects.nav2_factory import ParameterFile
+    from btq_lang.projects.options import CheckOptions
 
 _ORDER = tuple(Severity)
 _FAILS = (Severity.ERROR, Severity.WARNING)
@@ -159,7 +159,7 @@ def _report(
         findings = sorted([*findings, *of_project], key=lambda each: (each.path, each.diagnostic.span))
         texts.update((each.path, each.text) for each in of_project)
     if parameter_files:
-        from btq_lang.commands.nav2_check import as_groups, nav2_findings
+        from btq_lang.projects.nav2_check import as_groups, nav2_findings
 
         more, others = nav2_findings(
             parameter_files, files, checked, lambda project: _selecting(project, options), options.target
@@ -202,8 +202,8 @@ def _parameter_files(files: Files, options: CheckOptions) -> tuple[ParameterFile
     """
     if not files.parameter_files:
         return ()
-    from btq_lang.commands.git import GitTrouble
-    from btq_lang.commands.nav2_check import requested
+    from btq_lang.projects.git import GitTrouble
+    from btq_lang.projects.nav2_check import requested
 
     try:
         return requested(files, options)
@@ -230,8 +230,8 @@ def _chosen(
             what = 'write `nodes = ["nav2-jazzy"]` into btq.toml'
             raise Refused(f"--target needs to know what the trees are for: {what}")
     if options.since:
-        from btq_lang.commands.git import GitTrouble
-        from btq_lang.commands.since import affected
+        from btq_lang.projects.git import GitTrouble
+        from btq_lang.projects.since import affected
 
         try:
             groups = affected(groups, options.since)

@@ -9,10 +9,10 @@ from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from btq_lang.commands.options import Refused, refuse
 from btq_lang.commands.output import form_of, form_problem, write_output
 from btq_lang.commands.stored import NO_STORE, store_of_project
 from btq_lang.evidence.compare import FORMATS, write
+from btq_lang.projects.options import Refused, refuse
 
 
 def run(options: Namespace) -> int:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from btq_lang.commands.options import refuse
+from btq_lang.projects.options import refuse
 from btq_lang.workspace.loader import absolute, find_project, read, use_project_file
 
 

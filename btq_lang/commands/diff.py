@@ -12,14 +12,14 @@ from btq_lang.btcpp.as_built import as_built
 from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of
 from btq_lang.btcpp.recognition import is_mission
-from btq_lang.commands.files import STDIN, Files, Group
-from btq_lang.commands.git import Commit, revisions
-from btq_lang.commands.opening import Disk
-from btq_lang.commands.options import Refused, refuse
 from btq_lang.commands.output import is_coloured, write_output
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.diff import Place, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, Comparison, ManualEdit, Side, compared, without_made_models
+from btq_lang.projects.files import STDIN, Files, Group
+from btq_lang.projects.git import Commit, revisions
+from btq_lang.projects.opening import Disk
+from btq_lang.projects.options import Refused, refuse
 from btq_lang.render.colour import painter
 from btq_lang.util.record import replace
 from btq_lang.workspace.file import SUFFIXES, File, is_of_package

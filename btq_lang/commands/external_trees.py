@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.commands.files import Group
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.projects.files import Group
 from btq_lang.render import Finding
 from btq_lang.util.text import LineIndex, Span
 from btq_lang.util.toml_places import find_key

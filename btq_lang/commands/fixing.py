@@ -8,8 +8,8 @@ from typing import Final
 
 from btq_lang.btcpp.opening import with_source
 from btq_lang.checks import check_each
-from btq_lang.commands.files import Group, write_stdout
 from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.projects.files import Group, write_stdout
 from btq_lang.render.colour import painter
 from btq_lang.util.record import replace
 from btq_lang.workspace.file import File

@@ -8,7 +8,7 @@ from io import StringIO
 
 from btq_lang.commands.arguments import build_parser
 from btq_lang.commands.build import build
-from btq_lang.commands.files import Files
+from btq_lang.projects.files import Files
 
 
 def build_open(path: str, texts: Mapping[str, str]) -> tuple[int, tuple[str, ...], str]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 
-from btq_lang.commands.files import Files, usage_problem, write_stdout
-from btq_lang.commands.options import refuse
 from btq_lang.commands.output import is_coloured, tell
 from btq_lang.formatter import format_text
+from btq_lang.projects.files import Files, usage_problem, write_stdout
+from btq_lang.projects.options import refuse
 from btq_lang.render.colour import painter
 from btq_lang.util.text import LineIndex, counted
 from btq_lang.workspace.loader import LoadProblem, shown, write_whole

@@ -8,19 +8,19 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from btq_lang.checks import check
-from btq_lang.commands.files import Files, no_mission_below, usage_problem
-from btq_lang.commands.options import Refused, refuse
 from btq_lang.commands.output import form_of, form_problem, tell, write_output
 from btq_lang.diagnostics.rules import UNREADABLE
 from btq_lang.graph import FORMATS, draw
 from btq_lang.graph.missions import figures
+from btq_lang.projects.files import Files, no_mission_below, usage_problem
+from btq_lang.projects.options import Refused, refuse
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.requirements.resolve import requirements
 from btq_lang.workspace.loader import LoadProblem, shown
 
 if TYPE_CHECKING:
-    from btq_lang.commands.files import Group
     from btq_lang.graph.figure import Figure
+    from btq_lang.projects.files import Group
     from btq_lang.workspace.workspace import Workspace
 
 

@@ -14,9 +14,9 @@ from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.opening import with_source
 from btq_lang.checks import check
 from btq_lang.checks.silencing import above_line, at_line_end, before_element, before_tag, line_to_silence
-from btq_lang.commands.files import Group
-from btq_lang.commands.options import CheckOptions
 from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.projects.files import Group
+from btq_lang.projects.options import CheckOptions
 from btq_lang.render import Finding
 from btq_lang.util.grouping import grouped
 from btq_lang.util.text import Edit, apply_edits

@@ -20,11 +20,11 @@ from btq_lang.btcpp.manual_edits import ADVICE
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.btcpp.version3 import Change
 from btq_lang.checks.engines import declared_engines
-from btq_lang.commands.files import Files
 from btq_lang.commands.output import is_coloured, tell
 from btq_lang.evidence.readers import SUFFIXES as LOGS
 from btq_lang.evidence.readers import NotALog, trees
 from btq_lang.evidence.readers.bag import files_in
+from btq_lang.projects.files import Files
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.util.record import Record, replace
 from btq_lang.util.source_map import Places

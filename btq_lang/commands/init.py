@@ -8,7 +8,7 @@ import shlex
 from argparse import Namespace
 
 from btq_lang.catalog.versions import VERSIONS
-from btq_lang.commands.options import Refused
+from btq_lang.projects.options import Refused
 from btq_lang.workspace.loader import write_whole
 
 _PROJECT = f"""\

@@ -23,10 +23,10 @@ from btq_lang.catalog.versions import VERSION_3, VERSIONS, is_before_4
 from btq_lang.checks import check_each
 from btq_lang.checks.engines import declared_engines
 from btq_lang.commands.explain_nav2 import models_of
-from btq_lang.commands.files import Files
-from btq_lang.commands.options import Refused
 from btq_lang.commands.packages import Packages, packages_of
-from btq_lang.commands.xml_below import XmlBelow
+from btq_lang.projects.files import Files
+from btq_lang.projects.options import Refused
+from btq_lang.projects.xml_below import XmlBelow
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.engine_version import written_for

@@ -13,10 +13,8 @@ from typing import Final
 from urllib.parse import urlsplit
 
 from btq_lang.commands.candidates import candidates, strict_problem
-from btq_lang.commands.files import usage_problem
 from btq_lang.commands.live_lines import Lines
 from btq_lang.commands.live_screen import Screen, is_screen
-from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_of, form_problem, is_coloured
 from btq_lang.commands.stored import name_problem, opened, store_of_project
 from btq_lang.commands.verdict_events import events_problem
@@ -28,6 +26,8 @@ from btq_lang.evidence.readers.groot2.publisher import NoLive, check_installed
 from btq_lang.evidence.readers.groot2.sessions import sessions
 from btq_lang.evidence.verifying import judged_live
 from btq_lang.evidence.watching import Watched
+from btq_lang.projects.files import usage_problem
+from btq_lang.projects.options import refuse
 
 
 def run(options: Namespace) -> int:

@@ -11,14 +11,14 @@ from typing import Final, TypeAlias
 from btq_lang.btcpp import reader
 from btq_lang.btcpp.document import Element
 from btq_lang.catalog.cpp_classes import ENGINE
-from btq_lang.commands.cpp_files import MISSING, distributions_of
-from btq_lang.commands.options import Refused
 from btq_lang.commands.output import write_output
 from btq_lang.cpp.findings import UNSEEN, findings
 from btq_lang.cpp.grammar import GrammarMissing
 from btq_lang.cpp.model import CppNodes
 from btq_lang.cpp.nodes import read_nodes
 from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.projects.cpp_files import MISSING, distributions_of
+from btq_lang.projects.options import Refused
 from btq_lang.util.text import LineIndex, Span, counted
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import CPP_SUFFIXES
@@ -90,7 +90,7 @@ def _texts(paths: list[str], project: Project) -> tuple[dict[str, str], dict[str
 
 
 def _is_ours(path: str) -> bool:
-    from btq_lang.commands.node_writers import MADE_BY
+    from btq_lang.projects.node_writers import MADE_BY
 
     target = absolute(path)
     return path == "-" or not os.path.lexists(target) or MADE_BY in head(target)
@@ -98,10 +98,10 @@ def _is_ours(path: str) -> bool:
 
 def _written(found: CppNodes, form: str, sources: str) -> str:
     if form == "html":
-        from btq_lang.commands.node_writers import as_html
+        from btq_lang.projects.node_writers import as_html
 
         return as_html(found, sources)
-    from btq_lang.commands.node_writers import as_btq, as_xml
+    from btq_lang.projects.node_writers import as_btq, as_xml
 
     return (as_btq if form == "btq" else as_xml)(found.nodes, sources)
 

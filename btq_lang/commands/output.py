@@ -8,8 +8,8 @@ import sys
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.commands.files import write_stdout
-from btq_lang.commands.options import Refused
+from btq_lang.projects.files import write_stdout
+from btq_lang.projects.options import Refused
 from btq_lang.render.colour import wants_colour
 from btq_lang.workspace.file import SUFFIXES
 from btq_lang.workspace.loader import LoadProblem, absolute, write_whole
@@ -17,7 +17,7 @@ from btq_lang.workspace.loader import LoadProblem, absolute, write_whole
 if TYPE_CHECKING:
     from argparse import Namespace
 
-    from btq_lang.commands.options import CheckOptions
+    from btq_lang.projects.options import CheckOptions
 
 FOR_PEOPLE: Final = ("full", "concise", "table", "text")
 

@@ -13,10 +13,10 @@ from collections.abc import Callable, Sequence
 from threading import Event, Lock, Thread
 from typing import TYPE_CHECKING
 
-from btq_lang.commands.files import Files, usage_problem
-from btq_lang.commands.options import Refused, refuse
 from btq_lang.graph.picture import picture, places
 from btq_lang.preview.server import Preview
+from btq_lang.projects.files import Files, usage_problem
+from btq_lang.projects.options import Refused, refuse
 from btq_lang.requirements.resolve import requirements
 from btq_lang.util.text import Span
 from btq_lang.workspace.loader import absolute, shown, stamp

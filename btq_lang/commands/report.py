@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from btq_lang.commands.options import Refused
 from btq_lang.commands.output import page_problem, write_output
 from btq_lang.commands.stored import NO_STORE, store_of_project
+from btq_lang.projects.options import Refused
 
 
 def run(options: Namespace) -> int:

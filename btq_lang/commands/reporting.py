@@ -7,9 +7,9 @@ import sys
 from collections.abc import Iterator, Mapping
 from itertools import chain
 
-from btq_lang.commands.files import STDIN
-from btq_lang.commands.options import CheckOptions
 from btq_lang.commands.output import FOR_PEOPLE, is_coloured, mission_problem, terminal_width, write_output
+from btq_lang.projects.files import STDIN
+from btq_lang.projects.options import CheckOptions
 from btq_lang.render import Report, render, with_paths
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import absolute, shown

@@ -12,11 +12,11 @@ from btq_lang.catalog.versions import VERSIONS
 from btq_lang.catalog.versions import targets as engine_lines
 from btq_lang.checks import check
 from btq_lang.checks.engines import declared_engines
-from btq_lang.commands.files import Files, Group, no_mission_below, usage_problem
-from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_problem, tell, write_output
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
+from btq_lang.projects.files import Files, Group, no_mission_below, usage_problem
+from btq_lang.projects.options import refuse
 from btq_lang.util.record import replace
 from btq_lang.workspace.engine_version import written_for
 from btq_lang.workspace.file import File

@@ -7,10 +7,10 @@ from argparse import Namespace
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.commands.options import Refused
 from btq_lang.commands.output import form_of, form_problem
 from btq_lang.commands.verdict_formats import FORMATS
 from btq_lang.commands.verdict_report import print_report
+from btq_lang.projects.options import Refused
 from btq_lang.workspace.loader import find_project, shown
 
 if TYPE_CHECKING:

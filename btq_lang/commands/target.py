@@ -9,8 +9,8 @@ from typing import Final
 from btq_lang.btcpp.opening import file_of
 from btq_lang.catalog.nav2 import FILES, PACKAGED
 from btq_lang.checks.lookups import distribution
-from btq_lang.commands.files import Group
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
+from btq_lang.projects.files import Group
 from btq_lang.render import Finding
 from btq_lang.util.record import replace
 from btq_lang.util.text import counted

@@ -5,9 +5,9 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 
-from btq_lang.commands.files import Files, no_mission_below, usage_problem
-from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_of, form_problem, is_coloured, tell, terminal_width, write_output
+from btq_lang.projects.files import Files, no_mission_below, usage_problem
+from btq_lang.projects.options import refuse
 from btq_lang.trace import FORMATS
 from btq_lang.trace.missions import trace_tables
 from btq_lang.trace.wording import incomplete

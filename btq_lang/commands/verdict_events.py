@@ -8,9 +8,9 @@ from argparse import Namespace
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.commands.options import Refused
 from btq_lang.commands.output import write_file
 from btq_lang.evidence.readers import NotALog, clocks
+from btq_lang.projects.options import Refused
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import shown
 

@@ -7,7 +7,6 @@ from argparse import Namespace
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_of, is_coloured, terminal_width, write_output
 from btq_lang.commands.verdict_events import write_events
 from btq_lang.commands.verdict_formats import FORMATS, write
@@ -15,6 +14,7 @@ from btq_lang.commands.verdict_summary import write_summary
 from btq_lang.evidence.folding import folded
 from btq_lang.evidence.notes import foreign_runs
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
+from btq_lang.projects.options import refuse
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate

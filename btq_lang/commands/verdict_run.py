@@ -6,10 +6,10 @@ import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from btq_lang.commands.files import write_stdout
-from btq_lang.commands.options import Refused
 from btq_lang.evidence.one_run import one_run
 from btq_lang.evidence.readers import NotALog
+from btq_lang.projects.files import write_stdout
+from btq_lang.projects.options import Refused
 from btq_lang.util.fields import as_dict
 from btq_lang.workspace.loader import shown
 

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from argparse import Namespace
 from collections.abc import Sequence
-from glob import glob
 from typing import TYPE_CHECKING
 
 from btq_lang.commands.candidates import candidates, strict_problem
-from btq_lang.commands.files import usage_problem
-from btq_lang.commands.options import refuse
 from btq_lang.commands.output import form_of, form_problem
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.stored import opened, reads_store, store_problem, summarise
@@ -24,13 +20,14 @@ from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.evidence.verifying import judged, logs_below
+from btq_lang.projects.files import logs_of, usage_problem
+from btq_lang.projects.options import refuse
 from btq_lang.util.text import counted
 from btq_lang.workspace.loader import IS_SPECIAL, find_project, is_special, shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import Series
-    from btq_lang.workspace.config import Project
 
 
 def run(options: Namespace) -> int:
@@ -98,12 +95,3 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
     missions = candidates(options.mission, logs, problems)
     problems += strict_problem(options, missions)
     return logs, missions, samples
-
-
-def logs_of(project: Project) -> Sequence[str]:
-    """The paths that the project's patterns match; a pattern that matches none is kept, to be reported."""
-    found: list[str] = []
-    for pattern in project.evidence.logs if project.evidence is not None else ():
-        path = os.path.join(project.root, pattern)
-        found += sorted(glob(path, recursive=True)) or [path]
-    return found

@@ -27,9 +27,9 @@ from pygls.io_ import run_async
 from pygls.lsp.server import LanguageServer
 
 from btq_lang import ide as features
-from btq_lang.commands import failures
 from btq_lang.lsp.convert import Converter
 from btq_lang.lsp.protocol import Json, Messages, Output, Protocol
+from btq_lang.projects import failures
 from btq_lang.util.version import __version__
 from btq_lang.workspace.queries import Cancelled
 

@@ -208,7 +208,7 @@ async def _started(folder: str, words: Sequence[str]) -> Process:
 
 def _state(project: Project) -> str:
     """A digest of what is judged: the logs with their sizes and times, and what the project says of them."""
-    from btq_lang.commands.verify import logs_of
+    from btq_lang.projects.files import logs_of
     from btq_lang.workspace.loader import stamp
 
     found = [f"{path} {stamp(path)}" for log in logs_of(project) for path in _files(log) if stamp(path) is not None]

@@ -17,9 +17,9 @@ from btq_lang.btcpp.recognition import is_mission
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check, findings, forget, keep, let_go
-from btq_lang.commands.files import Files, lacking_names
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import RULES
+from btq_lang.projects.files import Files, lacking_names
 from btq_lang.util.globs import path_matcher
 from btq_lang.util.record import replace
 from btq_lang.util.text import LineIndex
@@ -180,7 +180,7 @@ class Session:
         self.parameters = {}
         if not self._files.parameter_files:
             return
-        from btq_lang.commands.nav2_check import nav2_findings  # few projects are for Nav2
+        from btq_lang.projects.nav2_check import nav2_findings  # few projects are for Nav2
 
         read = self._files.parameter_files
         found, texts = nav2_findings(read, self._files, (), lambda project: _with_severities(project, severities))
@@ -191,7 +191,7 @@ class Session:
 
     def with_code_of_nav2(self, workspace: Workspace) -> Workspace:
         """A workspace with the C++ of Nav2's nodes, if it is on this machine."""
-        from btq_lang.commands.cpp_files import with_code_of_nav2  # few editors ask for it
+        from btq_lang.projects.cpp_files import with_code_of_nav2  # few editors ask for it
 
         return with_code_of_nav2(workspace, self._files.cpp)
 

@@ -22,7 +22,7 @@ from btq_lang.btcpp.enforcement import clause_enforcements, enforced
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.keys import Keys
-from btq_lang.commands.opening import open_workspace
+from btq_lang.projects.opening import open_workspace
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.script.check import check_script
 from btq_lang.syntax.script.parser import parse_script

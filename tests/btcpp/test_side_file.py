@@ -21,7 +21,7 @@ from btq_lang.btcpp.restoring import Lost, restored
 from btq_lang.btcpp.side_file import Built, is_side_file, side_file, side_path
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.cli import main
-from btq_lang.commands.opening import Disk
+from btq_lang.projects.opening import Disk
 from btq_lang.workspace.workspace import Workspace
 
 Capsys = pytest.CaptureFixture[str]

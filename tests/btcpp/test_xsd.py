@@ -11,8 +11,8 @@ from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.xsd import xsd
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.versions import VERSIONS
-from btq_lang.commands.building import build
-from btq_lang.commands.opening import open_workspace
+from btq_lang.projects.building import build
+from btq_lang.projects.opening import open_workspace
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
 

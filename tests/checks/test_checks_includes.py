@@ -11,9 +11,9 @@ from kept_checks import Kept
 
 from btq_lang.checks import CHECKS, check
 from btq_lang.checks.view import View
-from btq_lang.commands.opening import open_workspace
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.projects.opening import open_workspace
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.text import Span
 from btq_lang.workspace.config import Project

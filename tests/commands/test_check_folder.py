@@ -10,7 +10,7 @@ import pytest
 from in_process import run_btq
 
 from btq_lang.btcpp.recognition import is_mission, may_be_mission
-from btq_lang.commands.files import Files
+from btq_lang.projects.files import Files
 
 TREE = '<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequnce/></BehaviorTree></root>\n'
 MISSION = "BehaviorTree Main\n    Dock satisfies rq1\nQualityReq rq1\n    takes at most 3 s\n"

@@ -10,12 +10,12 @@ from shutil import copytree
 import pytest
 from in_process import run_btq
 
-from btq_lang.commands.files import Files
-from btq_lang.commands.opening import open_workspace
 from btq_lang.ide.completion import complete
 from btq_lang.ide.hover import hover
 from btq_lang.ide.navigation import find_references, goto_definition
 from btq_lang.ide.rename import Refusal, prepare_rename
+from btq_lang.projects.files import Files
+from btq_lang.projects.opening import open_workspace
 from btq_lang.workspace.workspace import Workspace
 
 pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")

@@ -14,7 +14,7 @@ from evidence_logs import rows as transitions
 from in_process import run_btq
 
 from btq_lang.checks import check as check_file
-from btq_lang.commands.opening import open_workspace
+from btq_lang.projects.opening import open_workspace
 from btq_lang.workspace.workspace import Workspace
 
 Write = Callable[..., None]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from in_process import run_btq
 
-from btq_lang.commands.opening import open_workspace
+from btq_lang.projects.opening import open_workspace
 
 pytest.importorskip("tree_sitter_cpp", reason="the C++ grammar is not installed: pip install -e '.[cpp]'")
 

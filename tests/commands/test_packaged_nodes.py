@@ -9,11 +9,11 @@ import pytest
 from in_process import run_btq
 
 from btq_lang.catalog.nav2 import PACKAGED
-from btq_lang.commands.opening import open_workspace
 from btq_lang.ide.completion import complete
 from btq_lang.ide.hover import hover
 from btq_lang.ide.navigation import find_references, goto_definition
 from btq_lang.ide.rename import Refusal, prepare_rename
+from btq_lang.projects.opening import open_workspace
 from btq_lang.workspace.config import parse_project
 
 MISSION = """\

@@ -20,8 +20,8 @@ from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import xml_tag
 from btq_lang.checks import check
 from btq_lang.cli import main
-from btq_lang.commands.opening import open_workspace
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.projects.opening import open_workspace
 from btq_lang.syntax.tree import Node as Written
 from btq_lang.syntax.tree import Tree
 from btq_lang.workspace.config import Project

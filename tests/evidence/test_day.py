@@ -20,8 +20,8 @@ from random_guards import Guarded
 
 from btq_lang.btcpp.marks import MARK
 from btq_lang.cli import main
-from btq_lang.commands.opening import open_workspace
 from btq_lang.evidence.identity import Candidate
+from btq_lang.projects.opening import open_workspace
 
 PAGE = (Path(__file__).parents[2] / "docs" / "day-in-the-life.md").read_text(encoding="utf-8")
 FASTER = 0.8  # of the time that a drive to the charger took

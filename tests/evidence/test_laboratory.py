@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from laboratory_runs import Inspector, Robot, campaign
 
-from btq_lang.commands.opening import open_workspace
 from btq_lang.evidence.identity import Candidate
+from btq_lang.projects.opening import open_workspace
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

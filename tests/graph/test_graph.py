@@ -11,13 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btq_lang.cli import main
-from btq_lang.commands.opening import open_workspace
 from btq_lang.graph import DIRECTIONS, FORMATS, draw
 from btq_lang.graph.layout import Size, layout
 from btq_lang.graph.missions import figures
 from btq_lang.graph.picture import foldable, picture, places
 from btq_lang.graph.placing import Drawing, Rectangle, place
 from btq_lang.graph.widths import shortened, width, wrapped
+from btq_lang.projects.opening import open_workspace
 from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]

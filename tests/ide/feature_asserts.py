@@ -17,7 +17,6 @@ from textwrap import dedent
 from check_asserts import COMMENT_WITH_MARKERS, split_files, workspace_of
 
 from btq_lang.checks import check
-from btq_lang.commands.opening import open_workspace
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.ide.actions import code_actions
@@ -46,6 +45,7 @@ from btq_lang.ide.rename import Refusal, prepare_rename, rename
 from btq_lang.ide.structure import document_links, folding_ranges, selection_range
 from btq_lang.lexer import tokens as tokens_of
 from btq_lang.parser import parse
+from btq_lang.projects.opening import open_workspace
 from btq_lang.syntax.tokens import BLANK, CLOSE, DEDENT, ERROR, INDENT, NEWLINE, OPEN, Token
 from btq_lang.util.text import Edit, Encoding, LineIndex, Position, Span, apply_edits
 from btq_lang.workspace.config import Project

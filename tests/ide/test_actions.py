@@ -15,9 +15,9 @@ from feature_asserts import (
 )
 from rule_pages import blocks
 
-from btq_lang.commands.opening import open_workspace
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.ide.actions import code_actions
+from btq_lang.projects.opening import open_workspace
 from btq_lang.util.text import Span
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"

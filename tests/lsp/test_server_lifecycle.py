@@ -158,7 +158,7 @@ def test_it_ends_with_its_standard_input_while_it_reads_folders(tmp_path: Path) 
     """As with a folder so large that it takes minutes, without handling messages."""
     program = (
         "import os, sys\n"
-        "from btq_lang.commands.files import Files\n"
+        "from btq_lang.projects.files import Files\n"
         "from btq_lang.lsp import editor\n"
         "from btq_lang.server import main\n"
         "def groups(*_, **__):\n"

@@ -14,7 +14,7 @@ from seeds import seeds
 from btq_lang import build, open_workspace
 from btq_lang.btcpp.recognition import is_mission
 from btq_lang.checks import check
-from btq_lang.commands.files import Files
+from btq_lang.projects.files import Files
 from btq_lang.util.text import Edit, LineIndex, Position, Span, apply_edits
 
 DOCK = """<root BTCPP_format="4">

@@ -33,6 +33,7 @@ ROWS = (
     ("checks", "nav2"),
     ("diff", "render"),
     ("evidence",),
+    ("projects",),
     ("ide", "trace"),
     ("preview",),
     ("commands",),

@@ -21,8 +21,8 @@ from evidence_logs import as_logged, btlog, rows, samples, write_db3
 
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
-from btq_lang.commands.opening import open_workspace
 from btq_lang.parser import parse
+from btq_lang.projects.opening import open_workspace
 from btq_lang.workspace.loader import find_project
 
 ROOT = Path(__file__).resolve().parents[2]

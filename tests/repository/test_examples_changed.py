@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from btq_lang.checks import check
-from btq_lang.commands.opening import open_workspace
+from btq_lang.projects.opening import open_workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -18,9 +18,9 @@ import pytest
 from chromium import ARTIFACTS, BROAD, CHROMIUM, chromium, keep_screenshots, seen_in
 from missions import mission
 
-from btq_lang.commands.opening import open_workspace
 from btq_lang.graph import DIRECTIONS, draw
 from btq_lang.graph.missions import figures
+from btq_lang.projects.opening import open_workspace
 from btq_lang.trace import write
 from btq_lang.trace.collect import collect
 from btq_lang.trace.missions import built_ways

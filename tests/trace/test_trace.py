@@ -14,8 +14,8 @@ import pytest
 from worked_mission import WORKED
 
 from btq_lang.cli import main
-from btq_lang.commands.opening import open_workspace
 from btq_lang.graph.svg import _COLOURS
+from btq_lang.projects.opening import open_workspace
 from btq_lang.render.cells import laid_out
 from btq_lang.trace import FORMATS, write
 from btq_lang.trace.collect import collect

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from btq_lang.btcpp.importing import import_xml
-from btq_lang.commands.files import Files
+from btq_lang.projects.files import Files
 from btq_lang.util.source_map import Places
 from btq_lang.util.text import Span
 

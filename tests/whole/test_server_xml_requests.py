@@ -17,7 +17,7 @@ from seeds import seeds
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.recognition import is_mission
 from btq_lang.checks import check
-from btq_lang.commands.files import Files
+from btq_lang.projects.files import Files
 from btq_lang.server import make_server
 from btq_lang.util.text import Edit, LineIndex, Position, Span, apply_edits
 

@@ -16,7 +16,7 @@ from btq_lang.btcpp.marks import is_built_of, named_beside
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.recognition import is_mission
 from btq_lang.btcpp.side_file import xml_path
-from btq_lang.commands.options import Refused
+from btq_lang.projects.options import Refused
 from btq_lang.util.globs import glob_matcher
 from btq_lang.util.record import Record
 from btq_lang.workspace.config import Project, include_candidates
@@ -102,7 +102,7 @@ class Commit:
     def _factories(self, project: Project) -> tuple[Workspace, ...]:
         """The workspaces of a project's factories."""
         if project.factories and project.root not in self._of_factories:
-            from btq_lang.commands.factory_files import resolved  # few projects have any
+            from btq_lang.projects.factory_files import resolved  # few projects have any
 
             found: list[Factory] = []
             for each in project.factories:
@@ -113,7 +113,7 @@ class Commit:
 
     def _of_nav2(self, factory: Factory, project: Project) -> Iterator[Factory]:
         """The factories that a parameter file of Nav2 describes, with the files that are in its folders today."""
-        from btq_lang.commands.nav2_factory import Sources, parameter_file  # few projects are for Nav2
+        from btq_lang.projects.nav2_factory import Sources, parameter_file  # few projects are for Nav2
 
         sources = Sources(self.text, self.source_of, partial(self._of_factory, project))
         file, _ = parameter_file(factory, project, None, sources)

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import PACKAGED
-from btq_lang.commands.files import Group
-from btq_lang.commands.nav2_factory import ParameterFile, findings_of, in_distribution
+from btq_lang.projects.files import Group
+from btq_lang.projects.nav2_factory import ParameterFile, findings_of, in_distribution
 from btq_lang.render import Finding
 from btq_lang.util.record import replace
 from btq_lang.workspace.loader import Found, absolute, excluder, read
@@ -16,8 +16,8 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
     from collections.abc import Callable, Container
 
-    from btq_lang.commands.files import Files
-    from btq_lang.commands.options import CheckOptions
+    from btq_lang.projects.files import Files
+    from btq_lang.projects.options import CheckOptions
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.factories import Factory
 
@@ -38,7 +38,7 @@ def requested(files: Files, options: CheckOptions) -> tuple[ParameterFile, ...]:
     wanted = [each for each in files.parameter_files if is_requested(each)]
     found = tuple({each.path: each for each in reversed(wanted)}.values())  # with the project of trees, if any
     if options.since:
-        from btq_lang.commands.since import has_changed
+        from btq_lang.projects.since import has_changed
 
         found = tuple(each for each in found if has_changed((*each.used, each.project_file or ""), options.since))
     return found

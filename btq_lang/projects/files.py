@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os.path
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
+from glob import glob
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.opening import file_of
@@ -27,10 +28,10 @@ from btq_lang.workspace.loader import (
 from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.commands.cpp_files import CppFiles, Read
-    from btq_lang.commands.nav2_factory import ParameterFile
-    from btq_lang.commands.xml_below import XmlBelow
     from btq_lang.diagnostics.model import Diagnostic
+    from btq_lang.projects.cpp_files import CppFiles, Read
+    from btq_lang.projects.nav2_factory import ParameterFile
+    from btq_lang.projects.xml_below import XmlBelow
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.factories import Factory
 
@@ -72,6 +73,15 @@ class Group(Record):
 def usage_problem(paths: Iterable[str]) -> str | None:
     """The usage error in the paths of a command line, without accessing the disk."""
     return "empty path; `.` is this folder" if "" in paths else None
+
+
+def logs_of(project: Project) -> Sequence[str]:
+    """The paths that the project's patterns of logs match; a pattern that matches none is kept, to be reported."""
+    paths: list[str] = []
+    for pattern in project.evidence.logs if project.evidence is not None else ():
+        path = os.path.join(project.root, pattern)
+        paths += sorted(glob(path, recursive=True)) or [path]
+    return paths
 
 
 def no_mission_below(paths: Iterable[str], groups: Iterable[Group], missing: str = "no .btq file") -> str | None:
@@ -191,7 +201,7 @@ class Files:
         groot: tuple[Factory, ...] = ()
         pools: dict[str, tuple[str, ...]] = {}
         if for_checks and (xml := {path: top for path, top in tops.items() if self._may_be_xml(path)}):
-            from btq_lang.commands.factory_files import groot_projects  # many projects have no XML
+            from btq_lang.projects.factory_files import groot_projects  # many projects have no XML
 
             pools = self._pools(xml, home)
             registered = {path for factory in factories for path in factory.files}
@@ -234,7 +244,7 @@ class Files:
         """The factories of a project with their files."""
         if not home.project.factories and not self.nav2_params:
             return (), []
-        from btq_lang.commands.factory_files import resolved  # few projects have any
+        from btq_lang.projects.factory_files import resolved  # few projects have any
 
         factories: list[Factory] = []
         problems: list[LoadProblem] = []
@@ -246,7 +256,7 @@ class Files:
             if not found.nav2:
                 factories.append(found)
                 continue
-            from btq_lang.commands.nav2_factory import Sources, parameter_file  # few projects are for Nav2
+            from btq_lang.projects.nav2_factory import Sources, parameter_file  # few projects are for Nav2
 
             senders = others if len(others) == len(every) - 1 else ()  # of several robots, it is not known to which
             of_factory = partial(self.workspace_of, home=home)
@@ -297,14 +307,14 @@ class Files:
     @cached_property
     def xml(self) -> XmlBelow:
         """What is known of XML below folders."""
-        from btq_lang.commands.xml_below import XmlBelow  # many projects have no XML
+        from btq_lang.projects.xml_below import XmlBelow  # many projects have no XML
 
         return XmlBelow()
 
     @cached_property
     def cpp(self) -> CppFiles:
         """What is known of C++ sources."""
-        from btq_lang.commands.cpp_files import CppFiles  # few projects name any
+        from btq_lang.projects.cpp_files import CppFiles  # few projects name any
 
         return CppFiles()
 

@@ -64,7 +64,7 @@ def as_html(found: CppNodes, sources: str) -> str:
 
     categories = [(category, [node for node in found.nodes if node.category == category]) for category in CATEGORIES]
     return page(
-        "commands/nodes.html.j2",
+        "projects/nodes.html.j2",
         title=f"Nodes of {sources}",
         categories=[
             (category, [(node, [(port, _meaning(node, port)) for port in node.ports]) for node in nodes])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 
-from btq_lang.commands.files import Files
-from btq_lang.commands.options import Refused
+from btq_lang.projects.files import Files
+from btq_lang.projects.options import Refused
 from btq_lang.util.record import replace
 from btq_lang.workspace.loader import read, shown
 from btq_lang.workspace.workspace import Workspace

@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nav2 import DISTRIBUTIONS, ENGINES, FILES, PACKAGED, PACKAGES
 from btq_lang.catalog.versions import is_before_4
-from btq_lang.commands.factory_files import cpp_in_folder
-from btq_lang.commands.node_writers import models_in_btq
 from btq_lang.cpp.findings import findings
 from btq_lang.cpp.grammar import GrammarMissing
 from btq_lang.cpp.macros import Macro, Macros, macros_in
@@ -22,6 +20,8 @@ from btq_lang.cpp.nodes import nodes_of
 from btq_lang.cpp.source import Source
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.parser import parse
+from btq_lang.projects.factory_files import cpp_in_folder
+from btq_lang.projects.node_writers import models_in_btq
 from btq_lang.syntax.tree import models_in
 from btq_lang.util.record import Record, replace
 from btq_lang.util.source_map import Places

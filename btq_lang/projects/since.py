@@ -14,8 +14,8 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.btcpp.recognition import defined_in
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.commands.files import Group
-from btq_lang.commands.git import GitTrouble, Revisions, revisions
+from btq_lang.projects.files import Group
+from btq_lang.projects.git import GitTrouble, Revisions, revisions
 from btq_lang.util.record import replace
 from btq_lang.workspace.config import include_candidates
 from btq_lang.workspace.file import SUFFIXES, XML_SUFFIXES
