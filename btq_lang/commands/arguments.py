@@ -202,7 +202,6 @@ def _add_build(parser: Parser) -> None:
     parser.flag("--force", "overwrite XML that btq did not write")
     parser.flag("--verbose", "show for every clause whether and how it is enforced")
     parser.flag("--watch", "build again whenever a file changes")
-    parser.set_defaults(report="full")  # editors need one line for each error
     _add_config(parser)
     _add_color(parser)
 

@@ -23,6 +23,7 @@ from btq_lang.catalog.versions import VERSION_3, VERSIONS, is_before_4
 from btq_lang.checks import check_each
 from btq_lang.checks.engines import declared_engines
 from btq_lang.commands.explain_nav2 import models_of
+from btq_lang.commands.output import show
 from btq_lang.commands.packages import Packages, packages_of
 from btq_lang.projects.files import Files
 from btq_lang.projects.options import Refused
@@ -57,13 +58,14 @@ def run(options: Namespace) -> int:
     packages = packages_of(folder)
     excluded: list[str] = []
     if options.convert:
-        from btq_lang.commands.import_xml import import_files
+        from btq_lang.projects.import_files import ImportOptions, import_files
 
         files = [shown(path) for path in workspace.files if not path.endswith(GROOT_SUFFIX)]
         overlay = {target: f"engine = {json.dumps(packages.engines)}\n"} if packages.engines else {}
-        named = Namespace(files=files, output=None, force=False, keep_v3=False, xml=False)
-        if code := import_files(named, overlay)[0]:
-            return code
+        imported = import_files(ImportOptions(files), overlay)
+        show(imported.messages)
+        if imported.code:
+            return imported.code
         trees, models = _by_kind(workspace)
         excluded = [f"/{each}.xml" for each in patterns(folder, trees, models)]
     engine = _engine_line(workspace, packages) if not options.convert else _ENGINES

@@ -14,6 +14,9 @@ from btq_lang import ide as features
 from btq_lang.lsp.editor import Refused, Server, Unknown
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from btq_lang.projects.messages import Messages
     from btq_lang.workspace.workspace import Workspace
 
 NODE_PATH = "btq.server.nodePath"
@@ -41,6 +44,11 @@ def register(server: Server) -> None:
         except Unknown:
             what = "neither a .btq file nor BehaviorTree.CPP's XML" if reads else "not a .btq file"
             raise Refused(f"this is {what} of the open folders") from None
+
+    def outcome(code: int, files: Iterable[str], messages: Messages) -> dict[str, object]:
+        if code:
+            raise Refused(messages.text())
+        return {"files": [convert.uri(file) for file in files], "said": messages.text()}
 
     @server.command(XML)
     def xml(document: types.TextDocumentIdentifier) -> str:
@@ -86,12 +94,13 @@ def register(server: Server) -> None:
         _, path = mission(document)
         if not document.uri.startswith("file:"):
             raise Refused("save this document to a file first")
-        from btq_lang.commands.for_editors import build_open  # as above
+        from btq_lang.projects.build_files import BuildOptions, build_files  # as above
+        from btq_lang.projects.files import Files
 
-        code, files, output = build_open(path, server.session.open)
-        if code:
-            raise Refused(output)
-        return {"files": [convert.uri(file) for file in files], "said": output}
+        files = Files()
+        files.overlay = {**server.session.open}
+        built = build_files(BuildOptions((path,), report="concise"), files)
+        return outcome(built.code, built.files, built.messages)
 
     @server.command(IMPORT)
     def import_(document: types.TextDocumentIdentifier) -> dict[str, object]:
@@ -104,12 +113,10 @@ def register(server: Server) -> None:
             raise Refused("this is a .btq file already")
         if not document.uri.startswith("file:") or read(path)[0] != file.source:
             raise Refused("save this document to a file first")
-        from btq_lang.commands.for_editors import import_saved
+        from btq_lang.projects.import_files import ImportOptions, import_files
 
-        code, files, output = import_saved(path)
-        if code:
-            raise Refused(output)
-        return {"files": [convert.uri(written) for written in files], "said": output}
+        imported = import_files(ImportOptions((path,)))
+        return outcome(imported.code, imported.missions, imported.messages)
 
     @server.command(USES)
     def uses(places: list[types.Location]) -> None:

@@ -9,6 +9,7 @@ what is in them.  Nothing here knows of command lines but their options.
     cpp_files.py     C++ sources as files with the models of their nodes; `node_writers.py` writes such models
     opening.py       a folder as a workspace
     building.py      a mission as XML, in memory, and what prevents a build
+    build_files.py, import_files.py   missions on the disk as XML, and XML as missions; `messages.py`: what they tell
     nav2_check.py    what is wrong with parameter files, and with trees because of them
     git.py, since.py   files of another revision, and those that a change since then concerns
     options.py       the options that are needed without a parser of command lines

@@ -1,0 +1,367 @@
+"""Missions on the disk as XML that BehaviorTree.CPP loads, written all of them or none.
+
+One invariant: what another program or a person has written is not overwritten without `is_forced`.
+"""
+
+from __future__ import annotations
+
+import glob
+import os
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import Final
+
+from btq_lang.btcpp.enforcement import ClauseEnforcement, Enforcement
+from btq_lang.btcpp.export import Export, is_mission
+from btq_lang.btcpp.marks import is_generated
+from btq_lang.btcpp.outputs import Output, Places, outputs, sources, without_tree
+from btq_lang.btcpp.side_file import is_side_file, side_path
+from btq_lang.btcpp.source import Remark
+from btq_lang.catalog.versions import is_before_4
+from btq_lang.diagnostics.model import Place
+from btq_lang.projects.building import errors, for_target
+from btq_lang.projects.files import STDIN, Files, Group, no_mission_below
+from btq_lang.projects.messages import Messages
+from btq_lang.render import Finding, Report, render, with_paths
+from btq_lang.util.record import Record, replace
+from btq_lang.util.text import Span, counted
+from btq_lang.workspace.file import SUFFIXES
+from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_whole
+
+
+class BuildOptions(Record):
+    """What is built, and how.
+
+    Attributes:
+        paths: files and folders, or `-` for standard input.
+        stdin_filename: the path that standard input is taken for.
+        target: the version of the engine; None: the newest of the project.
+        output: the folder to write to; None: beside the missions.
+        is_bundled: each mission in one file with all that it needs.
+        is_enforced: add the nodes that enforce requirements.
+        is_verbatim: exactly the content of the file, without repairs and additions.
+        is_check: write nothing, compare.
+        is_forced: overwrite XML that btq did not write.
+        is_verbose: tell of every clause whether and how it is enforced.
+        report: the format of errors.
+        is_coloured: errors are coloured.
+    """
+
+    paths: Sequence[str]
+    stdin_filename: str | None = None
+    target: str | None = None
+    output: str | None = None
+    is_bundled: bool = False
+    is_enforced: bool = True
+    is_verbatim: bool = False
+    is_check: bool = False
+    is_forced: bool = False
+    is_verbose: bool = False
+    report: str = "full"
+    is_coloured: bool = False
+
+
+class BuildResult(Record):
+    """What a build did.
+
+    Attributes:
+        code: the exit code.
+        messages: what there is to print.
+        watched: the files that another build depends on.
+        files: those written, or already up to date.
+        text: the XML of standard input.
+    """
+
+    code: int
+    messages: Messages
+    watched: tuple[str, ...]
+    files: tuple[str, ...] = ()
+    text: str | None = None
+
+
+class _Target(Record):
+    """A file to write or to remove.
+
+    Attributes:
+        text: the new contents; None: remove the file.
+        old: the current contents; None: no file.
+    """
+
+    path: str
+    text: str | None
+    old: str | None
+
+
+def build_files(options: BuildOptions, files: Files) -> BuildResult:
+    """Build missions, unless one of them has errors.
+
+    Raises:
+        ValueError: btq does not know the version of the engine.
+    """
+    messages = Messages()
+    groups, problems = files.groups(options.paths, options.stdin_filename)
+    if options.target:
+        groups = tuple(replace(group, workspace=for_target(group.workspace, options.target)) for group in groups)
+    watched = tuple(path for group in groups for path in group.watched)
+    problems += tuple(
+        LoadProblem(path, "is XML already")
+        for group in groups
+        for path in group.given
+        if not is_mission(group.workspace, path)
+    )
+    messages.problems(problems)
+    if usage := no_mission_below(options.paths, groups) or _version_problem(groups, options):
+        messages.remark(f"btq build: {usage}")
+    if problems or usage:  # an unreadable file may be part of any other
+        return BuildResult(2, messages, watched)
+    planned = None if _has_errors(groups, options, messages) else _planned(groups, options, messages)
+    if planned is None:
+        messages.remark("nothing was written")
+        return BuildResult(1, messages, watched)
+    for output in planned:
+        _remarks(output.done.export.repairs, "repaired", groups, messages)
+    _clauses([output.done for output in planned], groups, options.is_verbose, messages)
+    if not options.is_check:
+        _guesses([output.done.export for output in planned], messages)
+    if STDIN in options.paths:
+        text = next((output.text for output in planned if output.path == files.stdin), None)
+        return BuildResult(0, messages, watched, text=text)
+    targets = [target for output in planned for target in _targets(output)]
+    code = (_compare if options.is_check else _write)(targets, options, _stale(groups, options), messages)
+    return BuildResult(code, messages, watched, tuple(target.path for target in targets if target.text is not None))
+
+
+def _version_problem(groups: tuple[Group, ...], options: BuildOptions) -> str | None:
+    if not options.target and any(is_before_4(group.workspace.project.target) for group in groups):
+        return "btq writes XML for version 4 of the engine, and btq.toml names an older one: choose one with --target"
+    return None
+
+
+def _planned(groups: tuple[Group, ...], options: BuildOptions, messages: Messages) -> list[Output] | None:
+    """What is to be written; None: there is a reason not to write anything, which is told."""
+    empty = [path for group in groups for path in without_tree(group.workspace, group.given)]
+    for path in empty:
+        messages.remark(f"btq build: {shown(path)} has no tree to run")
+    if empty and len(empty) == sum(len(group.given) for group in groups):
+        return None
+    places = Places(absolute(options.output) if options.output else None, _sources(groups))
+    planned = [output for group in groups for output in _outputs(group, places, options)]
+    number = sum(_remarks(output.done.export.problems, "error", groups, messages) for output in planned)
+    clashes = [*_same_place(planned)]
+    for clash in clashes:
+        messages.remark(f"btq build: {clash}")
+    return None if number or clashes else planned
+
+
+def _sources(groups: tuple[Group, ...]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(path for group in groups for path in sources(group.workspace, group.given)))
+
+
+def _stale(groups: tuple[Group, ...], options: BuildOptions) -> list[str]:
+    """What an earlier build left beside missions."""
+    return [] if options.output else stale_outputs(os.path.dirname(path) for path in _sources(groups))
+
+
+def _outputs(group: Group, places: Places, options: BuildOptions) -> tuple[Output, ...]:
+    return outputs(
+        group.workspace,
+        group.given,
+        places,
+        bundled=options.is_bundled,
+        verbatim=options.is_verbatim,
+        enforce=options.is_enforced,
+    )
+
+
+def _has_errors(groups: tuple[Group, ...], options: BuildOptions, messages: Messages) -> bool:
+    """Whether errors prevent the build; they are results."""
+    findings = [
+        Finding(path, group.workspace.files[path].source, each)
+        for group in groups
+        for path, each in errors(
+            group.workspace,
+            group.given,
+            bundled=options.is_bundled,
+            verbatim=options.is_verbatim,
+            replaces=not options.output,
+        )
+    ]
+    if not findings:
+        return False
+    texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
+    report = with_paths(Report(tuple(findings), texts, tuple(path for group in groups for path in group.given)), shown)
+    messages.result("".join(render(options.report, report, colour=options.is_coloured)).removesuffix("\n"))
+    return True
+
+
+def _remarks(remarks: Collection[Remark], word: str, groups: tuple[Group, ...], messages: Messages) -> int:
+    """Tell an export's remarks; returns how many."""
+    for remark in remarks:
+        file = next(group.workspace.files[remark.path] for group in groups if remark.path in group.workspace.files)
+        line, column = file.lines.position(remark.span.start)
+        place = "" if file.origin else f":{line + 1}:{column + 1}"  # places are in the text that XML was converted to
+        messages.remark(f"{shown(remark.path)}{place}: {word}: {remark.message}")
+    return len(remarks)
+
+
+def _clauses(planned: list[Enforcement], groups: tuple[Group, ...], is_verbose: bool, messages: Messages) -> None:
+    """Tell how the clauses of requirements are covered, with a line for each one demanded to be enforced that is not,
+    or that has a remark.
+    """
+    clauses: dict[object, ClauseEnforcement] = {}
+    for each in (each for done in planned for applied in done.clauses for each in applied):
+        key = each.requirement, each.clause, each.place.path, each.place.span, id(each.node and each.node.node)
+        if key not in clauses or each.way == "enforced":  # one file may enforce what another cannot
+            clauses[key] = each
+    for each in clauses.values():
+        if not is_verbose and (not each.asked or (each.way == "enforced" and not each.why)):
+            continue
+        where = f" at {each.subject}" if each.subject else ""
+        way = "not enforced, monitored" if each.asked and each.way == "monitored" else each.way
+        why = f": {each.why}" if each.why else ""
+        remark = Remark(*_absolute(each.place, groups), f"{each.requirement}, `{each.clause}`{where}{why}")
+        _remarks((remark,), way, groups, messages)
+    known = {(each.requirement, each.clause, each.place.path, each.place.span) for each in clauses.values()}
+    loose = {  # without those whose node another file has
+        found: Remark(*_absolute(claim.place, groups), f"{requirement.name}, `{claim.text}` applies to no node")
+        for done in planned
+        for requirement, claim in done.loose
+        if (found := (requirement.name, claim.text, claim.place.path, claim.place.span)) not in known
+    }
+    _remarks(loose.values(), "not checked", groups, messages)
+    if clauses:
+        ways = [each.way for each in clauses.values()]
+        counted = [f"{ways.count(way)} {way}" for way in ("enforced", "monitored", "reviewed") if way in ways]
+        counted += [f"{len(loose)} without a node"] if loose else []
+        messages.remark(f"clauses of requirements: {', '.join(counted)}")
+
+
+def _guesses(exports: list[Export], messages: Messages) -> None:
+    """Tell which nodes got a guessed category in the models, because the mission does not declare it."""
+    guessed = {name: category for each in exports for name, category in each.guessed.items()}
+    shown = [f"{name} ({category})" for name, category in sorted(guessed.items())[:_GUESSES_SHOWN]]
+    if len(guessed) > len(shown):
+        shown.append(f"{len(guessed) - len(shown)} more")
+    if shown:
+        which = "declare a node whose category is wrong, for example `Condition Name`"
+        messages.remark(f"categories guessed from the use of the nodes: {', '.join(shown)}; {which}")
+
+
+def _absolute(place: Place, groups: tuple[Group, ...]) -> tuple[str, Span]:
+    """The file of a place, and its span in that file."""
+    assert place.path is not None, "a clause is part of a file"
+    file = next(group.workspace.files[place.path] for group in groups if place.path in group.workspace.files)
+    return place.path, file.span_of(place)
+
+
+def _same_place(planned: list[Output]) -> Iterator[str]:
+    """Messages for two files that would be written to one place: `a.btq` and `a.qualitybtcpp`."""
+    known: dict[str, str] = {}
+    for output in planned:
+        other = known.setdefault(output.place, output.path)
+        if other != output.path:
+            yield f"{shown(other)} and {shown(output.path)} would both be written to {shown(output.place)}"
+
+
+def _targets(output: Output) -> Iterator[_Target]:
+    """The XML of a mission and its side file; an outdated side file is removed."""
+    yield _Target(output.place, output.text, _old_text(output.place))
+    side = side_path(output.place)
+    old = _old_text(side)
+    if output.side is not None or (old is not None and is_side_file(old)):
+        yield _Target(side, output.side, old)
+
+
+def _old_text(path: str) -> str | None:
+    """The text of a file, empty if it cannot be read: then it is not one that btq wrote."""
+    return (read(path)[0] or "") if os.path.exists(path) else None
+
+
+def _compare(targets: list[_Target], options: BuildOptions, stale: list[str], messages: Messages) -> int:
+    """`--check`: tell which files a build would change or remove."""
+    for path in stale:
+        messages.result(f"stale: {shown(path)}")
+    outdated = [target for target in targets if target.text != target.old]
+    for target in outdated:
+        state = "missing" if target.old is None else "out of date" if target.text is not None else "stale"
+        messages.result(f"{state}: {shown(target.path)}")
+    return int(bool(outdated or stale))
+
+
+def _write(targets: list[_Target], options: BuildOptions, stale: list[str], messages: Messages) -> int:
+    """Write what has changed: all files, or none if one cannot be written."""
+    for path in stale:
+        messages.remark(f"stale: {shown(path)}")
+    changed = [target for target in targets if target.text != target.old]
+    foreign = [target for target in changed if not options.is_forced and _is_foreign(target.old)]
+    for target in foreign:
+        why = "is in the way: btq build did not write it (or wrote it with --verbatim)"
+        instead = "write to another folder with -o FOLDER, or overwrite it with --force"
+        messages.remark(f"btq build: {shown(target.path)} {why}; {instead}")
+    if foreign or not _put_all(changed, messages):
+        messages.remark("nothing was written")
+        return 2
+    for target in changed:
+        messages.result(f"{'wrote' if target.text is not None else 'removed'} {shown(target.path)}")
+    if same := len(targets) - len(changed):
+        messages.remark(f"{counted(same, 'file')} unchanged")
+    return 0
+
+
+def _put_all(targets: list[_Target], messages: Messages) -> bool:
+    """Write or remove all files, or none if that fails for one."""
+    for number, target in enumerate(targets):
+        try:
+            _put(target.path, target.text)
+        except OSError as error:
+            what = "written" if target.text is not None else "removed"
+            messages.problems([LoadProblem(target.path, f"cannot be {what}: {error.strerror}")])
+            _take_back(targets[:number], messages)
+            return False
+    return True
+
+
+def _put(path: str, text: str | None) -> None:
+    """Write a file, or remove it.
+
+    Raises:
+        OSError: that fails.
+    """
+    if text is None:
+        os.unlink(path)
+    else:
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        write_whole(path, text)
+
+
+def _is_foreign(text: str | None) -> bool:
+    return text is not None and not is_generated(text) and not is_side_file(text)
+
+
+def _take_back(targets: list[_Target], messages: Messages) -> None:
+    """Restore the old contents of files, as far as possible."""
+    for target in targets:
+        try:
+            _put(target.path, target.old)
+        except OSError as error:
+            messages.problems([LoadProblem(target.path, f"was changed and cannot be restored: {error.strerror}")])
+
+
+def stale_outputs(folders: Iterable[str]) -> list[str]:
+    """The files in some folders that a build made and whose mission is no longer beside them.
+
+    Subfolders are not searched, nor are targets of `-o`, which have no missions beside them.
+    """
+    found: list[str] = []
+    for folder in sorted(set(folders)):
+        for xml in sorted(glob.glob(os.path.join(glob.escape(folder), "*.xml"))):
+            stem = os.path.splitext(xml)[0]
+            if any(os.path.exists(stem + suffix) for suffix in SUFFIXES) or not is_generated(read(xml)[0] or ""):
+                continue
+            found.append(xml)
+            side = side_path(xml)
+            if os.path.exists(side) and is_side_file(read(side)[0] or ""):
+                found.append(side)
+    return found
+
+
+_GUESSES_SHOWN: Final = 8
